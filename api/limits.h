@@ -8,44 +8,45 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The largest bodies. A parsed control document (a JSON body other than a mesh) costs at most
- * API_MAX_*_VALUES * 64 bytes of cJSON nodes plus its strings. A list of edits costs its text plus
- * the nodes of one operation at a time. */
+/* The largest bodies of requests. A parsed control document (a JSON body other than a mesh) costs
+ * at most API_MAX_*_VALUES * 64 bytes of cJSON nodes plus its strings. A list of edits costs its
+ * text plus the nodes of one operation at a time. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
 #define API_MAX_MATERIALS      ((size_t)16 << 20) /* the materials of a mesh document */
 #define API_MAX_EDITS          ((size_t)8 << 20)  /* an edit list */
 #define API_MAX_EDITS_VALUES   ((size_t)1 << 20)
-#define API_DEFAULT_UPLOAD                                                 \
-    ((uint64_t)1 << 30) /* a mesh document or file; api_options.max_upload \
-                         */
+/* The largest mesh document or file, unless api_options.max_upload is set. */
+#define API_DEFAULT_UPLOAD ((uint64_t)1 << 30)
 
-/* Compressed bodies. The decompressed size counts against the limits above, and so does the
- * compressed size. Each gzip member or zstd frame may decompress to API_DECOMPRESS_RATIO times the
- * compressed data read of it; all together may exceed that by API_DECOMPRESS_FREE bytes. (Mesh
- * files decompress to ten times their size, zeros to a thousand times.) After API_DECOMPRESS_TURN
- * decompressed bytes the thread serves other requests. A zstd frame may use a window of 8 MiB, the
- * largest that RFC 9659 allows. The decoders of all bodies in transfer may allocate
- * API_MAX_DECOMPRESSING bytes together. */
+/* Limits of compressed bodies. The decompressed size counts against the limits above, and so does
+ * the compressed size. Each gzip member or zstd frame may decompress to API_DECOMPRESS_RATIO times
+ * the compressed bytes that were read from it; the whole body may exceed the sum of these by
+ * API_DECOMPRESS_FREE bytes. (Mesh files decompress to ten times their size, zeros to a thousand
+ * times.) After API_DECOMPRESS_TURN decompressed bytes the thread serves other requests. A zstd
+ * frame may use a window of 8 MiB, the largest that RFC 9659 allows. The decoders of all bodies in
+ * transfer may allocate API_MAX_DECOMPRESSING bytes together. */
 #define API_DECOMPRESS_FREE   ((uint64_t)1 << 20)
 #define API_DECOMPRESS_TURN   ((size_t)1 << 20)
 #define API_MAX_DECOMPRESSING ((size_t)256 << 20)
 enum { API_DECOMPRESS_RATIO = 100, API_DECOMPRESS_WINDOW = 23 /* log2 of the window */ };
 
-/* A body of several files (multipart). All of it counts against the limits above. Files that a
- * reader needs beside the mesh file are kept until the reader is done. */
+/* Limits of a body that contains several files (multipart/form-data). The whole body counts against
+ * the limits above. Files that the reader of a mesh file needs besides that file are kept until the
+ * reader is done. */
 enum {
     API_MAX_PARTS = 64,
     API_MAX_PART_HEADERS = 8192, /* bytes of headers per part */
     API_MAX_PART_NAME = 1000     /* bytes of a file name, a field name or a media type */
 };
 
-/* Answers longer than API_COMPRESS_FROM bytes are compressed. Those up to API_COMPRESS_AT_ONCE are
- * compressed in one call, which takes half a millisecond. Longer ones are compressed in pieces of
- * that size, and the thread serves other requests after API_COMPRESS_TURN bytes. */
+/* Answers longer than API_COMPRESS_FROM bytes are compressed. An answer of up to
+ * API_COMPRESS_AT_ONCE bytes is compressed in one call, which takes half a millisecond. A longer
+ * one is compressed in pieces of API_COMPRESS_AT_ONCE bytes, and the thread serves other requests
+ * after API_COMPRESS_TURN bytes. */
 enum { API_COMPRESS_FROM = 1024, API_COMPRESS_AT_ONCE = 64 * 1024, API_COMPRESS_TURN = 1 << 20 };
 
-/* JSON */
+/* Limits of JSON bodies */
 enum {
     API_MAX_DEPTH = 32,    /* nesting depth of arrays and objects */
     API_MAX_MEMBERS = 256, /* members per object */
@@ -54,94 +55,100 @@ enum {
     API_MAX_KEY = 256               /* characters of a top-level member's name in a mesh document */
 };
 
-/* The request line */
+/* Limits of the request line and of two headers */
 enum {
-    API_MAX_URI = 8192,      /* path and query together */
+    API_MAX_URI = 8192,      /* bytes of path and query together */
     API_MAX_SEGMENTS = 16,   /* segments per path */
-    API_MAX_SEGMENT = 512,   /* one segment after percent-decoding */
+    API_MAX_SEGMENT = 512,   /* bytes of one segment after percent-decoding */
     API_MAX_PARAMETERS = 16, /* parameters per query string */
     API_MAX_REQUEST_ID = 128,
     API_MAX_KEY_LENGTH = 255 /* characters of an Idempotency-Key */
 };
 
-/* What a request may ask for */
+/* Limits of what a request may ask for */
 enum {
-    API_DEFAULT_PAGE = 1000, /* items per page */
+    API_DEFAULT_PAGE = 1000, /* items per page if the request does not say how many */
     API_MAX_PAGE = 10000,
     API_MAX_PAGE_BYTES = 1 << 26, /* a page of elements ends with the item that passes this size */
     API_MAX_OPS = 65536,          /* operations per edit list */
-    /* Work allowed to the operations of one list; the operation that would pass a limit is refused.
-     * API_MAX_EDITS_ELEMENTS counts the ids that operations name, plus all elements of the mesh for
-     * each operation on the whole mesh. API_MAX_EDITS_ROWS counts rows of the delta (16 bytes
-     * each). */
+    /* Limits of the work that the operations of one edit list may do; the operation that would
+     * exceed a limit is refused. API_MAX_EDITS_ELEMENTS counts the ids that operations name, plus
+     * all elements of the mesh for each operation on the whole mesh. API_MAX_EDITS_ROWS counts the
+     * rows of the delta, the record of changed elements (16 bytes each). */
     API_MAX_EDITS_ELEMENTS = 1 << 26,
     API_MAX_EDITS_ROWS = 1 << 26,
-    API_HUB_USES = 256,        /* uses of a cached vertex degree: see api/write/edit_cost.h */
+    /* How often a cached degree is used before it is counted again (edit_cost.h). */
+    API_HUB_USES = 256,
     API_MAX_IDS = 1 << 24,     /* ids per list, including the ids that references expand to */
-    API_MAX_NAMED_MESHES = 16, /* other meshes that one request may name */
+    API_MAX_NAMED_MESHES = 16, /* meshes that one request may name besides its own */
     API_MAX_AS = 64,           /* characters of a result name ("as") */
     API_MAX_QUERIES = 10000,   /* questions per query request */
     API_MAX_PATH_STEPS = 4096, /* steps in the path of a traversal */
-    API_MAX_WALK = 10000000,   /* half-edges that a walk may return, or a query visit */
-    API_HALFEDGE_STEPS = 8,    /* steps charged for visiting one half-edge: base/budget.h */
-    /* Steps that all questions of one request may take together; for a larger mesh, at least what
-     * one pass over it takes. A step takes at most 10 ns, so this is up to a second of work. */
+    API_MAX_WALK = 10000000,   /* half-edges that a walk may return, or that a query may visit */
+    API_HALFEDGE_STEPS = 8, /* steps of work charged for visiting one half-edge (base/budget.h) */
+    /* How many steps of work all questions of one request may take together. On a mesh with more
+     * elements than API_MAX_WALK, a request may take as many steps as one pass over the mesh. A
+     * step takes at most 10 ns, so API_MAX_STEPS is up to a second of work. */
     API_MAX_STEPS = API_HALFEDGE_STEPS * API_MAX_WALK,
-    API_JOB_TIMES = 100, /* a job may take this many times as many steps */
-    /* Additional steps for the first search for intersections of a request, per element of the
-     * mesh. Ordinary surfaces need half of it. */
+    API_JOB_TIMES = 100, /* a query that runs as a job may take this many times API_MAX_STEPS */
+    /* Additional steps, per element of the mesh, for the first search for self-intersections in a
+     * request. Ordinary surfaces need half of them. */
     API_MEET_STEPS = 320,
-    API_MAX_PAIRS = 1 << 20 /* pairs of intersecting faces; for polygons possibly fewer */
+    /* The number of pairs of intersecting faces after which a search stops. A pair of polygons may
+     * count several times. */
+    API_MAX_PAIRS = 1 << 20
 };
 
-/* Requests that cost more than this run on the pool of job threads instead of a worker thread
- * (API_WORK). */
+/* A request that costs more than one of these runs on a thread of the job pool instead of a worker
+ * thread, which must not block for long (API_WORK). */
 enum {
-    API_COSTLY_ELEMENTS = 20000,    /* vertices, half-edges and faces together */
-    API_COSTLY_UPLOAD = 256 * 1024, /* bytes received */
-    API_COSTLY_EDITS = 2000,        /* operations per list */
+    API_COSTLY_ELEMENTS = 20000,    /* number of vertices, half-edges and faces together */
+    API_COSTLY_UPLOAD = 256 * 1024, /* bytes of an uploaded body */
+    API_COSTLY_EDITS = 2000,        /* operations per edit list */
     API_COSTLY_STEPS = 1 << 20      /* bytes of deltas to undo or redo */
 };
 
-/* Attributes. One column takes at most 128 bytes per id of its domain. Columns from files are
- * limited by memory only. */
+/* Limits of attributes. The column of an attribute takes at most 128 bytes per id of its domain
+ * (vertices, faces ...). Columns from files are limited by memory only. */
 enum {
     API_MAX_ATTRIBUTES = 256, /* attributes per mesh, checked when a request adds one */
-    API_MAX_LABELS = 100000,  /* labels per attribute, in JSON */
+    API_MAX_LABELS = 100000,  /* labels that a JSON body may give to an attribute */
     API_MAX_LABEL = 1024      /* characters per label */
 };
-#define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* bytes per column that a request sends */
-#define API_MAX_EXACT           ((uint64_t)1 << 53) /* every JSON reader is exact up to here */
+#define API_MAX_ATTRIBUTE_BYTES ((uint64_t)1 << 30) /* bytes of a column that a request sends */
+/* Up to this number every JSON reader reads integers exactly. */
+#define API_MAX_EXACT ((uint64_t)1 << 53)
 
-/* Long-running requests. Unless the client says otherwise, it waits up to API_PATIENCE seconds; a
- * request that will take longer becomes a job. The rates were measured on one busy core with a
- * torus of a million quads: building and summarizing 5.2 million vertices and corners took 0.37 s;
- * transforming 6.3 million vertices, half-edges and faces took 0.64 s with the answer; copying and
- * summarizing them took 0.32 s; checking them took 0.5 s, and 3.4 s with the search for
- * intersections. */
+/* Estimates for long-running requests. Unless the client says otherwise, it waits up to
+ * API_PATIENCE seconds; a request that will take longer becomes a job. The rates, in elements per
+ * second, were measured on one busy core with a torus of a million quads: building and summarizing
+ * 5.2 million vertices and corners took 0.37 s; transforming 6.3 million vertices, half-edges and
+ * faces took 0.64 s with the answer; copying and summarizing these elements took 0.32 s; checking
+ * them took 0.5 s, and 3.4 s with the search for self-intersections. */
 #define API_PATIENCE          1.0
 #define API_IMPORT_PER_SECOND 1.2e7
 #define API_EDIT_PER_SECOND   1e7
 #define API_COPY_PER_SECOND   2e7
 #define API_CHECK_PER_SECOND  1e7
 #define API_MEET_PER_SECOND   2e6
-/* Queries on the whole of the same torus: building the tree of boxes for ray queries took 1.7 s,
- * finding the intersections 1.2 s more, curvatures 0.5 to 0.8 s, a flood fill over a million
- * elements 0.24 s, a shortest path 0.4 s. Writing numbers as text runs at
- * API_MEASURE_PER_SECOND. */
+/* Rates of queries on the whole of that torus: building the tree of boxes for ray queries took 1.7
+ * s, finding the self-intersections 1.2 s more, computing curvatures 0.5 to 0.8 s, a flood fill
+ * over a million elements 0.24 s, a shortest path 0.4 s. API_MEASURE_PER_SECOND is also the rate at
+ * which numbers are written as text. */
 #define API_BVH_PER_SECOND     3.5e6
 #define API_SEARCH_PER_SECOND  5e6
 #define API_MEASURE_PER_SECOND 1e7
 #define API_FLOOD_PER_SECOND   4e6
 #define API_PATH_PER_SECOND    1.2e7
-/* Decimating 2.7 million elements for a progressive mesh took 2.9 s. */
+/* Elements per second of making a progressive mesh: for 2.7 million elements it took 2.9 s. */
 #define API_PROGRESSIVE_PER_SECOND 1e6
-/* Budgets of a list of operations while it holds the mesh's lock, one for workers and one for
- * threads of the pool. A list that exceeds its budget is rolled back and started again, on the pool
- * or as a job. The unit is one element transformed (API_EDIT_PER_SECOND), scaled by the pace of the
- * operation. One row of the delta counts as half an element; one step around a vertex of high
- * degree counts as a sixteenth. API_MAX_EDITS_STEPS limits the steps of all operations of a list,
- * even in a job, which reaches it after half a minute. */
+/* How much work a list of operations may do while it holds the mesh's lock, on a worker thread and
+ * on a thread of the job pool. A list that exceeds its budget is rolled back and started again, on
+ * the pool or as a job. The unit is the work of transforming one element (API_EDIT_PER_SECOND);
+ * slower operations count more per element. One row of the delta counts as half an element; one
+ * step around a vertex of high degree counts as a sixteenth of an element. API_MAX_EDITS_STEPS
+ * limits the steps of all operations of a list, even in a job, which reaches it after half a
+ * minute. */
 #define API_WORKER_EDITS    ((uint64_t)1 << 16)
 #define API_POOL_EDITS      ((uint64_t)1 << 22)
 #define API_MAX_EDITS_STEPS ((uint64_t)1 << 33)
@@ -152,11 +159,12 @@ enum {
      * holds the lock for a few milliseconds. */
     API_CLAIM_ELEMENTS = 200000,
     /* A list of more operations also claims the mesh (works on a copy without the lock). A list
-     * that turns out to change more rows than API_LOCKED_ROWS is started again with a claim:
-     * encoding its megabyte or more for the journal must not hold the lock. */
+     * that turns out to change more rows than API_LOCKED_ROWS is started again with a claim: the
+     * lock must not be held while a megabyte or more of its changes is encoded for the journal. */
     API_CLAIM_EDITS = 4096,
     API_LOCKED_ROWS = 1 << 17,
-    API_DEFAULT_JOBS = 100 /* jobs per page of the list */
+    /* Jobs per page of the list of jobs if the request does not say how many. */
+    API_DEFAULT_JOBS = 100
 };
 
 /* Limits of one event: the bytes of its data, and the rows of the delta it is made from while the
@@ -167,6 +175,6 @@ enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };
  * needs a copy of its mesh. */
 enum { API_MAX_BACKFILLS = 8 };
 
-enum { API_PROBLEM_ELEMENTS = 100 }; /* elements that a problem names one by one */
+enum { API_PROBLEM_ELEMENTS = 100 }; /* elements that the body of one problem lists at most */
 
 #endif

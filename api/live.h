@@ -1,8 +1,7 @@
 /* live.h - an answer without a known end, such as a stream of events.
  *
- * The server pulls from the source as from any stream, but the source may have nothing to give at
- * the moment. The server then suspends the connection until the source calls `wake`, and pulls
- * again:
+ * The server reads pieces of the answer from its source, which may have nothing to send at the
+ * moment. The server then suspends the connection until the source calls `wake`, and reads again:
  *
  *       start            once, before the first read
  *         |
@@ -22,7 +21,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { API_READ_WAIT = -2 }; /* result of read: nothing now, but more will come */
+/* result of `read`: there is nothing to send now, but more will come */
+enum { API_READ_WAIT = -2 };
 
 typedef struct api_source {
     void *self;

@@ -2,13 +2,15 @@
 
 #include <stdatomic.h>
 
-/* A tree that is kept or being made. Either `bvh` or `abandoned` is set, once, under the lock of
- * the place where the tree is kept; while neither is set, the tree is being made. */
+/* An entry for a tree of boxes that is being made, is ready, or could not be made. While it is
+ * being made, `bvh` and `abandoned` are not set; then one of them is set, with the lock of
+ * st_derived_begin held. */
 typedef struct api_bvh {
-    _Atomic uint32_t uses; /* one use while it is kept, one for each asker */
+    /* 1 while the entry is kept with the mesh, and 1 for each request that uses it. */
+    _Atomic uint32_t uses;
     uint64_t revision;
     he_bvh *bvh;
-    bool abandoned; /* it could not be made */
+    bool abandoned; /* the tree could not be made */
 } api_bvh;
 
 void api_bvh_release(api_bvh *tree)
@@ -29,7 +31,7 @@ static void hold(api_bvh *tree)
     atomic_fetch_add_explicit(&tree->uses, 1, memory_order_relaxed);
 }
 
-/* Returns an entry for a tree that is to be made. */
+/* Returns a new entry for a tree that the caller will make. */
 static api_bvh *tree_new(const api_asker *a)
 {
     api_bvh *tree = he_mem_zero(1, sizeof *tree);
@@ -50,8 +52,9 @@ static bool must_be_made(const api_bvh *tree)
     return tree->bvh == NULL && !tree->abandoned;
 }
 
-/* Finds the tree, or makes an entry for it. The caller holds the lock of the place where the tree
- * is kept. Returns NULL when memory is out, or with a->spent. */
+/* Returns the entry in `place` if it is for this revision, else a new entry for a tree that the
+ * caller must make. The caller holds the lock of `place`. Returns NULL when memory is out, or with
+ * a->spent. */
 static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh **dropped,
                      bool *made_here)
 {
@@ -69,7 +72,7 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
         return NULL;
     }
     if (fits) {
-        hold(kept); /* another request makes it */
+        hold(kept); /* another request is making the tree */
         return kept;
     }
     api_bvh *tree = tree_new(a);
@@ -86,8 +89,9 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
     return tree;
 }
 
-/* Returns the kept tree if it is of this revision. Otherwise returns a new entry, which replaces
- * the tree of an earlier revision; then the asker must make the tree. */
+/* Returns the entry that is kept with the mesh, if it is for this revision. Otherwise returns a new
+ * entry, which replaces one for an earlier revision, and sets `*made_here`: the caller must make
+ * the tree. */
 static api_bvh *find(api_asker *a, const api_in *in, bool *made_here)
 {
     api_bvh *dropped = NULL;
@@ -98,8 +102,8 @@ static api_bvh *find(api_asker *a, const api_in *in, bool *made_here)
     return tree;
 }
 
-/* Waits until another request has made the tree. Returns HE_CANCELLED if the asker's own work was
- * cancelled first. */
+/* Waits until another request has made the tree. Returns HE_CANCELLED if the watch of the waiting
+ * request cancelled its work first. */
 static he_status await(const api_asker *a, const api_bvh *tree, he_error *err)
 {
     for (;;) {
@@ -117,8 +121,8 @@ static he_status await(const api_asker *a, const api_bvh *tree, he_error *err)
     }
 }
 
-/* Sets the tree, or marks the entry as abandoned if `bvh` is NULL, and wakes all waiting
- * requests. */
+/* Ends the making of a tree: stores `bvh` in the entry, or marks the entry as abandoned if `bvh` is
+ * NULL, and wakes all requests that wait for it. */
 static void finish(const api_asker *a, api_bvh *tree, he_bvh *bvh)
 {
     st_derived *place = st_derived_begin(a->x->mesh, ST_DERIVED_BVH);
@@ -157,13 +161,13 @@ const he_bvh *api_asker_bvh(api_asker *a, const api_in *in)
             return NULL;
         }
         if (tree->bvh == NULL) {
-            /* The request that was making the tree has stopped; its entry is almost empty. */
+            /* The request that was making the tree has given up, so this one tries again. */
             api_bvh_release(tree);
             continue;
         }
-        /* The cost is charged even if another request made the tree, so that the result depends on
-         * the mesh alone. A worker need not charge it: if its steps run out, the request starts
-         * again on the job pool. */
+        /* The cost of making the tree is charged even if another request has made it, so that a
+         * request is not refused or accepted by chance. On a worker it is not charged then, because
+         * a request whose steps run out there is not refused, but starts again on the job pool. */
         if (made_here || !a->on_worker) {
             api_asker_pay(a, cost_of(a));
         }

@@ -1,4 +1,4 @@
-/* check.c - GET .../check: broken invariants, and defects that a valid mesh may have.
+/* check.c - GET .../check: reports broken invariants, and defects that a valid mesh may have.
  *
  * A check visits the mesh several times, so for a large mesh it becomes a job if the client would
  * not wait that long. Self-intersections, which take longest, are searched for only on request. */
@@ -12,12 +12,13 @@
 #include <assert.h>
 #include <stdio.h>
 
-/* The number of broken invariants, and of defects of each code, that are named one by one; the rest
- * is only counted. */
+/* How many broken invariants, and how many defects of each code, the report lists; all are
+ * counted. */
 enum { NAMED = API_PROBLEM_ELEMENTS };
 static_assert((int)NAMED == HE_DEFECTS_LISTED, "as the document says of both");
 
-/* The share of the progress for all other defects, if intersections are searched for. */
+/* If self-intersections are searched for: the progress that is reached when all other defects are
+ * found. */
 static const double FOUND = 0.2;
 
 typedef struct report {
@@ -25,11 +26,11 @@ typedef struct report {
     size_t broken;
     he_thresholds thresholds;
     he_defects defects;
-    bool meets; /* self-intersections were asked for */
+    bool meets; /* the client wants self-intersections to be searched for */
     bool complete;
 } report;
 
-/* --- finding --- */
+/* --- finding defects --- */
 
 static he_thresholds read_thresholds(const api_exchange *x, const he_mesh *mesh)
 {
@@ -59,7 +60,7 @@ static bool examine(api_asker *a, report *r)
         return api_fail_core(a->x, &err);
     }
     if (r->broken > 0) {
-        return true; /* the other tests rely on valid links */
+        return true; /* the tests for defects rely on valid links */
     }
     he_progress_span(progress, r->meets ? FOUND : 1);
     r->thresholds = read_thresholds(a->x, a->mesh);
@@ -69,7 +70,7 @@ static bool examine(api_asker *a, report *r)
     return !r->meets || find_intersections(a, r);
 }
 
-/* --- writing --- */
+/* --- writing the report --- */
 
 static void write_problems(api_out *out, const report *r)
 {
@@ -88,7 +89,8 @@ static void write_problems(api_out *out, const report *r)
     api_out_array_end(out);
 }
 
-/* Writes one sentence about a defect. Returns true if the value of the defect is written, too. */
+/* Writes one sentence about a defect into `text`. Returns true if the report also shows the value
+ * of the defect. */
 static bool describe(const he_mesh *m, he_defect_code code, const he_defect_found *d, char *text,
                      size_t size)
 {
@@ -188,7 +190,7 @@ static void write_report(api_asker *a, const report *r)
     api_out_object_end(out);
 }
 
-/* --- the route --- */
+/* --- the handler of the route --- */
 
 static void answer(api_exchange *x, api_asker *a)
 {

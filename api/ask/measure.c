@@ -1,6 +1,7 @@
-/* measure.c - measures of one element or of many: {"measure":"dihedral","of":{"edge":3}}.
+/* measure.c - answers questions about measures of one element or of many:
+ * {"measure":"dihedral","of":{"edge":3}}.
  *
- * Values are numbers or vectors. A missing value is null in JSON and NaN in octets. */
+ * Values are numbers or vectors. A missing value is null in JSON and NaN in a binary answer. */
 #include "api/ask/question.h"
 #include "api/read/elements.h"
 #include "geometry/geometry.h"
@@ -11,16 +12,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Parameters of a measure beside its element. */
+/* Parameters of a measure other than its element. */
 typedef struct options {
     he_weight weight;
     double crease;
-    he_progress *progress; /* the exchange's */
-    /* Limits the sum of the squared numbers of corners of the faces around listed elements. */
+    he_progress *progress; /* the watch of the exchange */
+    /* Limit of the work for listed elements: the sum, over the faces around them, of the squared
+     * number of corners. */
     uint64_t most;
 } options;
 
-/* The elements that are measured. */
+/* The elements that a question wants to be measured. */
 typedef struct selection {
     const uint32_t *ids; /* NULL: all live elements, in the order of ids */
     size_t count;
@@ -31,9 +33,9 @@ typedef struct measure {
     const char *name;
     unsigned components;
     enum { PLAIN, WEIGHTS, CREASE } option;
-    /* Measures one element; NULL if `many` is used for that, too. */
+    /* Measures one element; NULL: `many` measures a single element, too. */
     he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
-    /* Measures many elements. If this function is missing (NULL), they are measured one by one. */
+    /* Measures many elements. NULL: they are measured one by one. */
     he_status (*many)(const he_mesh *m, const selection *of, const options *o, double *out,
                       he_error *err);
 } measure;
@@ -45,7 +47,8 @@ static void put(he_vec3 v, double *out)
     out[2] = v.z;
 }
 
-/* Keeps from an array with an entry for each id only the entries of live elements. */
+/* Copies the entries of live elements from `rows`, which has an entry for each id, to `out` without
+ * gaps. */
 static void compress(const he_mesh *m, he_kind kind, const he_vec3 *rows, double *out)
 {
     for (uint32_t id = 0; id < he_mesh_issued(m, kind); id++) {
@@ -56,7 +59,7 @@ static void compress(const he_mesh *m, he_kind kind, const he_vec3 *rows, double
     }
 }
 
-/* --- vertices --- */
+/* --- measures of vertices --- */
 
 static he_status vertex_normal(const he_mesh *m, uint32_t id, const options *o, double *out,
                                he_error *err)
@@ -93,7 +96,8 @@ static he_status vertex_normals(const he_mesh *m, const selection *of, const opt
     return status;
 }
 
-/* Computes one kind of curvature, which is the member at offset `at` of he_curvature. */
+/* Computes the curvatures of the vertices and writes one kind of them: the member at offset `at` of
+ * he_curvature. */
 static he_status curvature(const he_mesh *m, const selection *of, const options *o, size_t at,
                            double *out, he_error *err)
 {
@@ -122,7 +126,7 @@ CURVATURE(mean_curvatures, mean)
 CURVATURE(gaussian_curvatures, gaussian)
 #undef CURVATURE
 
-/* --- measures of half-edges, which stand for corners --- */
+/* --- measures of half-edges, which stand for the corners at their origin --- */
 
 static he_status corner_angle(const he_mesh *m, uint32_t id, const options *o, double *out,
                               he_error *err)
@@ -157,7 +161,7 @@ static he_status corner_normals(const he_mesh *m, const selection *of, const opt
     return status;
 }
 
-/* --- edges --- */
+/* --- measures of edges --- */
 
 static he_status edge_length(const he_mesh *m, uint32_t id, const options *o, double *out,
                              he_error *err)
@@ -202,7 +206,7 @@ static he_status edge_cotangents(const he_mesh *m, const selection *of, const op
     return he_edge_cotangents(m, of->ids, of->count, o->most, o->progress, out, err);
 }
 
-/* --- faces --- */
+/* --- measures of faces --- */
 
 static he_status face_normal(const he_mesh *m, uint32_t id, const options *o, double *out,
                              he_error *err)
@@ -247,13 +251,13 @@ static const measure measures[] = {
 };
 enum { MEASURES = sizeof measures / sizeof measures[0] };
 
-/* --- questions --- */
+/* --- reading a question --- */
 
 typedef struct asked {
     api_target target;
     const measure *measure;
     options options;
-    bool as_text; /* values are written as JSON */
+    bool as_text; /* the values will be written as JSON */
 } asked;
 
 static bool read_name(const api_in *name, he_kind kind, const measure **out)
@@ -313,7 +317,7 @@ static bool read(api_asker *a, const api_in *question, asked *q)
            read_name(&name, q->target.kind, &q->measure) && read_options(question, q);
 }
 
-/* --- costs --- */
+/* --- the cost of a question --- */
 
 static uint64_t beside(const he_mesh *m, he_halfedge h)
 {
@@ -335,7 +339,7 @@ static uint64_t about(const he_mesh *m, he_vertex v, uint64_t most)
     return cost;
 }
 
-/* Returns how many half-edges of faces the measure of one element visits. */
+/* Returns how many half-edges are visited to measure one element. */
 static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t most)
 {
     switch (q->target.kind) {
@@ -354,8 +358,8 @@ static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t 
     return 1;
 }
 
-/* Returns the cost of triangulating the mesh's faces: it may be the square of the number of a
- * face's corners. */
+/* Returns the cost of triangulating all faces of the mesh. To triangulate a face may cost the
+ * square of its number of corners. */
 static uint64_t cost_of_cutting(const he_mesh *m)
 {
     uint64_t cost = 0;
@@ -382,7 +386,8 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const sele
         if (a->on_worker && cost >= api_asker_left(a)) {
             return api_asker_exceed(a, question);
         }
-        api_asker_pay(a, cost); /* one pass over the mesh is always allowed */
+        /* Not refused if it costs more than is left: one pass over the mesh is always allowed. */
+        api_asker_pay(a, cost);
         return true;
     }
     uint64_t cost = 0;
@@ -396,7 +401,7 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const sele
     return true;
 }
 
-/* --- answers --- */
+/* --- answering a question --- */
 
 static he_status each(const he_mesh *m, const asked *q, const selection *of, he_progress *progress,
                       double *out, he_error *err)

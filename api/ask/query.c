@@ -1,4 +1,4 @@
-/* query.c - POST .../query: many questions about one revision. Each answer stands at the index of
+/* query.c - POST .../query: answers many questions about one revision. Each answer has the index of
  * its question. The answer to a failed question is a problem object; the other questions are still
  * answered. */
 #include "api/request/handlers.h"
@@ -49,9 +49,9 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
     return good;
 }
 
-/* --- octets --- */
+/* --- binary answers --- */
 
-/* A binary answer has two blocks, one after the other, little-endian. */
+/* A binary answer consists of two blocks of bytes; all values are little-endian. */
 enum { BLOCKS = 2 };
 
 typedef struct octets {
@@ -152,7 +152,7 @@ static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
     api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
-/* --- the handler --- */
+/* --- the handler of the route --- */
 
 static void answer(api_exchange *x, api_asker *a)
 {
@@ -175,7 +175,7 @@ static void answer(api_exchange *x, api_asker *a)
             return;
         }
     }
-    /* A problem of one question becomes its answer. */
+    /* The problem of a failed question is written in place of its answer. */
     if (!a->reads_only && answer_each(x, a, &queries)) {
         api_answer_json(x, 200);
     }
@@ -184,7 +184,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_query_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* the cost is found as the questions are answered */
+    (void)out; /* the cost is charged while the questions are answered */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

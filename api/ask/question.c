@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* The cost of reading and writing the text of the shortest question. */
+/* The cost of reading the shortest question and writing its answer, in half-edges visited. */
 enum { QUESTION_COST = 4 };
 
 enum {
@@ -14,7 +14,7 @@ enum {
                 API_KIND_BIT(HE_FACE)
 };
 
-/* --- an asker --- */
+/* --- budget and refusals --- */
 
 static uint64_t allowance(const api_asker *a)
 {
@@ -26,7 +26,8 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-/* Runs `answer` with a budget of steps. Returns true if the request must start again elsewhere. */
+/* Runs `answer` with a budget of steps. Returns true if the request must start again on another
+ * thread. */
 static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,
@@ -72,7 +73,8 @@ void api_asker_pay(api_asker *a, uint64_t halfedges)
 
 bool api_asker_exceed(api_asker *a, const api_in *in)
 {
-    /* A client that waits for a while and then accepts a job (respond-async, wait=10) gets one. */
+    /* A client that is willing to wait, but also accepts a job (respond-async, wait=10), gets a
+     * job. */
     bool may_be_job = api_can_be_job(a->x);
     bool is_job = !a->on_worker && may_be_job && a->x->prefer.respond_async;
     if (a->on_worker || is_job) {
@@ -140,9 +142,9 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
            api_asker_refuse(a, &member, &err);
 }
 
-/* --- targets --- */
+/* --- the elements that a question is about --- */
 
-/* Finds the kind of element whose plural is a member: {"vertices":...}. */
+/* Finds the kind of element whose plural names a member of `of`, as in {"vertices":[1,2]}. */
 static bool find_plural(const api_in *of, he_kind *kind, api_in *member)
 {
     if (!api_in_is_object(of) || !api_in_first(of, member)) {
@@ -213,19 +215,19 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out)
     return read_many(a, &member, out);
 }
 
-/* --- relations --- */
+/* --- questions about neighbours --- */
 
-/* A decoded question about adjacency. */
+/* A decoded question about neighbours. */
 typedef struct asked {
     const he_relation *relation;
     unsigned flags;
     api_target target;
 } asked;
 
-/* More than any kind has. */
+/* More relations than any kind of element has. */
 enum { MOST_RELATIONS = 8 };
 
-/* Lists the names of a kind's relations, followed by NULL. */
+/* Lists the names of the relations of one kind of element, followed by NULL. */
 static void list_relations(he_kind of, const char *names[MOST_RELATIONS + 1])
 {
     size_t count = 0;
@@ -272,9 +274,9 @@ static bool read_relation(api_asker *a, const api_in *question, asked *out)
     return true;
 }
 
-/* Returns the number of half-edges that were visited to find `ids` neighbours. A face with few
- * neighbours may have many corners; all other relations return as many ids as they visit
- * half-edges, or half as many. */
+/* Returns the number of half-edges to charge for a question that found `ids` neighbours. To find
+ * the faces next to a face, all its corners are visited; every other relation finds about as many
+ * neighbours as it visits half-edges, or half as many. */
 static uint64_t looked_at(const he_mesh *mesh, const asked *q, size_t ids)
 {
     if (q->relation->of != HE_FACE || q->relation->gives != HE_FACE) {
@@ -348,10 +350,10 @@ static bool ask_relation(api_asker *a, const api_in *question)
     return true;
 }
 
-/* --- find and get --- */
+/* --- the questions "find" and "get" --- */
 
-/* Returns the cost of finding the half-edge between two vertices: the smaller of their degrees, at
- * most `most`. */
+/* Returns the number of half-edges to charge for finding the half-edge between two vertices: the
+ * smaller of their degrees, at most `most`. */
 static uint64_t smaller_degree(const he_mesh *mesh, he_vertex a, he_vertex b, uint64_t most)
 {
     he_halfedge first_a = he_vertex_halfedge(mesh, a), first_b = he_vertex_halfedge(mesh, b);
@@ -452,7 +454,7 @@ static bool ask_get(api_asker *a, const api_in *question)
     return true;
 }
 
-/* --- any question --- */
+/* --- questions of all kinds --- */
 
 bool api_question_ask(api_asker *a, const api_in *question)
 {

@@ -1,4 +1,4 @@
-/* spatial.c - spatial questions: rays, nearest points, and self-intersections. */
+/* spatial.c - answers spatial questions: rays, nearest points, and self-intersections. */
 #include "api/ask/spatial.h"
 
 #include <float.h>
@@ -11,8 +11,9 @@ static bool read_max(const api_in *in, double *out)
     return !api_in_find(in, "max", &max) || api_in_number_within(&max, 0, DBL_MAX, false, out);
 }
 
-/* Writes where a ray or a nearest point is on a face. Corners with weight 0 are left out: a point
- * on an edge has two corners, a point at a vertex one. */
+/* Writes the point where a ray hits a face, or the nearest point of a face, with its barycentric
+ * coordinates. Corners with weight 0 are left out, so a point on an edge has two corners, and a
+ * point at a vertex has one. */
 static void write_hit(api_out *out, const char *key, const he_hit *hit)
 {
     api_out_object_begin(out);
@@ -104,8 +105,8 @@ static bool write_pairs(api_asker *a, size_t limit, bool complete)
     return true;
 }
 
-/* Returns the additional steps that one search for intersections in a request gets, enough to
- * search a large mesh. */
+/* Returns the additional steps that the first search for intersections in a request gets, so that a
+ * large mesh can be searched. */
 static uint64_t granted_for(const api_asker *a)
 {
     return a->on_worker || a->has_met ? 0 : API_MEET_STEPS * api_elements_of(a->mesh);
@@ -154,6 +155,6 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
         return false;
     }
     size_t total = a->first.count / 2;
-    api_asker_pay(a, total < limit ? total : limit); /* for writing the text */
+    api_asker_pay(a, total < limit ? total : limit); /* the cost of writing the pairs as text */
     return write_pairs(a, (size_t)limit, complete);
 }

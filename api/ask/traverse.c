@@ -1,8 +1,8 @@
-/* traverse.c - walks over a mesh: POST .../traverse, and the walks among the questions of POST
- * .../query.
+/* traverse.c - computes walks over a mesh, for POST .../traverse and for the questions of POST
+ * .../query that are walks.
  *
- * An answer repeats the walk with its defaults filled in, so that it can be understood alone. The
- * whole walk is computed before anything is written. */
+ * An answer repeats the request with all defaults filled in, so that it can be understood without
+ * the request. The whole walk is computed before anything is written. */
 #include "api/request/handlers.h"
 
 #include "api/ask/question.h"
@@ -12,8 +12,8 @@
 
 #include <string.h>
 
-/* The half-edges that are charged for each element that a breadth-first walk reaches; the average
- * is lower. */
+/* How many half-edges are charged for each element that a breadth-first walk reaches; on average it
+ * visits fewer. */
 enum { FLOOD_COST = 8 };
 
 /* An element at which a walk begins or ends. */
@@ -22,14 +22,15 @@ typedef struct end {
     uint32_t id;
 } end;
 
-/* Reads the member `name` of a walk: a live element of one of the kinds in this bit set. */
+/* Reads the member `name` of a walk, which must be a live element of one of the kinds in the bit
+ * set `kinds`. */
 static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds, end *out)
 {
     api_in in;
     return api_in_need(walk, name, &in) && api_asker_element(a, &in, kinds, &out->kind, &out->id);
 }
 
-/* Writes the beginning of every answer. */
+/* Writes the members with which the answer to each kind of walk begins. */
 static void begin_answer(api_asker *a, const char *walk, end from)
 {
     api_out_object_begin(a->out);
@@ -45,7 +46,7 @@ static bool is_too_long(const he_ids *ids)
     return ids->count > API_MAX_WALK;
 }
 
-/* --- path --- */
+/* --- the walk "path" --- */
 
 static const char *const step_names[] = {
     [HE_STEP_NEXT] = "next", [HE_STEP_PREV] = "prev", [HE_STEP_TWIN] = "twin", NULL};
@@ -56,7 +57,7 @@ typedef struct path {
     end from;
     he_path_steps steps;
     bool has_repeat;
-    const char *until_name; /* NULL: only the count ends the path */
+    const char *until_name; /* the word of "until"; NULL: the path ends after a number of steps */
 } path;
 
 static bool read_steps(api_asker *a, const api_in *walk, path *out)
@@ -147,7 +148,7 @@ static bool ask_path(api_asker *a, const api_in *walk)
     return true;
 }
 
-/* --- loop --- */
+/* --- the walk "loop" --- */
 
 static bool ask_loop(api_asker *a, const api_in *walk)
 {
@@ -181,7 +182,7 @@ static bool ask_loop(api_asker *a, const api_in *walk)
     return true;
 }
 
-/* --- rings, which are walks breadth first --- */
+/* --- the walks "rings" and "breadth_first" --- */
 
 /* Returns how many elements a breadth-first walk may reach. */
 static uint64_t most_of_flood(const api_asker *a)
@@ -194,7 +195,7 @@ static uint64_t most_of_flood(const api_asker *a)
 }
 
 /* Walks breadth first: fills a->first with elements and a->second with their depths. `question` is
- * what a refusal names. */
+ * the walk, for the JSON pointer of a refusal. */
 static bool flood(api_asker *a, const api_in *question, const he_breadth_first *asked)
 {
     he_error err = {0};
@@ -279,7 +280,7 @@ static bool ask_breadth_first(api_asker *a, const api_in *walk)
     return true;
 }
 
-/* --- shortest path --- */
+/* --- the walk "shortest_path" --- */
 
 static const char *const measure_names[] = {
     [HE_BY_EDGES] = "edges", [HE_BY_LENGTH] = "length", NULL};
@@ -339,7 +340,7 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
     return short_enough;
 }
 
-/* --- edge loop, edge ring --- */
+/* --- the walks "edge_loop" and "edge_ring" --- */
 
 static bool ask_edges(api_asker *a, const api_in *walk, const char *name,
                       he_status (*find)(const he_mesh *, he_edge, he_ids *, bool *, he_error *))
@@ -378,9 +379,9 @@ static bool ask_edge_ring(api_asker *a, const api_in *walk)
     return ask_edges(a, walk, "edge_ring", he_traverse_edge_ring);
 }
 
-/* --- any walk --- */
+/* --- walks of all kinds --- */
 
-/* X(name) */
+/* Each row: X(name of a kind of walk) */
 #define WALK_MAP(X) \
     X(path) X(loop) X(rings) X(breadth_first) X(shortest_path) X(edge_loop) X(edge_ring)
 
@@ -410,7 +411,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_traverse_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* the cost is found during the walk */
+    (void)out; /* the cost is charged during the walk */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

@@ -1,8 +1,9 @@
-/* element_rows.h - rows of the table of routes that differ only in the kind of element.
+/* element_rows.h - macros for rows of the table of routes that differ only in the kind of element.
  *
- * They make rows such as list_vertices, get_vertex and list_vertex_faces: `one` and `many` are the
- * names of the kind, `what` is the name of a relation in core/query/adjacency.h. The table in
- * routes.c includes ELEMENT_ROWS and defines the header `next_page` that they use. */
+ * The macros make rows such as list_vertices, get_vertex and list_vertex_faces. `one` and `many`
+ * are the singular and plural name of the kind, `what` is the name of a relation in
+ * core/query/adjacency.h. The table in routes.c includes ELEMENT_ROWS; the macros use the header
+ * `next_page`, which routes.c defines. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 
@@ -43,7 +44,7 @@
 
 #define AROUND "Counter-clockwise from the stored half-edge, each once."
 
-/* All rows of elements, in the order of the table. */
+/* All rows about elements, in the order that they have in the table of routes. */
 #define ELEMENT_ROWS                                                                              \
     ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices"),                                        \
         ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges"),                             \

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* The assembler copies the file into the object. Its path is that from the top of the tree, where
- * make runs. */
+/* The assembler copies examples.json into the object file. The path is relative to the top of the
+ * source tree, where make runs the compiler. */
 __asm__(".pushsection .rodata\n"
         ".global api_examples_text\n"
         "api_examples_text:\n"
@@ -40,7 +40,7 @@ static bool is_refused(const he_json *json, uint32_t example)
            status >= 400;
 }
 
-/* The names of what belongs to one body of an example. */
+/* The names of the members of an example that describe its request's body and its answer's body. */
 static const struct {
     const char *media, *json, *text;
 } parts[] = {
@@ -95,7 +95,7 @@ void api_example_value(const api_examples *examples, uint32_t value, api_text *t
     }
 }
 
-/* Appends the texts of a list. */
+/* Appends the strings of a JSON list, one after the other. */
 static void add_texts(const he_json *json, uint32_t list, api_text *text)
 {
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {

@@ -1,9 +1,9 @@
-/* libraries.h - the versions of the libraries that api/ calls. */
+/* libraries.h - lists the versions of the libraries that api/ calls. */
 #ifndef HE_API_DESCRIBE_LIBRARIES_H
 #define HE_API_DESCRIBE_LIBRARIES_H
 
 typedef struct api_library {
-    const char *name, *version; /* static strings */
+    const char *name, *version; /* strings that are never freed */
 } api_library;
 
 enum { API_LIBRARIES = 3 };

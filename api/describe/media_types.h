@@ -1,5 +1,5 @@
-/* media_types.h - the media types that routes accept, and those that they answer with, of which the
- * first is the default. */
+/* media_types.h - lists of media types, which rows of the table of routes accept in bodies and use
+ * for answers. The first type of an answer is the default. */
 #ifndef HE_API_DESCRIBE_MEDIA_TYPES_H
 #define HE_API_DESCRIBE_MEDIA_TYPES_H
 

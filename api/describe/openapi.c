@@ -13,7 +13,7 @@
 
 static const char EVENT_STREAM[] = "text/event-stream";
 
-/* --- paths --- */
+/* --- the paths of the document --- */
 
 static void write_path_parameter(api_out *out, const char *name)
 {
@@ -102,8 +102,7 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     api_out_object_end(out);
 }
 
-/* Writes the schema of a line of a JSON-lines answer. All lines but the last have the schema of a
- * component. */
+/* Writes the schema of a line of an NDJSON answer: the schema `line`, or that of the last line. */
 static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
@@ -121,8 +120,8 @@ static void write_line_schema(api_out *out, const char *line)
     api_out_object_end(out);
 }
 
-/* Writes the schema of a body of several files. The server accepts any field name; clients
- * generated from this document use this one. */
+/* Writes the schema of a multipart body of files. The server accepts any name for their field;
+ * client code generated from the document uses "files". */
 static void write_files_schema(api_out *out)
 {
     static const char schema[] =
@@ -134,8 +133,8 @@ static void write_files_schema(api_out *out)
     api_out_raw(out, schema, sizeof schema - 1);
 }
 
-/* Writes the schema of a glTF document, with what the reader requires of it. A schema that allowed
- * anything would make generated clients allow anything where a mesh as JSON is meant. */
+/* Writes the schema of a glTF document, with the members that the reader requires. If it allowed
+ * any object, generated client code would accept any object as a mesh document, too. */
 static void write_gltf_schema(api_out *out)
 {
     static const char schema[] =
@@ -147,8 +146,8 @@ static void write_gltf_schema(api_out *out)
     api_out_raw(out, schema, sizeof schema - 1);
 }
 
-/* Writes the schema of a body that is no JSON: text, or bytes, which a generated client takes as a
- * blob. */
+/* Writes the schema of a body that is not JSON: text, or binary data, for which generated client
+ * code uses a blob. */
 static void write_bytes_schema(api_out *out, const char *type)
 {
     api_out_key(out, "schema");
@@ -160,7 +159,8 @@ static void write_bytes_schema(api_out *out, const char *type)
     api_out_object_end(out);
 }
 
-/* A text that stands for a list of events, each with its data as JSON. */
+/* Writes the schema of an event stream: a text that encodes a list of events, each of which has the
+ * schema `event`. */
 static void write_events_schema(api_out *out, const char *event)
 {
     api_out_key(out, "schema");
@@ -175,16 +175,18 @@ static void write_events_schema(api_out *out, const char *event)
     api_out_object_end(out);
 }
 
-/* A body and its examples. */
+/* What the document says about one body of a request or an answer. */
 typedef struct body {
-    const char *const *types; /* media types */
+    const char *const *types; /* media types, ended by NULL */
     const char *schema;
-    /* The schema of an event or of a line; the latter is an extension, since OpenAPI has a keyword
-     * for it (itemSchema) only from 3.2 on. */
+    /* The name of the schema of one event of a stream, or of one line of an NDJSON answer; NULL for
+     * other bodies. The schema of a line is written as an extension, because OpenAPI has a keyword
+     * for it (itemSchema) only since version 3.2. */
     const char *item;
     const api_examples *examples;
     api_example_part part;
-    const char *route; /* whose examples it has; NULL: that of a refusal */
+    /* Name of the route whose examples are shown; NULL: the example of a refusal is shown. */
+    const char *route;
 } body;
 
 static void write_example(api_out *out, const body *b, const char *type, bool json)
@@ -207,7 +209,7 @@ static void write_example(api_out *out, const body *b, const char *type, bool js
     api_text_clear(&text);
 }
 
-/* Writes the media types of a body. */
+/* Writes the member "content": the media types of a body with their schemas and examples. */
 static void write_content(api_out *out, const body *b)
 {
     api_out_key(out, "content");
@@ -230,7 +232,7 @@ static void write_content(api_out *out, const body *b)
         } else if (strcmp(*types, "model/gltf+json") == 0) {
             write_gltf_schema(out);
         } else if (json) {
-            api_out_key(out, "schema"); /* any JSON: a file of the page */
+            api_out_key(out, "schema"); /* any JSON value: the file of the web page is unknown */
             api_out_raw(out, "{}", 2);
         } else {
             write_bytes_schema(out, *types);
@@ -261,7 +263,7 @@ static bool is_stream(const api_route *route)
     return route->produces[0] != NULL && strcmp(route->produces[0], EVENT_STREAM) == 0;
 }
 
-/* Headers that are described only once, in the components of the document. */
+/* The names of headers that the document describes only once, in its components. */
 static const char *const rate_headers[] = {"RateLimit-Policy", "RateLimit", NULL};
 static const char *const coding_headers[] = {"Content-Encoding", "Vary", NULL};
 
@@ -300,8 +302,8 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
                      false);
     }
     if (tagged) {
-        /* A dry run makes no state, and the short answer of a published write may not know its
-         * state, so neither always has a tag. */
+        /* A dry run makes no state that a tag could name, and the bare answer of api_publish (204)
+         * may not know the state. So such answers do not always have a tag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Names the state that the answer shows.", always);
     }
@@ -357,7 +359,8 @@ static void write_success(api_out *out, const api_examples *examples, const api_
     api_out_object_end(out);
 }
 
-/* Refusals with headers of their own; all others are a "problem". */
+/* The refusals that have a header of their own. All other refusals are described by the component
+ * "problem". */
 typedef struct refusal {
     int status;
     const char *name, *header, *doc;
@@ -425,7 +428,8 @@ static void write_header_parameter(api_out *out, const char *name, const char *d
     api_out_object_end(out);
 }
 
-/* Writes the headers that the route reads, except Accept and Content-Type. */
+/* Writes the request headers that the route reads, as parameters; Accept and Content-Type are not
+ * listed. */
 static void write_header_parameters(api_out *out, const api_route *route)
 {
     if (answers(route, 304)) {
@@ -472,7 +476,8 @@ static void write_header_parameters(api_out *out, const api_route *route)
     }
 }
 
-/* This is longer than the documentation of any row with one more sentence. */
+/* The maximum length of a route's description. It is longer than the longest `doc` of a route plus
+ * the sentence that write_doc may add. */
 enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
@@ -488,9 +493,9 @@ static void write_doc(api_out *out, const api_route *route)
     }
 }
 
-/* Writes what authorizes a request: a token, or a ticket instead of it, with the role in place of
- * OAuth's scopes (OpenAPI 3.1 allows that for other schemes, too); or nothing, since a server may
- * have no tokens. */
+/* Writes the member "security": a request needs a token, or, with GET, a ticket, or nothing,
+ * because a server may have no tokens. The required role is written where OAuth has scopes, which
+ * OpenAPI 3.1 allows for other schemes, too. */
 static void write_security(api_out *out, const api_route *route)
 {
     api_out_key(out, "security");
@@ -709,7 +714,8 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key_string(out, "url", url != NULL ? url : "/");
     api_out_object_end(out);
     api_out_array_end(out);
-    api_out_key(out, "security"); /* for routes without their own: no token is needed */
+    /* Routes without a "security" of their own need no token. */
+    api_out_key(out, "security");
     api_out_array_begin(out);
     api_out_array_end(out);
     api_tags_write(out);

@@ -40,7 +40,7 @@ static const char *param_type(const he_param *param)
     return "";
 }
 
-/* Writes the default of a parameter: its value if it is not given. */
+/* Writes the member "default": the value that a parameter has if it is not given. */
 static void write_default(api_out *out, const he_param *param)
 {
     if (param->flags & (HE_REQUIRED | HE_DERIVED)) {
@@ -171,8 +171,8 @@ void api_operations_write(api_out *out)
 
 /* --- schemas of operations --- */
 
-/* Members that an operation may have besides its parameters: "as" in a list of operations, the
- * others where it is alone. */
+/* Members that an operation may have besides its parameters: "as" if it is in a list of operations,
+ * the others if it is the only operation of a request. */
 static const struct {
     const char *name, *json;
 } beside[] = {
@@ -186,7 +186,8 @@ static const struct {
      "{\"type\":\"boolean\",\"description\":\"Alone: answer without changing anything.\"}"},
 };
 
-/* Each function writes the members of a schema object. */
+/* The functions from write_list_schema to write_value_schema write the members of a schema into an
+ * object that the caller has begun. */
 
 static void write_list_schema(api_out *out, unsigned min)
 {
@@ -289,9 +290,8 @@ static void write_param_schema(api_out *out, const he_param *param)
     api_out_object_end(out);
 }
 
-/* Adds to `text` a sentence for each group of members of which exactly one is required. A union of
- * requirements would express that in the schema, but generators of clients make nameless types of
- * it. */
+/* Adds to `text` a sentence for each group of members of which exactly one is required. The schema
+ * could express that with "oneOf", but generators of client code make nameless types from it. */
 static void describe_groups(api_text *text, const he_op *op)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
@@ -320,8 +320,8 @@ static void describe_groups(api_text *text, const he_op *op)
     }
 }
 
-/* Begins the schema PREFIX_NAME of an object whose member "op" is the operation's name; leaves the
- * object and its properties open. */
+/* Begins the schema PREFIX_NAME of an object whose member "op" is the operation's name; the caller
+ * ends the object and its "properties". */
 static void begin_named(api_out *out, const char *prefix, const he_op *op, const char *description)
 {
     char name[80];
@@ -346,7 +346,7 @@ static void write_op_schema(api_out *out, const he_op *op)
     api_text description = {0};
     api_text_add_string(&description, op->doc);
     describe_groups(&description, op);
-    api_text_add(&description, "", 1); /* its end, for a string */
+    api_text_add(&description, "", 1); /* the NUL at its end */
     begin_named(out, "op", op, description.failed ? op->doc : description.bytes);
     api_text_clear(&description);
     for (size_t i = 0; i < he_op_params(op); i++) {
@@ -416,7 +416,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
     api_out_object_end(out);
 }
 
-/* Writes the schema of an operation's results: its name, and the results that a call may have. */
+/* Writes the schema done_NAME of the object that has an operation's name and results. */
 static void write_done_schema(api_out *out, const he_op *op)
 {
     begin_named(out, "done", op, NULL);

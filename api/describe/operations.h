@@ -1,4 +1,5 @@
-/* operations.h - writes the operation table (op/op.h) as JSON: for clients, and as schemas. */
+/* operations.h - writes the operation table (op/op.h) as JSON, for clients and for the OpenAPI
+ * document. */
 #ifndef HE_API_DESCRIBE_OPERATIONS_H
 #define HE_API_DESCRIBE_OPERATIONS_H
 
@@ -6,8 +7,9 @@
 
 /* Writes the body of GET /v1/operations. */
 void api_operations_write(api_out *out);
-/* Writes schemas into an open components.schemas: op_NAME for each row, `operation` for any of
- * them, `done` for the results of any operation. */
+/* Writes schemas into the object components.schemas, which the caller has begun: op_NAME for each
+ * operation and done_NAME for its results; `operation`, the union of all op_NAME; and `done`, the
+ * union of all done_NAME. */
 void api_operation_schemas_write(api_out *out);
 
 #endif

@@ -1,4 +1,5 @@
-/* page_records.h - the members of the small answers about the server itself. */
+/* page_records.h - the tables of JSON members (api/json/record.h) of answers about the server
+ * itself. */
 #ifndef HE_API_DESCRIBE_PAGE_RECORDS_H
 #define HE_API_DESCRIBE_PAGE_RECORDS_H
 

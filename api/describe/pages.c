@@ -15,7 +15,8 @@ static const char viewer_policy[] =
 static const char text_policy[] =
     "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/* The answers of this file; a document has the members of one of the tables. */
+/* The values of the JSON members of all answers in this file. Each answer has the members of one of
+ * the tables below. */
 typedef struct facts {
     const char *status, *store, *memory;
     const char *name, *version, *meshes, *jobs, *operations, *openapi, *docs;
@@ -113,8 +114,7 @@ void api_index_get(api_exchange *x)
 void api_page_get(api_exchange *x)
 {
     const api_options *options = &x->service->options;
-    /* The raw path is used, because names of assets need no escapes and are looked up in a
-     * table. */
+    /* The raw path is looked up, without decoding, because paths of assets contain no escapes. */
     const api_asset *asset =
         options->asset == NULL ? NULL : options->asset(options->asset_context, x->request.path);
     if (asset == NULL) {
@@ -142,8 +142,8 @@ void api_problem_get(api_exchange *x)
     api_answer_text(x, 200, "text/html; charset=utf-8");
 }
 
-/* Answers with the document in `place`, into which `write` writes it first if this is the first
- * request for it. */
+/* Answers with the document that is kept in `place`. The first request for it makes it with
+ * `write`. */
 static void answer_document(api_exchange *x, _Atomic(api_kept *) *place,
                             void (*write)(api_out *out, const api_options *options))
 {
@@ -156,7 +156,8 @@ static void answer_document(api_exchange *x, _Atomic(api_kept *) *place,
             api_fail_memory(x);
             return;
         }
-        /* If another thread was faster, its document is in `found` and is used. */
+        /* If another thread was faster, `found` now points to the document that it made, which is
+         * used. */
         if (atomic_compare_exchange_strong(place, &found, made)) {
             found = made;
         } else {

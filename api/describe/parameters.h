@@ -1,7 +1,7 @@
-/* parameters.h - the query parameters of the table of routes.
+/* parameters.h - descriptions of the query parameters that routes have.
  *
- * Rows of api/describe/routes.c point to them. A parameter with one meaning on several routes is
- * defined here once. */
+ * The rows of api/describe/routes.c point to them. A parameter that means the same on several
+ * routes is defined only once. */
 #ifndef HE_API_DESCRIBE_PARAMETERS_H
 #define HE_API_DESCRIBE_PARAMETERS_H
 

@@ -7,7 +7,7 @@
 #include "api/request/handlers.h"
 #include "api/request/mesh_access.h"
 
-/* --- headers --- */
+/* --- response headers of single routes --- */
 
 static const api_told_header next_page = {"Link", "A link to the next page, if there is one."};
 static const api_told_header disposition = {"Content-Disposition", "A name for the file."};
@@ -15,7 +15,7 @@ static const api_told_header ranges = {
     "Accept-Ranges", "`none`: Range is ignored, because a file is generated while it is sent."};
 static const api_told_header warnings = {"Export-Warnings", "What the format has no place for."};
 
-/* --- the table --- */
+/* --- the table of routes --- */
 
 static const api_route routes[] = {
     /* the collection of meshes */
@@ -214,7 +214,7 @@ static const api_route routes[] = {
      .doc = "Makes an independent mesh with the same element ids and attributes and its own "
             "history, from the present revision or the one in `revision`."},
 
-    /* --- elements of a mesh: a collection, an element and its neighbours, for each kind --- */
+    /* --- elements of a mesh, for each kind: the list, one element, and its neighbours --- */
     ELEMENT_ROWS,
 
     {.method = "GET",
@@ -655,7 +655,7 @@ static const api_route routes[] = {
      .summary = "This document",
      .doc = "The API as OpenAPI 3.1."},
 
-    /* outside of the API */
+    /* paths that are not under /v1 */
     {.method = "GET",
      .path = "/livez",
      .name = "get_liveness",

@@ -4,10 +4,10 @@
 
 #include "api/request/route.h"
 
-/* Returns the table of routes, which api_service_new() is given. */
+/* Returns the table of routes. The server passes it to api_service_new. */
 api_route_table api_routes(void);
-/* Returns the statuses that every route may answer, including those that the server causes; ends in
- * 0. */
+/* Returns the statuses that every route may answer, including those of refusals by the server
+ * itself; ends in 0. */
 const int *api_route_common(void);
 
 #endif

@@ -9,9 +9,10 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { OPTIONAL = false, REQUIRED = true }; /* names for a column of the table */
+/* Values of the member `required` in the tables below. */
+enum { OPTIONAL = false, REQUIRED = true };
 
-/* The tables from which answers are written, too. */
+/* The tables of members with which answers are written. */
 static const api_record *const records[] = {
     &api_counts_record,   &api_box_record,     &api_mesh_item_record, &api_job_record,
     &api_summary_record,  &api_entry_record,   &api_counted_record,   &api_job_state_record,

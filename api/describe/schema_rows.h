@@ -1,33 +1,33 @@
-/* schema_rows.h - the members of the API's bodies, as tables. */
+/* schema_rows.h - tables of the members that the JSON bodies of requests and answers have. */
 #ifndef HE_API_DESCRIBE_SCHEMA_ROWS_H
 #define HE_API_DESCRIBE_SCHEMA_ROWS_H
 
 #include "api/json/record.h"
 
-/* One member of one schema; the rows of a schema are consecutive. Answers may have members without
- * a row ("others may be added beside them"), requests may not.
+/* One member of one schema; the rows of a schema are consecutive. An answer may have members for
+ * which there is no row, because later versions may add some; a request may not.
  *
- * Types: id, count, number, flag, text, point, time, nothing (an empty array), #other for another
- * schema by name. A star before the type makes it an array (**id: an array of arrays of ids), a
- * plus an array that is not empty; a question mark after it allows null for the whole. =text is a
- * string that is always this text.
+ * Types: id, count, number, flag, text, point, time, nothing (an empty array), and #NAME for the
+ * schema NAME. A star before a type means an array (**id: an array of arrays of ids), a plus means
+ * an array that is not empty; a question mark after a type allows null. =TEXT is a string that is
+ * always TEXT.
  *
- * A schema whose answers are written from a table (api/json/record.h) has one row without a name:
- * its members are the rows of that table. */
+ * If answers are written from a table (api/json/record.h), their schema has only one row here,
+ * whose name is NULL: the members of the schema are those of that table. */
 typedef struct api_member {
     const char *schema, *name, *type;
     bool required;
     const char *doc;
 } api_member;
 
-/* Both arrays end with a row that names no schema. */
+/* The members of answers and of requests. Each array ends with a row whose schema is NULL. */
 extern const api_member api_answer_members[];
 extern const api_member api_request_members[];
 
-/* The tables of members from which answers are written. */
+/* These two functions give access to all tables from which answers are written. */
 size_t api_record_count(void);
 const api_record *api_record_at(size_t i);
-/* Returns the table of a schema, or NULL. */
+/* Returns the table from which answers with this schema are written, or NULL. */
 const api_record *api_record_find(const char *schema);
 
 #endif

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Schemas that are not just a list of members, written as JSON Schema. */
+/* Schemas that the tables of members cannot express, as JSON Schema. */
 static const struct {
     const char *name, *json;
 } others[] = {
@@ -261,7 +261,7 @@ void api_schema_ref_key(api_out *out, const char *key, const char *name)
     api_schema_ref(out, "schemas", name);
 }
 
-/* The basic types of the tables of members, which are neither arrays nor other schemas. */
+/* The basic types in the tables of members (schema_rows.h). */
 typedef struct base {
     const char *name, *ref, *type, *format;
     bool from_zero;
@@ -279,7 +279,7 @@ static const base bases[] = {
     {"time", NULL, "string", "date-time", false},
 };
 
-/* Writes the members of the schema of a basic type. */
+/* Writes the schema of a basic type into an object that the caller has begun. */
 static void write_base(api_out *out, const char *name, size_t length)
 {
     size_t i = 0;
@@ -332,8 +332,8 @@ static void write_type(api_out *out, const char *type, size_t length, const char
     api_out_object_end(out);
 }
 
-/* Returns member `i` of the schema whose rows begin at `rows`, from its table if it has one; a row
- * without a schema after the last one. */
+/* Returns member `i` of the schema whose rows begin at `rows`, or of its table `record` if that is
+ * not NULL. After the last member, returns a row whose schema is NULL. */
 static api_member member_at(const api_member *rows, const api_record *record, size_t i)
 {
     if (record != NULL) {
@@ -346,7 +346,8 @@ static api_member member_at(const api_member *rows, const api_record *record, si
                                                                                : (api_member){0};
 }
 
-/* Writes the schema whose rows begin at `rows`; returns the number of its rows. */
+/* Writes the schema whose rows begin at `rows`, and returns the number of its rows. With `closed`
+ * no other members are allowed. */
 static size_t write_schema(api_out *out, const api_member *rows, bool closed)
 {
     const api_record *record = rows->name == NULL ? api_record_find(rows->schema) : NULL;
@@ -378,7 +379,8 @@ static size_t write_schema(api_out *out, const api_member *rows, bool closed)
     return record != NULL ? 1 : count;
 }
 
-/* Writes the schema of an object with one member: of_vertex or of_vertices. */
+/* Writes the schema of an object with one member, such as of_vertex for {"vertex":5} or of_vertices
+ * for {"vertices":[1,2]}. */
 static void write_reference_schema(api_out *out, const char *member, const char *schema)
 {
     char name[32];
@@ -395,7 +397,7 @@ static void write_reference_schema(api_out *out, const char *member, const char 
     api_out_object_end(out);
 }
 
-/* Writes the schema of the answer of one relation: vertex_faces. */
+/* Writes the schema of the answer about one relation, such as vertex_faces. */
 static void write_adjacency_schema(api_out *out, const he_relation *relation)
 {
     static const char *const required[] = {"revision", "of", "relation", "ids", NULL};
@@ -423,7 +425,7 @@ static void write_adjacency_schema(api_out *out, const he_relation *relation)
     api_out_object_end(out);
 }
 
-/* Writes the unions whose parts are schemas of the tables. */
+/* Writes the schemas that are unions of schemas from the tables of members. */
 static void write_unions(api_out *out)
 {
     static const char *const walks[] = {"path",          "loop",      "rings",     "breadth_first",

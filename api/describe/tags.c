@@ -18,7 +18,7 @@ static const struct {
     {"server", "The server itself: health, version, metrics, documentation, the page."},
 };
 
-/* A path belongs to the group of the first row with which the path begins. */
+/* The group of a path is the `tag` of the first row with whose `begin` the path begins. */
 static const struct {
     const char *begin, *tag;
 } beginnings[] = {
@@ -52,7 +52,7 @@ const char *api_tag_of(const char *path)
 {
     size_t i = 0;
     while (strncmp(path, beginnings[i].begin, strlen(beginnings[i].begin)) != 0) {
-        i++; /* every path begins with "/" */
+        i++; /* ends at the last row at the latest: every path begins with "/" */
     }
     return beginnings[i].tag;
 }

@@ -1,4 +1,4 @@
-/* tags.h - the groups in which the OpenAPI document shows the routes. */
+/* tags.h - the groups (tags) into which the OpenAPI document divides the routes. */
 #ifndef HE_API_DESCRIBE_TAGS_H
 #define HE_API_DESCRIBE_TAGS_H
 

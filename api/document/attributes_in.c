@@ -8,17 +8,17 @@
 #include <math.h>
 #include <string.h>
 
-/* How deep in the document the lexer is: the open arrays and objects around the value that is
+/* How deep in the document the lexer is: the number of arrays and objects around the value that is
  * read. */
 enum {
-    IN_DOCUMENT = 1, /* "attributes" is a member of it */
+    IN_DOCUMENT = 1, /* in the object of the document, whose member "attributes" is read */
     IN_LIST,
     IN_OBJECT,
     IN_VALUES,
     IN_ROW
 };
 
-/* One attribute that was read: a column without rows, and its packed values. */
+/* One attribute that was read: a column that has no rows yet, and the values for its rows. */
 typedef struct item {
     he_column *column;
     unsigned char *values;
@@ -31,13 +31,15 @@ struct api_attributes_in {
     item items[API_MAX_ATTRIBUTES];
     size_t count;
 
-    /* --- the object of the attribute that is being read --- */
-    api_members head; /* each member but "values" */
+    /* --- members about the attribute that is being read --- */
+    api_members head; /* the text of all members but "values" */
     bool has_values;
-    bool has_words, has_numbers; /* among the values */
+    bool has_words, has_numbers; /* the values include true or false; they include numbers */
     double *numbers;
     size_t number_count, number_capacity;
-    size_t rows, width, column; /* whole values; numbers of one, 0 where it is none; of this one */
+    /* Number of complete values; numbers in each value, 0 if values are not arrays; numbers of the
+     * value that is being read. */
+    size_t rows, width, column;
 };
 
 api_attributes_in *api_attributes_in_new(void)
@@ -85,7 +87,7 @@ static bool no_memory(api_attributes_in *in)
     return refuse(in, HE_NO_MEMORY, "no memory for the attributes");
 }
 
-/* --- values --- */
+/* --- values of an attribute --- */
 
 static bool add_number(api_attributes_in *in, double value)
 {
@@ -118,7 +120,8 @@ static bool end_value(api_attributes_in *in, bool row)
     return true;
 }
 
-/* Reads a value of an attribute, or one component of a value. */
+/* Handles the token of a number, true or false: a value of the attribute, or one component of a
+ * value. */
 static bool take_value(api_attributes_in *in, const he_lexer *x, he_token token)
 {
     double value = token == HE_TOKEN_NUMBER ? x->number : token == HE_TOKEN_TRUE;
@@ -238,7 +241,7 @@ static bool read_head(api_attributes_in *in, const api_in *root, item *out)
 }
 
 /* Puts the path of the attribute before the pointer of a refusal. The members other than "values"
- * were parsed as a document of their own, so their pointers begin at the attribute's object. */
+ * are parsed as a separate document, so pointers into them begin at the attribute's object. */
 static void prefix_pointer(api_attributes_in *in)
 {
     char inner[API_PROBLEM_POINTER];
@@ -267,7 +270,7 @@ static bool end_object(api_attributes_in *in)
     return good;
 }
 
-/* --- tokens --- */
+/* --- handling tokens --- */
 
 static bool is_value_byte(char c)
 {
@@ -427,7 +430,7 @@ bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *
         he_error err = {0};
         he_status status = HE_OK;
         if (one->column == NULL) {
-            continue; /* the soup's */
+            continue; /* api_attributes_in_to_soup has moved it to the soup */
         }
         if (one->has_values) {
             status = he_attribute_fill(mesh, one->column, one->values, one->count, &err);

@@ -14,14 +14,14 @@ typedef enum member {
     NO_MEMBER, /* between members, and before and after the document */
     VERTICES,
     FACES,
-    ATTRIBUTES /* by attributes_in.c */
+    ATTRIBUTES /* read by attributes_in.c */
 } member;
 
-/* How deep in the document the lexer is: the open arrays and objects around the value that is
+/* How deep in the document the lexer is: the number of arrays and objects around the value that is
  * read. */
 enum {
     IN_DOCUMENT = 1,
-    IN_LIST, /* "vertices" or "faces" */
+    IN_LIST, /* in the array "vertices" or "faces" */
     IN_ITEM
 };
 
@@ -33,13 +33,13 @@ struct api_document_in {
     member member;
     bool has_vertices, has_faces;
     he_soup soup;
-    size_t part; /* values of the open item that were read */
+    size_t part; /* how many numbers of the present vertex or face were read */
     double point[3];
 
-    api_attributes_in *attributes; /* NULL without any */
-    api_members *gathering;        /* NULL, or what gathers the value at hand */
+    api_attributes_in *attributes; /* reads the attributes; NULL if the document has none so far */
+    api_members *gathering;        /* where the present member is gathered; NULL: it is not */
     api_members materials, rest;
-    api_document document; /* of the rest */
+    api_document document; /* the members of `rest`, parsed */
     api_in root;
 };
 
@@ -80,8 +80,8 @@ void api_document_in_free(api_document_in *in)
 
 /* --- refusals --- */
 
-/* Sets the JSON pointer of the problem to the item that is being read, `depth` levels deep in the
- * open list, or to the document. */
+/* Sets the JSON pointer of the problem to what is being read: to the list of vertices or faces, its
+ * item or the item's number, as `depth` says; outside of these lists, to the whole document. */
 static bool point(api_document_in *in, size_t depth)
 {
     const he_lexer_frame *frames = in->lexer.frames;
@@ -98,7 +98,8 @@ static bool point(api_document_in *in, size_t depth)
     return false;
 }
 
-/* Refuses the item that stands before the next byte, `depth` levels deep. */
+/* Refuses what stands before the next byte; `depth` says whether that is the list, an item or a
+ * number (see point). */
 static bool refuse_in(api_document_in *in, size_t depth, int code, const char *text)
 {
     api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), code, "%s", text);
@@ -123,9 +124,9 @@ static bool refuse_fault(api_document_in *in)
         return refuse(in, API_MALFORMED_JSON, "extra text follows the mesh document");
     }
     if (x->fault == HE_FAULT_ITEM) {
-        x->frames[x->depth - 1].index++; /* what stands there would be the next item */
+        x->frames[x->depth - 1].index++; /* the fault is where the next item should be */
     }
-    /* A bad number is refused at the byte where it ends, as it would be if its value were read. */
+    /* A bad number is refused at the byte where it ends, as numbers with a bad value are. */
     bool number = x->fault == HE_FAULT_NUMBER || x->fault == HE_FAULT_NOT_FINITE;
     api_json_refuse_fault(x, number ? he_lexer_place(x) : x->fault_place, in->problem);
     bool list = in->member == VERTICES || in->member == FACES;
@@ -148,7 +149,8 @@ static bool add_vertex(api_document_in *in, const double *values, size_t count)
     return he_soup_add_vertex(&in->soup, position, &err) == HE_OK || refuse_core(in, IN_LIST, &err);
 }
 
-/* Reads at once the items that the piece contains completely, beginning with the next one. */
+/* Reads at once all vertices or faces that the piece of the body contains completely, beginning
+ * with the next one. */
 static bool take_items(api_document_in *in, bool *taken)
 {
     he_lexer *x = &in->lexer;
@@ -208,8 +210,8 @@ static bool add_value(api_document_in *in, double value)
     return true;
 }
 
-/* Checks that the next value is an array. A value of another type is refused with its own code,
- * because the JSON is not malformed. */
+/* Checks that the next value is an array. A value of another type is refused as wrong_type,
+ * anything else as malformed_json. */
 static bool expect_array(api_document_in *in, char c, const char *text)
 {
     bool other = (c != '\0' && strchr("\"{tfn-", c) != NULL) || (c >= '0' && c <= '9');
@@ -254,7 +256,7 @@ static bool take_in_list(api_document_in *in, he_token token)
     return true;
 }
 
-/* --- members --- */
+/* --- members of the document --- */
 
 static bool open_list(api_document_in *in, member list, bool *has)
 {
@@ -283,7 +285,7 @@ static bool gather(api_document_in *in, api_members *to)
     return api_members_begin(to, &in->lexer, in->problem);
 }
 
-/* Begins a member of the document, when the lexer is behind the colon after its name. */
+/* Begins a member of the document. The lexer has passed its name and the colon. */
 static bool open_member(api_document_in *in)
 {
     const he_lexer_frame *object = &in->lexer.frames[0];
@@ -306,10 +308,10 @@ static bool open_member(api_document_in *in)
                : refuse(in, API_DUPLICATE_MEMBER, "\"materials\" is given twice");
 }
 
-/* --- tokens --- */
+/* --- handling tokens --- */
 
-/* Decides whether a value that begins here may stand here. `*taken` is set if it was read at
- * once. */
+/* Refuses the value that the lexer reads next if it may not stand there. Sets `*taken` if the value
+ * was read at once. */
 static bool expect(api_document_in *in, bool *taken)
 {
     switch (in->member) {
@@ -346,7 +348,8 @@ static bool take(api_document_in *in, he_token token)
     return true;
 }
 
-/* Handles one token, or several items at once; `*cut` is set when the piece is used up. */
+/* Handles one token, or several vertices or faces at once; `*cut` is set when the piece has been
+ * read to its end. */
 static bool step(api_document_in *in, bool *cut)
 {
     bool taken = false, done;

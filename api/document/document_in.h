@@ -1,22 +1,23 @@
-/* document_in.h - reading a mesh document piece by piece.
+/* document_in.h - reads a mesh document piece by piece.
  *
  *     {"name":"cube","vertices":[[x,y,z],...],"faces":[[i,j,k,...],...],"attributes":[...],
  *      "materials":[{"name":"red","base_color":[1,0,0]},...]}
  *
- * Pieces may be cut anywhere, members come in any order. Vertices and faces go straight into a soup
- * (build/build.h); numbers are read exactly. Attributes are attributes_in.h's. Materials are
- * gathered, at most API_MAX_MATERIALS bytes, and read at the end into the soup (material_value.h).
- * All other members
- * ("name", "shape", what is not known) are gathered, at most API_MAX_CONTROL bytes, into a control
- * document that the caller reads through json_in.h at the end, so that {"shape":"cube","size":2}
- * comes through the same door.
+ * The document may be cut into pieces anywhere, and members may have any order. Vertices and faces
+ * are added at once to a polygon soup (build/build.h); numbers are read exactly. Attributes are
+ * read by attributes_in.h. The text of the materials, at most API_MAX_MATERIALS bytes, is kept and
+ * read into the soup at the end (material_value.h). All other members ("name", "shape", unknown
+ * ones), at most API_MAX_CONTROL bytes, are gathered in a control document, which the caller reads
+ * at the end (json_in.h). So this reader also reads {"shape":"cube","size":2}.
  *
- * Refused here, with pointers such as /vertices/17/2: whatever is not JSON; a second "vertices",
+ * The reader refuses, with pointers such as /vertices/17/2: invalid JSON; a second "vertices",
  * "faces", "attributes" or "materials"; a vertex that is not three finite numbers; a corner that is
- * not a whole number >= 0 (one beyond any id is bad_index, 422); more than the limits (413). Faces
- * of too few corners and corners beyond the vertices are he_build's to refuse.
+ * not a whole number >= 0 (a number larger than any id is bad_index, 422); more of anything than
+ * the limits allow (413). he_build refuses faces with too few corners and corners that name no
+ * vertex.
  *
- * Memory: the soup, the gathered members, and a number's text across a cut. */
+ * The reader needs memory for the soup, the gathered members, and the text of a number that is
+ * cut. */
 #ifndef HE_API_DOCUMENT_DOCUMENT_IN_H
 #define HE_API_DOCUMENT_DOCUMENT_IN_H
 
@@ -25,7 +26,8 @@
 
 typedef struct api_document_in api_document_in;
 
-/* Makes a reader. Returns NULL when memory is out. `limits` may be NULL. */
+/* Makes a reader of a mesh document. Returns NULL when memory is out. `limits` of the soup may be
+ * NULL. */
 api_document_in *api_document_in_new(const he_limits *limits);
 void api_document_in_free(api_document_in *in);
 
@@ -37,22 +39,23 @@ bool api_document_in_feed(api_document_in *in, const char *bytes, size_t length,
 bool api_document_in_end(api_document_in *in, api_problem *problem);
 
 /* Returns the soup of vertices and faces, after api_document_in_end returned true. The reader owns
- * it; he_build may take from it. */
+ * it, but he_build may move memory out of it. */
 he_soup *api_document_in_soup(api_document_in *in);
 bool api_document_in_has_vertices(const api_document_in *in);
 bool api_document_in_has_faces(const api_document_in *in);
-/* Moves the attributes of vertices and faces into the soup. It must be called before the soup is
- * repaired. */
+/* Moves the attributes of vertices and faces into the soup, so that repairs also change them. It
+ * must be called before the soup is repaired. */
 bool api_document_in_lend(api_document_in *in, api_problem *problem);
-/* Adds the other attributes to the mesh that was made of the document. `repaired` says whether its
- * soup was repaired. */
+/* Adds the attributes that are not in the soup to the mesh that was made from it. `repaired` says
+ * whether the soup was repaired. */
 bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, bool repaired,
                                 api_problem *problem);
 /* Returns true if the document has attributes of edges or half-edges, which no repaired document
  * can keep. */
 bool api_document_in_has_edges(const api_document_in *in);
-/* Returns the other members of the document as one object, valid until the reader is freed.
- * Refusals of their values go to the problem that was given to api_document_in_end. */
+/* Returns the gathered members ("name", "shape", unknown ones) as one object, valid until the
+ * reader is freed. Reading a wrong value from it fills the problem that was passed to
+ * api_document_in_end. */
 const api_in *api_document_in_rest(const api_document_in *in);
 
 #endif

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* The text is made one buffer at a time. Between two checks for space at most a vertex or a corner
- * is written, so UNIT bytes must be free. */
+/* The text is made one buffer of BUFFER bytes at a time. One vertex or one corner takes at most
+ * UNIT bytes, so one is written only if UNIT bytes are free. */
 enum { BUFFER = 64 * 1024, UNIT = 128 };
 
 typedef enum phase {
@@ -22,20 +22,23 @@ typedef enum phase {
 
 struct api_document_out {
     const he_mesh *mesh;
-    api_text text;  /* the text before the vertices, then pieces of the attributes */
-    bool from_text; /* begin and end are positions in `text`, not in the buffer */
-    uint32_t *rank; /* number of each live vertex; NULL if none is dead */
-    /* The half-edge of each edge of the document that lies in the face written first. NULL if no
-     * attribute needs it. */
+    /* The document's text before the vertices, and later pieces of the attributes and its end. */
+    api_text text;
+    bool from_text; /* `begin` and `end` are positions in `text`, not in `buffer` */
+    uint32_t *rank; /* number of each live vertex in the document; NULL if no vertex was deleted */
+    /* One half-edge of each edge, in the order of the document: that in the face which is written
+     * first. NULL if no attribute needs these. */
     uint32_t *edges;
-    size_t column; /* slot of the attribute being written */
-    bool begun;    /* its head was written */
+    size_t column; /* index of the attribute that is being written */
+    bool begun;    /* the attribute's members before its values were written */
     phase phase;
-    uint32_t next; /* next vertex or face */
-    bool listed;   /* an item of the list was written */
-    bool open;     /* `corner` is the next corner of the open face */
+    uint32_t next; /* next vertex or face, or next value of an attribute */
+    bool listed;   /* the present list has an item already */
+    /* In faces: `corner` is the next corner of a face that is begun; in attributes: a value was
+     * written. */
+    bool open;
     he_halfedge corner;
-    size_t begin, end; /* range of the buffer that was not read yet */
+    size_t begin, end; /* range of `buffer` or `text` that the server has not read yet */
     char buffer[BUFFER];
 };
 
@@ -131,7 +134,8 @@ static void put(api_document_out *out, const char *text)
     out->end += length;
 }
 
-/* Writes the separator before an item of a list: each item has its own line. */
+/* Writes the separator before an item of a list, with a line break, so that each item has its own
+ * line. */
 static void begin_item(api_document_out *out)
 {
     put(out, out->listed ? ",\n[" : "\n[");
@@ -176,7 +180,7 @@ static void write_corner(api_document_out *out)
     out->buffer[out->end++] = out->open ? ',' : ']';
 }
 
-/* --- attributes --- */
+/* --- writing attributes --- */
 
 static size_t next_column(const he_mesh *mesh, size_t from)
 {
@@ -186,15 +190,16 @@ static size_t next_column(const he_mesh *mesh, size_t from)
     return from;
 }
 
-/* Returns the number of rows of an attribute to go through, which for vertices and faces includes
- * deleted elements. */
+/* Returns how many positions row_at must be called for to find all values of an attribute. Those of
+ * vertices and faces include deleted elements. */
 static uint64_t count_places(const api_document_out *out, he_kind domain)
 {
     return domain == HE_EDGE || domain == HE_HALFEDGE ? he_mesh_count(out->mesh, domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* Returns the row of the i-th value; HE_NONE if that element was deleted. */
+/* Returns the row of an attribute's column at position i in the order of the document; HE_NONE if
+ * that vertex or face was deleted. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {
@@ -223,7 +228,7 @@ static void begin_attribute(api_document_out *out, const he_column *column)
     api_text_add_char(&out->text, '[');
     out->listed = true;
     out->begun = true;
-    out->open = false; /* no value yet */
+    out->open = false; /* no value was written yet */
     out->next = 0;
 }
 
@@ -278,8 +283,8 @@ static void fill_attributes(api_document_out *out)
     out->end = out->text.length;
 }
 
-/* Fills the buffer with the next bytes of the document. Deleted elements are not written, so a call
- * may skip many. */
+/* Makes the next bytes of the document, in `buffer` or `text`. A call may take long, because it
+ * skips all deleted elements that it meets. */
 static void fill(api_document_out *out)
 {
     out->begin = out->end = 0;

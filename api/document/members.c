@@ -12,8 +12,8 @@ void api_members_empty(api_members *m)
     api_text_empty(&m->text);
 }
 
-/* Appends bytes to the gathered members. The first of them is byte `place` of what the client
- * sent. */
+/* Appends bytes to the gathered members. `place` is the offset of the first of these bytes in the
+ * body. */
 static bool add(api_members *m, const he_lexer *x, api_bytes bytes, uint64_t place,
                 api_problem *problem)
 {
@@ -39,7 +39,7 @@ bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem)
     bool first = m->text.length == 0;
     uint64_t place = he_lexer_place(x);
     if (first) {
-        m->values = 1; /* the object */
+        m->values = 1; /* the object itself */
     }
     m->from = x->at;
     m->depth = x->depth;
@@ -51,7 +51,7 @@ bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem)
            add(m, x, (api_bytes){"\":", 2}, place, problem);
 }
 
-/* Appends the bytes of the lexer's piece that it has passed. */
+/* Appends the bytes that the lexer has read since the last call. */
 static bool add_passed(api_members *m, const he_lexer *x, api_problem *problem)
 {
     const char *from = m->from != NULL ? m->from : x->begin;
@@ -66,8 +66,9 @@ bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *prob
     do {
         api_problem wrong = {0};
         if (!api_json_next(x, &m->values, m->values_most, &token, &wrong)) {
-            /* If there are too many bytes, that is reported rather than a fault after them. So the
-             * answer does not depend on where the pieces were cut. */
+            /* If there are too many bytes, that is reported, and not this fault, which is behind
+             * the limit. So the problem does not depend on where the pieces of the body were
+             * cut. */
             if (add_passed(m, x, problem)) {
                 *problem = wrong;
             }

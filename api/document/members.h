@@ -1,31 +1,34 @@
-/* members.h - members of an object that comes in pieces, gathered into a control document.
+/* members.h - gathers members of an object that arrives in pieces, as the text of a control
+ * document.
  *
- * What is not a list of numbers ("name", the head of an attribute, materials) is small and read
- * through json_in.h. Its tokens pass the scan (json_scan.h) on their way, and its bytes are kept as
- * they came: "{" and each member, up to `most` bytes. */
+ * Members of a mesh document that are not lists of numbers ("name", the definition of an attribute,
+ * materials) are small and are read with json_in.h. While they arrive, their tokens are checked
+ * (json_scan.h), and their bytes are kept unchanged: "{" and each member, up to `most` bytes. */
 #ifndef HE_API_DOCUMENT_MEMBERS_H
 #define HE_API_DOCUMENT_MEMBERS_H
 
 #include "api/json/json_scan.h"
 #include "api/json/text.h"
 
-/* The members gathered so far. It begins with .what, .most and .values_most set. */
+/* The members gathered so far. The caller initializes `what`, `most` and `values_most`. */
 typedef struct api_members {
-    const char *what; /* "materials": for the refusal of too many bytes */
+    const char *what; /* names the members when they are refused, such as "materials" */
     size_t most, values_most;
 
     api_text text;
     size_t values;
-    /* --- of the open member --- */
-    const char *from; /* in the lexer's piece; NULL: its beginning */
+    /* --- about the member that is being gathered --- */
+    /* First byte to append, in the lexer's present piece; NULL: the beginning of that piece. */
+    const char *from;
     size_t depth, name_most;
 } api_members;
 
 void api_members_clear(api_members *m);
-/* Nothing is gathered. */
+/* Drops the gathered members. */
 void api_members_empty(api_members *m);
 
-/* Begins to gather a member: its name. The lexer must be behind the colon after the name. */
+/* Begins to gather a member, and appends its name. The lexer must have passed the colon after the
+ * name. */
 bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem);
 /* Gathers the value of the member; `*done` is false if the piece ended before the value did. */
 bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *problem);

@@ -5,22 +5,22 @@
 
 #include <string.h>
 
-/* The number of bytes from which any format can be recognised. */
+/* How many of the first bytes of a file are enough to recognise its format. */
 enum { SNIFF_BYTES = 512 };
 
 typedef struct part {
     char *name;
-    api_part_kind kind; /* by its name or media type */
-    api_text bytes;     /* content, except of the mesh file if that is known from its name */
+    api_part_kind kind; /* what the name or the media type of the file says about its format */
+    api_text bytes;     /* the content; empty for the mesh file if that was known when it began */
 } part;
 
 struct api_parts {
     api_multipart *multipart;
-    const char *wanted; /* ?format=, or NULL */
+    const char *wanted; /* the value of ?format=, or NULL */
     part parts[API_MAX_PARTS];
     size_t count;
-    size_t candidates; /* how many files could be the mesh */
-    part *mesh;        /* the first of them */
+    size_t candidates; /* how many files could be the mesh file */
+    part *mesh;        /* the first file that could be the mesh file */
     he_beside_file files[API_MAX_PARTS];
     he_beside beside;
 };
@@ -54,7 +54,7 @@ void api_parts_free(api_parts *p)
     he_mem_free(p);
 }
 
-/* --- choosing the mesh --- */
+/* --- choosing the mesh file --- */
 
 static const char *extension_of(const char *name)
 {
@@ -123,8 +123,8 @@ static bool is_companion(const char *name)
     return api_equal_nocase(extension, "bin") || api_equal_nocase(extension, "mtl");
 }
 
-/* Finds the mesh file by the first bytes of the files, if neither names nor media types have
- * decided. */
+/* Finds the mesh file by the first bytes of the files. It is called if no file's name or media type
+ * shows that it is a mesh file. */
 static void look_inside(api_parts *p)
 {
     for (size_t i = 0; i < p->count; i++) {
@@ -141,7 +141,7 @@ static void look_inside(api_parts *p)
     }
 }
 
-/* --- the parts --- */
+/* --- reading the parts of the body --- */
 
 static bool is_taken(const api_parts *p, const char *name)
 {
@@ -197,7 +197,7 @@ static api_parts_step take(api_exchange *x, api_parts *p, const char *bytes, siz
         return API_PARTS_BYTES;
     }
     if (is_wanted(p, &one->kind)) {
-        return API_PARTS_MORE; /* a second mesh file; refused when all files are known */
+        return API_PARTS_MORE; /* a second mesh file: the body is refused at its end */
     }
     api_text_add(&one->bytes, bytes, length);
     if (one->bytes.failed) {

@@ -1,16 +1,16 @@
-/* parts.h - the files of a multipart/form-data body: the mesh file, which is passed on as it
- * arrives, and the files that it refers to, which are kept until it is read.
+/* parts.h - reads the files of a multipart/form-data body. The mesh file is passed on as it
+ * arrives; the files that it refers to are kept until the mesh file has been read.
  *
  *     api_parts_new -> api_parts_next ... -> api_parts_end -> api_parts_beside
  *
- * The mesh file is the only file whose name shows a known format; if the name shows none, its media
- * type decides. With ?format= it is the only file of that format. If there is no such file, it is
- * the only one whose first bytes show a format, which is known only at the end of the body. A
- * single file has the format of ?format= whatever its name is. Everything else is refused as
- * unclear_parts.
+ * The format of a file is shown by its name, or else by its media type. The mesh file is the only
+ * file that shows a known format or, with ?format=, the only one that shows that format. If there
+ * is no such file, the mesh file is the only one whose first bytes show a format, which is known
+ * only at the end of the body. A single file has the format of ?format= whatever its name is. A
+ * body without a mesh file by these rules, or with several, is refused as unclear_parts.
  *
- * The hash of Idempotency-Key covers the files and not the boundary: another boundary is still the
- * same request. */
+ * The hash for the Idempotency-Key covers the files and not the boundary, so a request that is
+ * repeated with another boundary is recognised. */
 #ifndef HE_API_DOCUMENT_PARTS_H
 #define HE_API_DOCUMENT_PARTS_H
 
@@ -21,14 +21,14 @@ typedef struct api_parts api_parts;
 
 /* How a file is read: by the reader of a format, or as a mesh document. */
 typedef struct api_part_kind {
-    bool is_mesh;            /* it is one of these two */
-    const he_format *format; /* NULL: a mesh document */
+    bool is_mesh;            /* it is a mesh file: one of these two */
+    const he_format *format; /* the format of the file; NULL: it is a mesh document */
 } api_part_kind;
 
 typedef enum api_parts_step {
-    API_PARTS_MORE,  /* all bytes are used: more are needed */
+    API_PARTS_MORE,  /* all bytes were read: more are needed */
     API_PARTS_OPEN,  /* the mesh file begins; `kind` says how to read it */
-    API_PARTS_BYTES, /* `length` bytes of it, which live until the next call */
+    API_PARTS_BYTES, /* `bytes` has `length` bytes of the mesh file, valid until the next call */
     API_PARTS_BAD    /* refused: the problem is filled */
 } api_parts_step;
 
@@ -38,16 +38,16 @@ typedef struct api_parts_piece {
     size_t length;
 } api_parts_piece;
 
-/* Makes a reader for the Content-Type and ?format= of the exchange. Returns NULL with the problem
- * filled. */
+/* Makes a reader of the exchange's body. Returns NULL with the problem filled if its Content-Type
+ * is wrong or memory is out. */
 api_parts *api_parts_new(api_exchange *x);
 void api_parts_free(api_parts *parts);
-/* Reads from *at, which lies before `end`, and moves it past the bytes it used. */
+/* Reads the body from *at, at most to `end`, and moves *at past the bytes that it has read. */
 api_parts_step api_parts_next(api_exchange *x, api_parts *parts, const char **at, const char *end,
                               api_parts_piece *out);
-/* Ends the body. If only now it is known which file is the mesh, out->kind says how to read it and
- * `bytes` are all of it, which live until `parts` are freed; otherwise both are NULL. Returns false
- * with the problem filled. */
+/* Ends the body. If only now it is known which file is the mesh file, out->kind says how to read it
+ * and out->bytes is its whole content, valid until `parts` is freed; otherwise out->bytes is NULL.
+ * Returns false with the problem filled. */
 bool api_parts_end(api_exchange *x, api_parts *parts, api_parts_piece *out);
 /* Returns the files other than the mesh file; they are valid as long as `parts`. */
 he_beside *api_parts_beside(api_parts *parts);

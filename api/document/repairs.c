@@ -1,6 +1,7 @@
 #include "api/document/repairs.h"
 
-/* The largest hole that `fill` closes, unless the request sets another limit. */
+/* The number of edges of the largest hole that the repair `fill` closes, unless the request sets
+ * another limit. */
 enum { HOLE_EDGES = 16 };
 
 bool api_repairs_read(api_exchange *x, he_repair_plan *plan)
@@ -36,8 +37,9 @@ static void write_ids(api_out *out, const char *key, const he_repair_account *ac
     api_out_array_end(out);
 }
 
-/* Selects from the account of drop_degenerate, which lists faces as pairs (a face, and the number
- * of faces that replaced it), the faces that were removed (`gone`), or else the others. */
+/* Selects faces from the account of the repair drop_degenerate, which lists pairs of a face and the
+ * number of faces that replaced it. With `gone` the faces that nothing replaced are selected, else
+ * the others. */
 static he_repair_account degenerate_ones(const he_repair_account *account, bool gone)
 {
     he_repair_account some = {.count = 0};
@@ -65,7 +67,7 @@ static void write_parents(api_out *out, const he_repair_account *account)
     api_out_object_end(out);
 }
 
-/* Writes where in the input the things were that a repair removed. */
+/* Writes the lines or byte offsets in the input of the elements that a repair removed. */
 static void write_source_map(api_out *out, const he_repair_account *account,
                              const he_source_map *map)
 {

@@ -12,8 +12,8 @@
 bool api_repairs_read(api_exchange *x, he_repair_plan *plan);
 
 /* Writes the array "repairs" of the report: one object per requested repair, in the order in which
- * they were applied. `import` has the places of removed elements in the file; NULL if the body was
- * JSON. */
+ * they were applied. `import` knows where in the file the removed elements were; NULL if the body
+ * was a JSON document. */
 void api_repairs_write(api_out *out, const he_repair_plan *plan, const he_repaired *done,
                        const he_import *import);
 

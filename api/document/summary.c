@@ -9,7 +9,7 @@
 bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
 {
     he_error err = {0};
-    /* This clears the padding of the struct, too, because the store keeps every byte of a
+    /* The padding of the struct is cleared, too, because the store keeps every byte of a
      * summary. */
     memset(out, 0, sizeof *out);
     he_topology topology;
@@ -32,7 +32,7 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
     return true;
 }
 
-/* The counts of a mesh; those that must be computed are only in its summary. */
+/* The counts of a mesh. Some must be computed from the content and are only in its summary. */
 typedef struct counts {
     uint64_t vertices, halfedges, edges, faces;
     bool computed;
@@ -85,7 +85,7 @@ static const api_field item_fields[] = {
 const api_record api_mesh_item_record = {"mesh_item", item_fields,
                                          sizeof item_fields / sizeof *item_fields};
 
-/* A mesh, and what was computed of its content. */
+/* A mesh and its summary, from which the members of an answer are written. */
 typedef struct whole {
     const api_summary *summary;
     const char *id, *name;
@@ -204,8 +204,8 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
     write_answer(x, summary, status, extra);
 }
 
-/* Fills x->info with the mesh as it was created, because other clients may have changed or deleted
- * it by now. */
+/* Sets x->info to the description that the new mesh had when it was created, because other clients
+ * may have changed or deleted it by now. */
 static void find_facts_as_made(api_exchange *x, const char *name)
 {
     (void)st_read_card(x->mesh, &x->info);
@@ -224,8 +224,8 @@ void api_answer_created(api_exchange *x, const char *name, const api_summary *su
     api_answer_stored(x, 201, summary, extra);
 }
 
-/* Estimates the cost of a summary. If the summary is cached, it is put into x->state, and the mesh
- * is not read. */
+/* Estimates the cost of a summary. If the store has the summary cached, it is put into x->state,
+ * and the handler need not read the mesh. */
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     api_summary *kept = api_arena_array(&x->arena, 1, sizeof *kept);
@@ -274,9 +274,9 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
         return;
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
-        /* The length of the summary is unknown, so it is unknown whether GET would compress the
-         * answer. The answer to HEAD is the one without a coding, whose tag is as good as that of
-         * the compressed answer in every precondition. */
+        /* Without the summary its length is unknown, so it is unknown whether GET would compress
+         * the answer. HEAD is answered as if GET would not. The tag of the uncompressed answer is
+         * as good as that of the compressed one in every precondition. */
         x->codings.best = API_IDENTITY;
         const api_stream nothing = {.length = -1, .read = read_nothing};
         api_answer_stream(x, 200, "application/json", &nothing);

@@ -15,14 +15,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The number of bytes from which any format can be recognised. */
+/* How many of the first bytes of a file are enough to recognise its format. */
 enum { SNIFF_BYTES = 512 };
 
-/* The guessed bytes of a file for each vertex or corner, used only to estimate time. */
+/* A guess of how many bytes a file has for each vertex or corner; used only to estimate time. */
 enum { ELEMENT_BYTES = 5 };
 
-/* The progress that is reached after each step of making a mesh; the rest is computing its
- * summary. */
+/* The progress that is reached after each step of making a mesh. The last step, after FILL_SHARE,
+ * is computing the summary. */
 static const double READ_SHARE = 0.2, SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7,
                     FILL_SHARE = 0.75;
 
@@ -33,11 +33,12 @@ typedef struct attribute {
 
 typedef struct upload {
     he_limits limits;
-    /* One of these two is the reader; both are NULL while the first bytes are collected. */
+    /* The reader of the body is `document` or `reader`; both are NULL until the first bytes have
+     * shown the format. */
     api_document_in *document;
     he_reader *reader;
-    const he_format *format; /* the reader reads this */
-    api_parts *parts;        /* if the body has several files */
+    const he_format *format; /* the format that `reader` reads */
+    api_parts *parts;        /* reads a multipart body; NULL for another body */
     char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
@@ -50,13 +51,13 @@ typedef struct upload {
     he_report report;
     he_repair_plan plan;
     he_repaired repaired;
-    size_t vertices, faces; /* as read, before repairs */
+    size_t vertices, faces; /* numbers of elements as read, before repairs */
     attribute *attributes;
     size_t attribute_count;
     he_ids bowties;
-    uint64_t seams;      /* edges that a weld would join */
-    uint64_t isolated;   /* vertices without a face */
-    he_ids isolated_ids; /* the first of them */
+    uint64_t seams;      /* number of edges that the repair weld would join */
+    uint64_t isolated;   /* number of vertices without a face */
+    he_ids isolated_ids; /* ids of the first vertices without a face */
 } upload;
 
 static void free_upload(void *state)
@@ -106,7 +107,7 @@ bool api_upload_begin(api_exchange *x)
     }
     const char *name = api_param_text(x, "format");
     if (name == NULL && strcmp(x->media_in, "application/octet-stream") == 0) {
-        return true; /* the first bytes will decide */
+        return true; /* the first bytes will show the format */
     }
     if (strcmp(name != NULL ? name : x->media_in, name != NULL ? "json" : "application/json") ==
         0) {
@@ -123,8 +124,9 @@ bool api_upload_begin(api_exchange *x)
     return open_reader(x, u, format);
 }
 
-/* Refuses a file that is in another format than declared, or no mesh, with that reason and without
- * a position. (Readers themselves report text in UTF-16.) */
+/* Refuses a file that its reader has refused. If the first bytes show something that is no mesh,
+ * the message says only that, without a position; if they show another format, that is added. (Text
+ * in UTF-16 is reported by the readers.) */
 static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
 {
     const char *foreign = he_foreign_find(u->head, u->head_length);
@@ -153,14 +155,14 @@ static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
     return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
 }
 
-/* Chooses a reader by the bytes that have arrived, and passes them to it. */
+/* Chooses a reader by the first bytes of the body, which have arrived, and passes them to it. */
 static bool choose(api_exchange *x, upload *u)
 {
     size_t blank = 0;
     while (blank < u->head_length && strchr(" \t\r\n", u->head[blank]) != NULL) {
         blank++;
     }
-    /* A glTF file is JSON, too; it has a member that mesh documents do not have. */
+    /* A glTF file is JSON, too, but has a member that mesh documents do not have. */
     const he_format *gltf = he_format_find("gltf");
     bool json =
         blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
@@ -185,7 +187,7 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-/* Keeps the first bytes of the body, as many as fit, and returns their number. */
+/* Copies bytes to u->head, as many as fit, and returns how many were copied. */
 static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
     size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
@@ -226,8 +228,8 @@ static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t len
     return false;
 }
 
-/* Reads the mesh file together with the other files, when it is known only at the end which file is
- * the mesh. */
+/* Ends a multipart body: reads the mesh file if only now it is known which file that is, and passes
+ * the other files to the reader. */
 static bool end_parts(api_exchange *x, upload *u)
 {
     api_parts_piece late;
@@ -271,7 +273,8 @@ static bool refuse_shape(const api_in *at, const char *name)
                        api_known_names_text(&known));
 }
 
-/* Reads {"shape":"cube","size":2,"name":"..."}: the other members are parameters of the shape. */
+/* Reads {"shape":"cube","size":2,"name":"..."}: the name of a shape, its parameters, and the name
+ * of the mesh. */
 static bool read_shape(upload *u, const api_in *rest, const api_in *shape)
 {
     const char *name, *names[HE_SHAPE_PARAMS + 3] = {"shape", "name"};
@@ -348,7 +351,7 @@ static bool finish_reading(api_exchange *x, upload *u)
     return true;
 }
 
-/* Returns true if no byte of the file has been passed to a reader yet. */
+/* Returns true if the file will be read only when the mesh is made (finish_reading). */
 static bool is_unread(const upload *u)
 {
     return u->reader != NULL && !u->has_import;
@@ -382,7 +385,7 @@ uint64_t api_upload_elements(const api_exchange *x)
     const he_soup *soup = soup_of(u);
     uint64_t elements =
         is_unread(u) ? x->received / ELEMENT_BYTES : soup->vertex_count + soup->corner_count;
-    /* Repairs take about as long as building the mesh. */
+    /* Repairs take about as long as building the mesh does. */
     return u->plan.which == 0 ? elements : 2 * elements;
 }
 
@@ -397,8 +400,8 @@ const char *api_upload_name(const api_exchange *x)
     return u->name;
 }
 
-/* Finds the repairs with which the body would be accepted. When memory is out it finds none, and
- * the refusal stays as it is. Returns HE_CANCELLED if the work was cancelled. */
+/* Finds the repairs with which the body would be accepted. When memory is out it finds none, so
+ * that the original refusal is sent. Returns HE_CANCELLED if the work was cancelled. */
 static he_status advise(upload *u, unsigned *which, he_error *err)
 {
     *which = 0;
@@ -410,7 +413,7 @@ static he_status advise(upload *u, unsigned *which, he_error *err)
     return status == HE_CANCELLED ? status : HE_OK;
 }
 
-/* Names the places of defects in the body, even if repairs have changed the soup before. */
+/* Adds the places of the defects in the body to the problem. */
 static void name_defects(api_exchange *x, upload *u)
 {
     x->problem.report = &u->report;
@@ -422,8 +425,8 @@ static void name_defects(api_exchange *x, upload *u)
     }
 }
 
-/* Refuses the body, with the report of the repairs only if the work came to its end: work that was
- * cancelled or ran out of memory may have reported other defects before. */
+/* Refuses the body. The defects in u->report are sent only if they are the reason of the refusal:
+ * work that was cancelled or ran out of memory may have found defects before that. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
     bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
@@ -450,7 +453,7 @@ static bool refuse(api_exchange *x, upload *u, he_error *err)
     return false;
 }
 
-/* Finds vertices without a face and keeps the ids of the first ones. */
+/* Counts the vertices without a face and keeps the ids of the first ones. */
 static he_status find_isolated(upload *u, const he_mesh *mesh, he_error *err)
 {
     he_status status = HE_OK;
@@ -500,8 +503,8 @@ static void note_edges(upload *u, const he_mesh *mesh)
     }
 }
 
-/* The second half of making a mesh: builds it from the repaired soup and fills in its
- * attributes. */
+/* Completes a mesh that was built from the soup: adds its attributes, applies the repairs that need
+ * a mesh, and finds what the report of the import warns of. */
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
     he_error err = {0};
@@ -580,19 +583,21 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     return true;
 }
 
-/* A warning as its members show it. */
+/* The values of the JSON members of a warning. */
 typedef struct shown_warning {
     const char *code, *detail;
     uint64_t count;
-    uint64_t at; /* place of the first occurrence */
+    uint64_t at; /* line or byte of the first occurrence */
     bool has_line, has_byte, has_lines, has_bytes, has_vertices;
-    const he_warnings *warnings; /* for the places of all occurrences of a note */
+    /* A warning of the reader is number `warning` of these; `warnings` also has the places of its
+     * occurrences. */
+    const he_warnings *warnings;
     size_t warning;
     const uint32_t *vertices;
-    size_t named; /* number of vertices */
+    size_t named; /* number of ids in `vertices` */
 } shown_warning;
 
-/* Writes where a warning applies, for the first occurrences that it counts. */
+/* Writes the lines or bytes where a warning occurred, as far as they were kept. */
 static void write_spots(api_out *out, const void *value)
 {
     const shown_warning *w = value;
@@ -649,7 +654,7 @@ static void write_warning(api_out *out, const he_warnings *warnings, size_t i)
     api_record_write(out, &api_warning_record, &value);
 }
 
-/* Writes a warning about vertices of the mesh, with the place of the first of them in the file. The
+/* Writes a warning about vertices of the mesh, with the place of the first vertex in the file. The
  * caller sets code, detail and count. */
 static void write_vertices(api_out *out, const upload *u, shown_warning value, const he_ids *ids)
 {
@@ -670,8 +675,8 @@ static void write_vertices(api_out *out, const upload *u, shown_warning value, c
     api_record_write(out, &api_warning_record, &value);
 }
 
-/* Writes a warning about seams that another program left: it wrote one vertex for each corner with
- * different values. */
+/* Writes a warning about open seams. Programs leave them that write a vertex several times, once
+ * for each combination of attribute values of its corners. */
 static void write_seams(api_out *out, const upload *u)
 {
     const shown_warning value = {.code = "open_seams",
@@ -684,7 +689,7 @@ static void write_seams(api_out *out, const upload *u)
     }
 }
 
-/* The report of an import as its members show it. */
+/* The values of the JSON members of the report of an import. */
 typedef struct report {
     const upload *u;
     const char *format;

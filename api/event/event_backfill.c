@@ -7,22 +7,24 @@
 
 #include <pthread.h>
 
-enum { BATCH = 32 * 1024 }; /* bytes, exceeded by at most one event */
+/* Bytes after which a batch ends; it may be longer by a part of one event. */
+enum { BATCH = 32 * 1024 };
 
 struct api_backfill {
     api_backfills *all;
-    st_mesh *mesh; /* a reference */
+    st_mesh *mesh; /* a reference to the mesh is held */
     st_mesh_info info;
     uint64_t to;
-    /* The cursor belongs to the job while one is queued or running, else to the listener. */
+    /* While a task of this backfill is queued or running on the job pool, only that task uses the
+     * cursor; else only the listener does. */
     st_cursor *cursor;
     api_text text;
     bool failed;
     /* The lock protects the members below. */
     pthread_mutex_t lock;
-    unsigned uses; /* one use by the listener, one by the job */
+    unsigned uses; /* 1 for the listener, and 1 for a task that is queued or running */
     bool working, waiting;
-    void (*wake)(void *context); /* NULL: the listener is gone */
+    void (*wake)(void *context); /* NULL if the listener has freed the backfill */
     void *context;
 };
 
@@ -46,8 +48,8 @@ api_backfill *api_backfill_new(api_backfills *all, st_mesh *mesh, const st_mesh_
     return c;
 }
 
-/* Ends one of the two uses of a backfill, frees it after the last, and unlocks it. The caller holds
- * the lock. */
+/* Ends the use of a backfill by the listener or by a task: unlocks it, and frees it after the last
+ * use. The caller holds the lock. */
 static void release(api_backfill *c)
 {
     bool last = --c->uses == 0;
@@ -77,11 +79,11 @@ void api_backfill_wake(api_backfill *c, void (*wake)(void *context), void *conte
     c->context = context;
 }
 
-/* --- on the job pool --- */
+/* --- functions that run on the job pool --- */
 
-/* Renders a step of the history as an event. A change that added or removed attribute columns or
- * the whole content is announced as `stale`, because these objects belong to the mesh and may be
- * changing. */
+/* Renders a change of the history as an event. A change that added or removed attribute columns or
+ * replaced the whole content is announced as `stale`, because its delta refers to objects of the
+ * mesh, which other threads may be changing. */
 static void render(api_backfill *c, const st_cursor_step *step)
 {
     c->info.revision = step->revision;
@@ -96,8 +98,8 @@ static void render(api_backfill *c, const st_cursor_step *step)
     }
 }
 
-/* Gets the next step of the history. If memory has dropped the next revision since the last step,
- * it searches again, because the disk may have it. */
+/* Gets the next change of the history. If the history in memory has dropped it since the last call,
+ * the cursor is begun again, because the history on disk may have it. */
 static bool next_step(api_backfill *c, st_cursor_step *step)
 {
     st_status status = st_cursor_next(c->cursor, step);
@@ -146,7 +148,7 @@ static void work(void *context)
     release(c);
 }
 
-/* --- the listener --- */
+/* --- functions that the listener calls --- */
 
 static void begin_work(api_backfill *c)
 {

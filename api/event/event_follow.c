@@ -33,16 +33,16 @@ bool api_event_render(const st_mesh_info *info, const st_change *change, char **
 }
 
 typedef struct stream {
-    st_mesh *mesh; /* a reference */
+    st_mesh *mesh; /* a reference to the mesh is held */
     st_listener listener;
     bool listens;
     uint64_t incarnation;
-    api_backfill *missed; /* the backfill; NULL: none, or finished */
-    uint64_t caught_up;   /* its last revision */
-    api_text text;        /* send it before anything else */
+    api_backfill *missed; /* makes the missed events; NULL if there are none, or all were sent */
+    uint64_t caught_up;   /* the last revision of the events that `missed` makes */
+    api_text text;        /* bytes to send before anything else */
     size_t sent;
     bool finishing; /* the server is stopping */
-    bool ended;     /* nothing follows `text` */
+    bool ended;     /* the stream ends after `text` */
 } stream;
 
 static void start(void *self, void (*wake)(void *context), void *context)
@@ -67,10 +67,9 @@ static size_t copy_text(stream *s, char *buffer, size_t size)
     return length;
 }
 
-enum { IN_TEXT = -3 }; /* result: bytes to send are in `text` */
+enum { IN_TEXT = -3 }; /* result of reading: the bytes to send are in `text` */
 
-/* Reads missed events from the backfill. If the backfill fails, it sends `resync` instead of the
- * missed events. */
+/* Reads missed events. If they cannot be made, the event `resync` is sent instead. */
 static int64_t read_missed(stream *s)
 {
     switch (api_backfill_take(s->missed, &s->text)) {
@@ -110,8 +109,8 @@ static int64_t read_queue(stream *s, char *buffer, size_t size)
     return IN_TEXT;
 }
 
-/* Reads the next bytes of an event stream. When the server stops, the stream ends without
- * waiting. */
+/* Reads the next bytes of an event stream. When the server stops, the stream sends the events that
+ * are ready and ends. */
 static int64_t read_stream(void *self, char *buffer, size_t size)
 {
     stream *s = self;
@@ -148,8 +147,8 @@ static void free_stream(void *self)
     he_mem_free(s);
 }
 
-/* Begins a stream with missed events from the history. The history consists of revisions, and a new
- * name is not a revision, so the present name is sent as well. */
+/* Begins a stream with missed events from the history. A change of the mesh's name is no revision
+ * and so not in the history; therefore the present name is sent as well. */
 static void begin_with_history(stream *s, const st_mesh_info *info, uint64_t since,
                                api_backfills *backfills)
 {

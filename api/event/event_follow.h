@@ -1,8 +1,8 @@
-/* event_follow.h - the events of a mesh as an answer without end (api/live.h).
+/* event_follow.h - the event stream of a mesh, an answer without a known end (api/live.h).
  *
- * A stream first gives its opening messages. Then it gives the events that its listener missed,
- * from the queue of the mesh or from the history (event_backfill.h), or one `resync` if neither
- * reaches back that far. Then it gives events as they happen. */
+ * A stream first sends its opening messages. Then it sends the events that the listener has missed,
+ * from the mesh's queue of recent events or from the history (event_backfill.h), or one event
+ * `resync` if neither reaches back that far. Then it sends events as they happen. */
 #ifndef HE_API_EVENT_EVENT_FOLLOW_H
 #define HE_API_EVENT_EVENT_FOLLOW_H
 
@@ -10,12 +10,13 @@
 #include "api/live.h"
 #include "store/followers.h"
 
-/* Renders a change of a mesh as an event, for the listeners of the store (st_render). */
+/* Renders a change of a mesh as an event. The store calls it (st_render) and passes the bytes to
+ * the mesh's listeners. */
 bool api_event_render(const st_mesh_info *info, const st_change *change, char **bytes,
                       size_t *length);
 
-/* Opens a stream of the changes after `since`, or, if that is NULL, after the present revision. The
- * description of the mesh is copied to `info`. The caller frees the source.
+/* Opens a stream of the changes after the revision in `since`, or after the present revision if
+ * `since` has none. `info` gets the description of the mesh. The caller frees the source.
  * Returns ST_ABSENT if the mesh was deleted.
  * Returns ST_LISTENERS if the mesh has too many listeners.
  * Returns ST_NO_MEMORY if memory is out. */

@@ -7,19 +7,20 @@
 
 #include <string.h>
 
-/* What a delta did to the column in one slot of attributes. If one column replaced another,
- * `dropped` and `added` are both set. */
+/* What a delta did in one attribute slot of a mesh, the place of one attribute column. If one
+ * column replaced another, `dropped` and `added` are both set. */
 typedef struct slot {
-    he_ids rows; /* rows touched; of an added column, rows that do not hold the default */
-    const he_column *dropped; /* the column before the delta, else NULL */
-    bool added;               /* the delta added the present column */
+    /* Rows that the delta changed; in an added column, rows that do not have the default value. */
+    he_ids rows;
+    const he_column *dropped; /* the column that the delta removed, else NULL */
+    bool added;               /* the delta added the column that is now in the slot */
 } slot;
 
 typedef struct touched {
     he_ids vertices, halfedges, faces;
     slot *slots;
     size_t slot_count;
-    bool materials; /* the table of materials was touched */
+    bool materials; /* the delta changed the list of materials */
 } touched;
 
 static void touched_clear(touched *t)
@@ -134,7 +135,7 @@ static he_status find_touched(touched *t, const he_mesh *mesh, const he_delta *d
     return status == HE_OK ? he_ids_sort(&t->faces, err) : status;
 }
 
-/* --- writing, which stops early when the text is full --- */
+/* --- writing; it stops early when the text has reached its maximum --- */
 
 static void write_vertices(api_out *out, const he_mesh *mesh, const he_ids *rows)
 {

@@ -23,8 +23,8 @@ static void give_back(void *context, void *block)
 }
 
 /* Counts an allocation if it stays below the ceiling. It compares and adds in one atomic step, so
- * that two threads cannot exceed the ceiling together, and no thread reads a total above what was
- * allocated. */
+ * that two threads cannot exceed the ceiling together, and the counter never includes an allocation
+ * that was refused. */
 static bool fits(api_compression_memory *memory, size_t size)
 {
     size_t lent = atomic_load_explicit(memory->lent, memory_order_relaxed);
@@ -70,7 +70,8 @@ static void *take(void *context, size_t size)
 
 static void *zlib_take(void *context, unsigned count, unsigned size)
 {
-    return take(context, (size_t)count * size); /* both have 32 bits: no overflow */
+    /* `count` and `size` have 32 bits, so their product does not overflow. */
+    return take(context, (size_t)count * size);
 }
 
 void api_compression_zlib(z_stream *stream, api_compression_memory *memory)

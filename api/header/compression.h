@@ -1,9 +1,9 @@
-/* compression.h - zlib and zstd with memory from base/mem.h: shared by compressor.c and
+/* compression.h - lets zlib and zstd take their memory from base/mem.h; for compressor.c and
  * decompressor.c.
  *
- * zstd takes an allocator only through functions that its header hides behind
- * ZSTD_STATIC_LINKING_ONLY; the shared library exports them too. Without them no budget would count
- * the memory that a client makes the decoders allocate. */
+ * The functions of zstd that take an allocator are declared only if ZSTD_STATIC_LINKING_ONLY is
+ * defined, but the shared library exports them too. Without them, the memory that decoders allocate
+ * for the bodies of clients would count towards no budget. */
 #ifndef HE_API_HEADER_COMPRESSION_H
 #define HE_API_HEADER_COMPRESSION_H
 
@@ -15,22 +15,22 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-/* Where the memory of a compression stream comes from: the heap, under a ceiling that all streams
- * share. */
+/* Limits the memory of compression streams. It comes from the heap; a group of streams shares one
+ * ceiling. */
 typedef struct api_compression_memory {
-    /* The bytes that all streams have allocated, with the overhead of each block; NULL means no
-     * ceiling. */
+    /* The bytes that all streams of the group have allocated, including the overhead of each
+     * block. */
     _Atomic size_t *lent;
     size_t most;
     /* Called when an allocation would exceed the ceiling: returns true if another stream freed its
      * memory. */
     bool (*make_room)(void *context);
     void *context;
-    bool refused; /* an allocation failed by the ceiling, not by lack of memory */
+    bool refused; /* an allocation failed because of the ceiling, not because memory was out */
 } api_compression_memory;
 
-/* Each fills the allocator hooks of its library. `memory` must live as long as the stream; it may
- * be NULL, which means no ceiling. */
+/* api_compression_zlib and api_compression_zstd set the allocator of a stream. `memory` must live
+ * as long as the stream; NULL means that there is no ceiling. */
 void api_compression_zlib(z_stream *stream, api_compression_memory *memory);
 ZSTD_customMem api_compression_zstd(api_compression_memory *memory);
 

@@ -11,17 +11,18 @@ enum { LEVEL = 1, GZIP_MEMORY = 8 };
 struct api_compressor {
     api_coding coding;
     api_plain plain;
-    size_t used; /* bytes of plain.bytes used */
+    size_t used; /* how many of plain.bytes were copied to `in` */
     z_stream zlib;
     ZSTD_CCtx *zstd;
     bool begun; /* the compressor was started */
     bool as_it_is;
-    bool read;  /* the whole body was read: what is left of it is in `in` */
-    bool ended; /* the whole output was returned */
+    bool read;  /* the whole body was read: what is not compressed yet is in `in` */
+    bool ended; /* all of the output was returned */
     bool failed;
     size_t from, to;
-    /* The bytes from..to are uncompressed input. There is room for one byte more than is compressed
-     * at once, which shows whether the body is longer. */
+    /* The bytes `from` to `to` were read and are not compressed yet. The array has one byte more
+     * than API_COMPRESS_AT_ONCE, because only reading one more byte shows that the body is
+     * longer. */
     char in[API_COMPRESS_AT_ONCE + 1];
 };
 
@@ -78,8 +79,8 @@ bool api_compressor_whole(api_compressor *compressor, const char **bytes, size_t
 
 static bool begin_gzip(api_compressor *compressor)
 {
-    /* A short body needs no larger window than itself. zlib does not support windows of 256
-     * bytes. */
+    /* A body that was read completely needs no larger window than its own size. The smallest window
+     * of zlib is 512 bytes. */
     int window = MAX_WBITS;
     while (compressor->read && window > 9 && compressor->to <= (size_t)1 << (window - 1)) {
         window--;
@@ -90,8 +91,8 @@ static bool begin_gzip(api_compressor *compressor)
                         Z_DEFAULT_STRATEGY) == Z_OK;
 }
 
-/* Makes zstd allocate its memory now by compressing no bytes: it would otherwise allocate with the
- * first bytes, when failure is too late. */
+/* Prepares zstd. Compressing no bytes makes zstd allocate its memory now. Otherwise it would
+ * allocate with the first bytes, when it is too late to send the body uncompressed. */
 static bool begin_zstd(api_compressor *compressor)
 {
     ZSTD_inBuffer none = {"", 0, 0};
@@ -118,7 +119,9 @@ void api_compressor_give_up(api_compressor *compressor)
     compressor->as_it_is = true;
 }
 
-/* Each compresses the bytes from..to into `buffer`, and returns the number of bytes written. */
+/* The functions step_gzip, step_zstd and step_plain write the waiting input, compressed or
+ * unchanged, to `buffer` as far as it fits, and return the number of bytes written. The waiting
+ * input is pack->in from pack->from to pack->to. */
 static size_t step_gzip(api_compressor *compressor, char *buffer, size_t size)
 {
     z_stream *z = &compressor->zlib;

@@ -48,7 +48,8 @@ bool api_coding_of_body(const char *content_encoding, api_coding *out)
 
 bool api_coding_choose(const char *accept_encoding, api_codings *out)
 {
-    /* The weights are in thousandths; -1 means that the header does not name the coding. */
+    /* The weights (q) are in thousandths; -1 means that the header does not name the coding.
+     * `others` is the weight of "*". */
     int q[API_CODING_COUNT] = {-1, -1, -1}, others = -1;
     api_weighed item;
     for (const char *at = accept_encoding; api_media_next(&at, &item);) {
@@ -68,7 +69,8 @@ bool api_coding_choose(const char *accept_encoding, api_codings *out)
     for (api_coding c = 0; c < API_CODING_COUNT; c++) {
         int weight = q[c] >= 0 ? q[c] : c == API_ZSTD ? -1 : others;
         if (weight < 0) {
-            weight = c == API_IDENTITY ? 1 : 0; /* allowed with the lowest preference */
+            /* Identity is allowed, with the lowest preference. */
+            weight = c == API_IDENTITY ? 1 : 0;
         }
         out->allowed[c] = weight > 0;
         any = any || weight > 0;

@@ -31,7 +31,7 @@ static bool read_number(const char **at, uint64_t *out)
 
 typedef struct parts {
     size_t collection;       /* length of the collection's name */
-    const char *incarnation; /* 16 digits */
+    const char *incarnation; /* 16 hexadecimal digits */
     uint64_t revision, position;
 } parts;
 

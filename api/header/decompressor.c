@@ -15,21 +15,24 @@ struct api_decompressor {
     api_coding coding;
     bool (*take)(void *context, const char *bytes, size_t length);
     void *context;
-    uint64_t at;       /* bytes read of the compressed body */
-    uint64_t beyond;   /* bytes that earlier members or frames produced above the ratio */
-    uint64_t from, to; /* of this member or frame: compressed bytes, and bytes produced */
-    size_t turn;       /* bytes produced in this call */
-    bool inside;       /* inside a member or frame */
+    uint64_t at; /* number of bytes of the compressed body that were read */
+    /* Decompressed bytes by which earlier gzip members or zstd frames exceeded the ratio. */
+    uint64_t beyond;
+    /* Compressed and decompressed bytes of the present gzip member or zstd frame. */
+    uint64_t from, to;
+    size_t turn; /* bytes decompressed in this call of api_decompressor_feed */
+    bool inside; /* a gzip member or zstd frame has begun and not ended */
     api_decompressor_room *room;
-    api_decompressor_place *place; /* NULL: cannot be evicted */
+    /* Place of the decoder among those that can be evicted; NULL: it has none. */
+    api_decompressor_place *place;
     api_compression_memory memory;
     z_stream zlib;
     bool has_zlib;
-    bool deflated; /* the header of the gzip member was read */
+    bool deflated; /* the header of the present gzip member was read */
     ZSTD_DCtx *zstd;
-    size_t wanted; /* bytes up to the end of zstd's next header or block */
-    bool skipped;  /* inside a skippable frame */
-    unsigned char head[ZSTD_FRAMEHEADERSIZE_MAX]; /* the first bytes of a frame */
+    size_t wanted; /* bytes that zstd still needs to complete the next header or block */
+    bool skipped;  /* the present frame is a skippable one */
+    unsigned char head[ZSTD_FRAMEHEADERSIZE_MAX]; /* the first bytes of the present frame */
     size_t head_length;
     char piece[API_DECOMPRESS_PIECE];
 };
@@ -45,12 +48,12 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
                                  "memory is out: the body cannot be decompressed");
 }
 
-/* --- eviction --- */
+/* --- eviction of decoders --- */
 
 enum { EMPTY, BUSY, WAITING, TAKING, GONE };
 
-/* Finds a place for the decoder among those that can be evicted. Decoders of gzip are small and get
- * none. If no place is free, this decoder cannot be evicted. */
+/* Finds a place for a zstd decoder among the decoders that can be evicted. Decoders of gzip need
+ * little memory and get no place. If no place is free, this decoder cannot be evicted. */
 static void find_place(api_decompressor *u)
 {
     for (size_t i = 0; u->place == NULL && i < API_DECOMPRESS_PLACES; i++) {
@@ -64,7 +67,8 @@ static void find_place(api_decompressor *u)
     }
 }
 
-/* Moves the decoder from WAITING to BUSY. Returns false if it was evicted. */
+/* Changes the state of the decoder's place from WAITING to BUSY (decompressor.h). Returns false if
+ * the decoder was evicted. */
 static bool enter(api_decompressor *u)
 {
     int state = WAITING;
@@ -75,8 +79,8 @@ static bool enter(api_decompressor *u)
         if (state == GONE || state == BUSY) {
             return state == BUSY;
         }
-        /* This spins while another thread is TAKING the decoder, which lasts as long as freeing a
-         * block of memory. */
+        /* This loop spins while another thread evicts the decoder (state TAKING), which takes only
+         * as long as freeing a block of memory. */
         state = WAITING;
     }
     return true;
@@ -101,7 +105,8 @@ static double part_of(const api_decompressor_room *room, const api_decompressor_
     return all == 0 ? 1 : (double)atomic_load(&place->bytes) / (double)all;
 }
 
-/* Evicts the decoder with the slowest body. Returns false if no decoder is WAITING. */
+/* Evicts the decoder with the slowest body. Returns false if no decoder can be evicted now (state
+ * WAITING). */
 static bool take_slowest(void *context)
 {
     api_decompressor_room *room = context;
@@ -189,14 +194,16 @@ static bool refuse(const api_decompressor *u, api_problem *problem, const char *
                            (unsigned long long)u->at, api_coding_name(u->coding), why);
 }
 
-/* Returns how many bytes this member or frame has decompressed to beyond the allowed ratio. */
+/* Returns how many decompressed bytes of the present gzip member or zstd frame exceed the allowed
+ * ratio. */
 static uint64_t beyond(const api_decompressor *u)
 {
     uint64_t earned = u->from * API_DECOMPRESS_RATIO;
     return u->to > earned ? u->to - earned : 0;
 }
 
-/* Passes on `length` bytes of u->piece, unless the body would become too large. */
+/* Passes the first `length` bytes of u->piece to the callback. Refuses the body if its decompressed
+ * size exceeds the allowed ratio by too much. */
 static bool give(api_decompressor *u, size_t length, api_problem *problem)
 {
     u->to += length;
@@ -211,7 +218,7 @@ static bool give(api_decompressor *u, size_t length, api_problem *problem)
     return length == 0 || u->take(u->context, u->piece, length);
 }
 
-/* Ends a member or frame. */
+/* Ends a gzip member or zstd frame. */
 static void end_part(api_decompressor *u)
 {
     u->beyond += beyond(u);
@@ -219,7 +226,7 @@ static void end_part(api_decompressor *u)
     u->inside = false;
 }
 
-/* --- gzip --- */
+/* --- decompressing gzip --- */
 
 static bool refuse_gzip(api_decompressor *u, int status, api_problem *problem)
 {
@@ -276,7 +283,7 @@ static bool feed_gzip(api_decompressor *u, const unsigned char *bytes, size_t le
     return true;
 }
 
-/* --- zstd --- */
+/* --- decompressing zstd --- */
 
 static bool refuse_zstd(const api_decompressor *u, size_t code, api_problem *problem)
 {
@@ -293,8 +300,8 @@ static bool refuse_zstd(const api_decompressor *u, size_t code, api_problem *pro
     return refuse(u, problem, ZSTD_getErrorName(code));
 }
 
-/* Checks the length of a frame at its end, because zstd does not compare the lengths if the last
- * block is empty. */
+/* Ends a frame. It compares the decompressed length with the one in the frame's header, because
+ * zstd does not if the last block is empty. */
 static bool end_frame(api_decompressor *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
@@ -306,7 +313,8 @@ static bool end_frame(api_decompressor *u, api_problem *problem)
     return true;
 }
 
-/* Passes bytes to zstd, up to the end of the frame; `taken` gets the number that zstd read. */
+/* Decompresses bytes, at most up to the end of the frame; `taken` gets the number of bytes that
+ * zstd read. */
 static bool decode(api_decompressor *u, const unsigned char *bytes, size_t length, size_t *taken,
                    api_problem *problem)
 {
@@ -331,8 +339,8 @@ static bool decode(api_decompressor *u, const unsigned char *bytes, size_t lengt
     return !ended || end_frame(u, problem);
 }
 
-/* Checks the start of a frame: older formats, which the library may support, are not the zstd
- * coding. */
+/* Begins a frame whose magic number has arrived. The magic number is checked here, because the
+ * library may also accept older formats, which the content coding "zstd" does not include. */
 static bool begin_frame(api_decompressor *u, api_problem *problem)
 {
     uint32_t magic = 0;
@@ -370,7 +378,7 @@ static bool feed_zstd(api_decompressor *u, const unsigned char *bytes, size_t le
             }
         } else {
             /* zstd gets no more than the next header or block at once, so that a refusal names the
-             * right offset. */
+             * offset of the block at fault. */
             size_t left = length - at, most = u->wanted < left ? u->wanted : left;
             keep_head(u, bytes + at, most);
             if (!decode(u, bytes + at, most, &taken, problem)) {

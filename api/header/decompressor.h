@@ -1,10 +1,11 @@
-/* decompressor.h - a compressed body (gzip or zstd), decompressed as it arrives.
+/* decompressor.h - decompresses a request's body (gzip or zstd) as it arrives.
  *
  *     api_decompressor_new -> api_decompressor_feed ... -> api_decompressor_end
  *
  * A body may be several gzip members or zstd frames in a row, skippable frames included, as their
  * RFCs allow. The output is passed to a callback in pieces of at most API_DECOMPRESS_PIECE bytes
- * and not kept. These are refused, with the offset in the compressed body:
+ * and not kept. A body is refused with one of these problems, most of which name the offset in the
+ * compressed body:
  *
  *   bad_encoding           400  the bytes are not in this format, the checksum or length does not
  *                               match, other bytes follow, or the body ends too early
@@ -16,12 +17,12 @@
  *                               evicted, or this decoder was evicted
  *   no_memory              507
  *
- * The callback limits the size of the body.
+ * The size of the whole decompressed body is limited by the callback.
  *
- * A slow sender would occupy a window of 8 MiB for minutes. So when there is no memory for another
- * zstd decoder, the decoder with the slowest body is evicted: the one that received the smallest
- * share of all compressed bytes that arrived since it began. Its request fails at the next
- * piece. */
+ * A slow client would occupy the 8 MiB of its decoder's window for minutes. So when there is no
+ * memory for another zstd decoder, the decoder with the slowest body is evicted: the one that
+ * received the smallest share of all compressed bytes that arrived since it began. Its request
+ * fails at the next piece. */
 #ifndef HE_API_HEADER_DECOMPRESSOR_H
 #define HE_API_HEADER_DECOMPRESSOR_H
 
@@ -35,9 +36,10 @@ typedef struct api_decompressor api_decompressor;
 
 enum { API_DECOMPRESS_PIECE = 32 * 1024, API_DECOMPRESS_PLACES = API_MAX_DECOMPRESSING >> 20 };
 
-/* The place of a decoder that can be evicted. Its owner (the request, while feeding or ending it)
- * and a newcomer (another request, while evicting it) need exclusive access, which each gains by a
- * transition from WAITING.
+/* The place of a decoder that can be evicted. The decoder's request (the owner, below) needs
+ * exclusive access while it decompresses; another request (the newcomer), which needs memory, needs
+ * it while it evicts the decoder. Each gains exclusive access by changing the state from WAITING to
+ * another.
  *
  *     EMPTY --owner--> BUSY <--owner--> WAITING --newcomer--> TAKING --newcomer--> GONE
  *       ^--------owner---'                                                          |
@@ -45,15 +47,15 @@ enum { API_DECOMPRESS_PIECE = 32 * 1024, API_DECOMPRESS_PLACES = API_MAX_DECOMPR
 typedef struct api_decompressor_place {
     _Atomic int state; /* one of the states above; EMPTY is 0 */
     _Atomic(api_decompressor *) owner;
-    /* `began` is the value of the room's `arrived` when this body began; `bytes` counts the bytes
-     * of this body. */
+    /* The value that the room's `arrived` had when this body began, and the number of compressed
+     * bytes of this body since. */
     _Atomic uint64_t began, bytes;
 } api_decompressor_place;
 
-/* The state that all decoders of a service share. It begins with all zeros. */
+/* The state that all decoders of a service share. Initially it is all zeros. */
 typedef struct api_decompressor_room {
-    _Atomic size_t lent;      /* bytes allocated, at most API_MAX_DECOMPRESSING */
-    _Atomic uint64_t arrived; /* compressed bytes of all bodies so far */
+    _Atomic size_t lent; /* bytes that all decoders have allocated, at most API_MAX_DECOMPRESSING */
+    _Atomic uint64_t arrived; /* compressed bytes of all bodies since the server started */
     api_decompressor_place places[API_DECOMPRESS_PLACES];
 } api_decompressor_room;
 
@@ -67,8 +69,8 @@ api_decompressor *api_decompressor_new(api_coding coding, api_decompressor_room 
 void api_decompressor_free(api_decompressor *u);
 /* Decompresses bytes of the body. `used` may be less than `length` if API_DECOMPRESS_TURN bytes
  * were decompressed: the caller then serves other requests before it feeds the rest.
- * Returns false if the body is refused, with the problem filled, or if `take` wants no more;
- * neither this nor api_decompressor_end may be called again then. */
+ * Returns false if the body is refused, with the problem filled, or if `take` returned false; then
+ * neither this function nor api_decompressor_end may be called again. */
 bool api_decompressor_feed(api_decompressor *u, const char *bytes, size_t length, size_t *used,
                            api_problem *problem);
 /* Ends the body, and checks that it is complete. An empty body is valid. */

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Writes the part of a tag that changes with the mesh. It does not use printf, because nearly every
- * answer has a tag. */
+/* Writes the part of a tag that changes with the mesh. printf is avoided for speed, because nearly
+ * every answer has a tag. */
 static size_t write_state(const st_mesh_info *info, char out[API_ETAG])
 {
     static const char digits[] = "0123456789abcdef";
@@ -34,7 +34,8 @@ void api_etag_write(const st_mesh_info *info, const char *representation, char o
     memcpy(out + used + length, "\"", 2);
 }
 
-/* Steps through a list of entity tags. Returns false at the end or where the list is malformed. */
+/* Steps through a list of entity tags. Returns false at the end of the list, or at an entry that is
+ * malformed. */
 static bool next_tag(const char **at, bool *weak, const char **tag, size_t *length)
 {
     *at += strspn(*at, " \t,");

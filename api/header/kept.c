@@ -10,20 +10,22 @@
 
 enum { TAG = 24 };
 
-/* The body in one coding. */
+/* A body compressed with one content coding. */
 typedef struct form {
     size_t length;
     char bytes[];
 } form;
 
 struct api_kept {
-    _Atomic(form *) forms[API_IDENTITY]; /* by coding; NULL: not made yet */
+    /* The compressed bodies, indexed by coding; NULL: not made yet. */
+    _Atomic(form *) forms[API_IDENTITY];
     char etag[TAG];
     size_t length;
     char bytes[];
 };
 
-/* Returns the hash FNV-1a (Fowler, Noll, Vo) of the bytes. A tag need not resist attackers. */
+/* Returns the hash FNV-1a (Fowler, Noll, Vo) of the bytes. It is used for the entity tag, which
+ * need not resist attackers. */
 static uint64_t hash(const char *bytes, size_t length)
 {
     uint64_t value = UINT64_C(0xcbf29ce484222325);
@@ -70,7 +72,8 @@ const char *api_kept_etag(const api_kept *kept)
 /* Returns the body compressed, or NULL when memory is out. */
 static form *compress(const api_kept *kept, api_coding coding)
 {
-    const size_t room = kept->length + kept->length / 4 + 512; /* more than either library needs */
+    /* More than zlib or zstd needs in the worst case. */
+    const size_t room = kept->length + kept->length / 4 + 512;
     const api_plain plain = {.bytes = kept->bytes, .length = kept->length};
     form *made = he_mem_alloc(sizeof *made + room);
     api_compressor *compressor = api_compressor_new(coding, &plain);
@@ -97,7 +100,8 @@ bool api_kept_coded(api_kept *kept, api_coding coding, const char **bytes, size_
         if (made == NULL) {
             return false;
         }
-        /* If another thread was faster, its form is in `found` and is used. */
+        /* If another thread was faster, `found` now points to the form that it made, which is
+         * used. */
         if (atomic_compare_exchange_strong(&kept->forms[coding], &found, made)) {
             found = made;
         } else {

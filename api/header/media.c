@@ -22,7 +22,7 @@ bool api_equal_nocase(const char *a, const char *b)
     return equal(a, strlen(a), b);
 }
 
-/* A part of a header, without blanks around it. */
+/* A part of a header's value, borrowed, without blanks around it. */
 typedef struct piece {
     const char *at;
     size_t length;
@@ -40,7 +40,7 @@ static piece trim(const char *at, size_t length)
     return (piece){at, length};
 }
 
-/* Reads the next piece of *rest, up to `separator`, which does not count inside quoted strings.
+/* Reads the next piece of *rest, up to the next `separator` that is not inside a quoted string.
  * Returns false when no piece is left. */
 static bool next_piece(piece *rest, char separator, piece *out)
 {
@@ -121,8 +121,8 @@ static int read_q(piece value)
     return q <= 1000 ? q : -1;
 }
 
-/* Returns how specifically a media range matches a type: 0 not at all, 1 by any/any, 2 by type/any,
- * 3 by its exact name. */
+/* Returns how specifically a media range matches a type: 0 not at all, 1 if the range matches all
+ * types, 2 if it matches all subtypes of the type, 3 if it names the type. */
 static int closeness(piece range, const char *type)
 {
     if (equal(range.at, range.length, "*/*")) {
@@ -137,7 +137,7 @@ static int closeness(piece range, const char *type)
     }
     for (size_t i = 0; i + 1 < range.length; i++) {
         if (lower(range.at[i]) != lower(type[i])) {
-            return 0; /* also if the type is shorter than the range */
+            return 0; /* the NUL at the end of a type that is shorter than the range also differs */
         }
     }
     return 2;

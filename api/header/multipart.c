@@ -11,27 +11,30 @@ enum { BOUNDARY = 70, DELIMITER = BOUNDARY + 4 };
 
 typedef enum state {
     SEEK,    /* reads a part (or the preamble) up to the next delimiter */
-    CLOSE,   /* reads what ends the delimiter's line */
+    CLOSE,   /* reads the rest of a delimiter's line */
     HEADERS, /* reads the headers of a part */
     EPILOGUE
 } state;
 
 struct api_multipart {
     state state;
-    uint64_t seen;             /* bytes before the present piece of the body */
-    char delimiter[DELIMITER]; /* CR LF - - and the boundary */
-    size_t length, matched;    /* `matched`: how many of its bytes were just seen */
-    size_t implied;   /* how many matched bytes belong to the line before, not to the part */
-    bool inside;      /* inside a part */
-    char close;       /* '-' or CR if that byte followed a delimiter */
+    uint64_t seen;             /* number of bytes read so far */
+    char delimiter[DELIMITER]; /* CR, LF, "--" and the boundary */
+    /* The length of `delimiter`, and how many of its bytes the last bytes read match. */
+    size_t length, matched;
+    /* How many of the matched bytes cannot be content of a part, because they end the line before
+     * the content. */
+    size_t implied;
+    bool inside;      /* the content of a part is being read */
+    char close;       /* the last byte read after a delimiter; 0: none yet */
     size_t parts;     /* number of parts begun */
-    uint64_t head_at; /* offset of the part's headers */
+    uint64_t head_at; /* offset in the body of the headers of the present part */
     size_t head_length;
     char head[API_MAX_PART_HEADERS];
     char name[API_MAX_PART_NAME + 1], type[API_MAX_PART_NAME + 1];
 };
 
-/* --- parameters of a header: *( ";" name "=" value ) --- */
+/* --- parameters of a header's value: *( ";" name "=" value ) --- */
 
 typedef struct parameter {
     const char *name;
@@ -71,8 +74,8 @@ static bool put(parameter *out, char c)
     return true;
 }
 
-/* Reads a quoted value. Returns the position after the closing quote; NULL if there is none or the
- * value is too long. */
+/* Reads a quoted value. Returns the position after the closing quote; NULL if there is no closing
+ * quote or the value is too long. */
 static const char *read_quoted(const char *p, const char *end, parameter *out)
 {
     for (p++; p < end && *p != '"'; p++) {
@@ -128,7 +131,7 @@ static found next_parameter(const char **at, const char *end, parameter *out)
     return p == NULL ? WRONG : FOUND;
 }
 
-/* Returns true if the bytes are this word, without regard to letter case. */
+/* Returns true if the bytes from `p` to `end` are this word, ignoring letter case. */
 static bool is_word(const char *p, const char *end, const char *word)
 {
     size_t length = strlen(word);
@@ -140,7 +143,7 @@ static bool is_named(const parameter *p, const char *name)
     return is_word(p->name, p->name + p->name_length, name);
 }
 
-/* --- the boundary --- */
+/* --- finding the boundary --- */
 
 static bool is_boundary(const char *text, size_t length)
 {
@@ -188,7 +191,8 @@ api_multipart *api_multipart_new(const char *content_type, api_problem *problem)
     memcpy(m->delimiter, "\r\n--", 4);
     memcpy(m->delimiter + 4, boundary.value, boundary.length);
     m->length = 4 + boundary.length;
-    /* The first delimiter may stand at the very beginning of the body, without CR LF before it. */
+    /* CR LF count as matched, because the first delimiter may stand at the very beginning of the
+     * body, without them. */
     m->matched = m->implied = 2;
     return m;
 }
@@ -198,7 +202,7 @@ void api_multipart_free(api_multipart *m)
     he_mem_free(m);
 }
 
-/* --- headers --- */
+/* --- headers of a part --- */
 
 static api_multipart_step refuse(api_problem *problem, uint64_t at, const char *why)
 {
@@ -322,8 +326,8 @@ static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *ou
     }
     m->state = SEEK;
     m->inside = true;
-    /* If a part is empty, the CR LF of the empty line after its headers is the beginning of the
-     * delimiter. */
+    /* CR LF count as matched, because in an empty part the CR LF of the empty line after the
+     * headers is the beginning of the next delimiter. */
     m->matched = m->implied = 2;
     out->part = (api_part){m->name, seen.type ? m->type : NULL};
     return API_MULTIPART_BEGIN;
@@ -331,9 +335,9 @@ static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *ou
 
 /* --- reading bytes of parts and delimiters --- */
 
-/* Reads up to the next delimiter. Bytes that match the beginning of the delimiter turn out to
- * belong to the part when a later byte differs. CR is the first byte of the delimiter and occurs
- * nowhere else in it, so no byte has to be compared twice. */
+/* Reads bytes of a part up to the next delimiter. Bytes that match the beginning of the delimiter
+ * are held back; if a later byte differs, they belong to the part. CR is the first byte of the
+ * delimiter and occurs nowhere else in it, so no byte has to be compared twice. */
 static api_multipart_step seek(api_multipart *m, const char **at, const char *end,
                                api_multipart_piece *out)
 {
@@ -368,7 +372,8 @@ static api_multipart_step seek(api_multipart *m, const char **at, const char *en
     return m->inside && out->length > 0 ? API_MULTIPART_BYTES : API_MULTIPART_MORE;
 }
 
-/* Reads what follows a boundary: "--", or blanks and CR LF. */
+/* Reads a byte after a boundary, where "--", or blanks and CR LF, must follow. Returns false if
+ * another byte follows. */
 static bool close_delimiter(api_multipart *m, char c)
 {
     if (m->close == '-' || m->close == '\r') {

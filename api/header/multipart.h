@@ -1,4 +1,5 @@
-/* multipart.h - a body of several files: multipart/form-data (RFC 7578), read as it arrives.
+/* multipart.h - reads a body that contains several files, multipart/form-data (RFC 7578), as it
+ * arrives.
  *
  *     api_multipart_new -> api_multipart_next ... -> api_multipart_end
  *
@@ -10,15 +11,15 @@
  *     --BOUNDARY--
  *
  * Names are UTF-8 without control characters. In a quoted name \" and \\ stand for " and \, and %22
- * stands for ", as browsers write it; any other backslash or escape is taken literally. A part
- * without a filename is called by its field name. Bytes before the first and after the last
- * delimiter are skipped, and so are unknown headers.
+ * stands for ", as browsers write it; any other backslash or escape is taken literally. The name of
+ * a part without a filename is its field name. Bytes before the first and after the last delimiter
+ * are skipped, and so are unknown headers.
  *
- * These are refused as bad_multipart (400), with the offset in the body: lines that are no headers,
- * a part without a name or with another disposition, a parameter given twice, filename* (which RFC
- * 7578 does not allow), a part that is itself multipart or has a transfer coding, more than
- * API_MAX_PARTS, more than API_MAX_PART_HEADERS bytes of headers, a name longer than
- * API_MAX_PART_NAME, a body that ends before its last delimiter. */
+ * These bodies are refused as bad_multipart (400), with the offset of the fault: lines where a
+ * header should be but is not, a part without a name or with a disposition other than form-data, a
+ * parameter given twice, filename* (which RFC 7578 does not allow), a part that is itself multipart
+ * or has a transfer coding, more than API_MAX_PARTS, more than API_MAX_PART_HEADERS bytes of
+ * headers, a name longer than API_MAX_PART_NAME, a body that ends before its last delimiter. */
 #ifndef HE_API_HEADER_MULTIPART_H
 #define HE_API_HEADER_MULTIPART_H
 
@@ -29,9 +30,9 @@ typedef struct api_multipart api_multipart;
 
 /* What api_multipart_next found in the bytes. */
 typedef enum api_multipart_step {
-    API_MULTIPART_MORE,  /* all bytes are used: more are needed */
+    API_MULTIPART_MORE,  /* all bytes were read: more are needed */
     API_MULTIPART_BEGIN, /* a part begins: `part` describes it */
-    API_MULTIPART_BYTES, /* `bytes` hold content of the part, until the next call */
+    API_MULTIPART_BYTES, /* `bytes` has content of the part, valid until the next call */
     API_MULTIPART_END,   /* the part ends */
     API_MULTIPART_BAD    /* refused: the problem is filled; no call may follow */
 } api_multipart_step;
@@ -39,8 +40,8 @@ typedef enum api_multipart_step {
 /* A part of the body: the name and type from its headers. The texts are valid until the next part
  * begins. */
 typedef struct api_part {
-    const char *name; /* file name, or else the field name */
-    const char *type; /* Content-Type, or NULL */
+    const char *name; /* file name; the field name if there is none */
+    const char *type; /* value of the part's Content-Type; NULL if it has none */
 } api_part;
 
 typedef struct api_multipart_piece {
@@ -54,8 +55,8 @@ typedef struct api_multipart_piece {
  * Returns NULL with bad_header or no_memory. */
 api_multipart *api_multipart_new(const char *content_type, api_problem *problem);
 void api_multipart_free(api_multipart *m);
-/* Reads bytes of the body from *at up to `end`, until it finds something to report, and moves *at
- * past the bytes it used. */
+/* Reads the body from *at, at most to `end`, until there is something to report, and moves *at past
+ * the bytes that it has read. */
 api_multipart_step api_multipart_next(api_multipart *m, const char **at, const char *end,
                                       api_multipart_piece *out, api_problem *problem);
 /* Ends the body. Returns false with the problem filled if the last delimiter is missing. */

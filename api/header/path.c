@@ -13,8 +13,8 @@ static int hex(char c)
                                   : -1;
 }
 
-/* Decodes percent escapes into the arena. Returns NULL with the problem filled if an escape is
- * malformed or memory is out. */
+/* Returns a copy of `raw` in the arena with percent escapes decoded. Returns NULL with the problem
+ * filled if the result is not allowed (path.h) or memory is out. */
 static const char *decode(api_bytes raw, int code, bool slash, api_arena *arena,
                           api_problem *problem)
 {

@@ -1,9 +1,9 @@
 /* path.h - splits and decodes the target of a request: its path and its query.
  *
- * The raw path is split at '/' and each segment decoded afterwards, so that an encoded slash never
- * makes another segment. In the last segment an encoded slash is part of the text, because
- * attribute names may contain one; elsewhere it is refused. %00, malformed escapes and bytes that
- * are not UTF-8 are refused everywhere. */
+ * The raw path is split at '/' and each segment decoded afterwards, so that an encoded slash (%2F)
+ * never separates segments. It is allowed in the last segment, because attribute names may contain
+ * a slash, and refused elsewhere. %00, malformed escapes and bytes that are not UTF-8 are refused
+ * everywhere. */
 #ifndef HE_API_HEADER_PATH_H
 #define HE_API_HEADER_PATH_H
 
@@ -12,9 +12,9 @@
 #include "api/limits.h"
 
 typedef struct api_path {
-    const char *segments[API_MAX_SEGMENTS]; /* decoded, in the arena */
+    const char *segments[API_MAX_SEGMENTS]; /* decoded; their memory is in the arena */
     size_t count;                           /* 0 for "/" */
-    bool has_slash;                         /* the last segment contains an escaped slash */
+    bool has_slash;                         /* the last segment contains an encoded slash */
 } api_path;
 
 /* Splits a path into segments and decodes them. Returns false with bad_path (400), with
@@ -22,7 +22,7 @@ typedef struct api_path {
  * or with no_memory. */
 bool api_path_split(const char *raw, api_arena *arena, api_path *out, api_problem *problem);
 
-/* One name=value pair of the query, decoded; '+' is a plus sign, not a space. */
+/* One name=value pair of the query, percent-decoded; '+' means a plus sign, not a space. */
 typedef struct api_pair {
     const char *name, *value;
 } api_pair;

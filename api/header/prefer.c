@@ -5,10 +5,11 @@
 #include <stddef.h>
 #include <string.h>
 
-/* The longest wait that is accepted, which is longer than any request may take. */
+/* No request takes this many seconds, so the digits of a "wait" that is longer are not read to the
+ * end. */
 enum { MOST_SECONDS = 1000000 };
 
-/* Reads the seconds after "wait=" at the start of a preference. */
+/* Returns the seconds N of the preference "wait=N" in the header, or -1 if there is none. */
 static double read_wait(const char *header)
 {
     static const char name[] = "wait=";

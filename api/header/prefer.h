@@ -1,4 +1,5 @@
-/* prefer.h - the Prefer header (RFC 7240): optional wishes of a client. */
+/* prefer.h - reads the header Prefer (RFC 7240), by which a client says how it would like to be
+ * answered. */
 #ifndef HE_API_HEADER_PREFER_H
 #define HE_API_HEADER_PREFER_H
 

@@ -1,4 +1,4 @@
-/* request_header.h - the headers of a request that this API reads.
+/* request_header.h - the table of the request headers that the API reads.
  *
  * The server fills in an array of their values (api_request in request/api.h). A header that is not
  * in the table is not read by any handler. */
@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Each row: X(constant, name, whether the header is a list, whose lines make up one value (RFC 9110
- * 5.3)) */
+/* Each row: X(constant, name, true if the header is a list). Several lines of a list are joined to
+ * one value (RFC 9110 5.3). */
 #define API_REQUEST_HEADER_MAP(X)                 \
     X(ACCEPT, "Accept", true)                     \
     X(ACCEPT_ENCODING, "Accept-Encoding", true)   \

@@ -18,7 +18,7 @@ enum { API_JOB_STATES = API_JOB_CANCELLED + 1 };
 
 enum { API_JOB_ID = ST_JOB_ID, API_JOB_LOCATION = sizeof "/v1/meshes/" + ST_MESH_ID };
 
-/* The headers of its answer that a job keeps, in the order of api_job_header_names. */
+/* The number of headers that a job keeps of its answer; api_job_header_names has their names. */
 enum { API_JOB_HEADERS = 4 };
 extern const char *const api_job_header_names[API_JOB_HEADERS];
 
@@ -27,20 +27,23 @@ typedef struct api_job {
     char id[API_JOB_ID + 1]; /* random, so that no client can guess it */
     /* The name of the token that started the job; "" if there was no token. */
     char holder[API_TOKEN_NAME + 1];
-    uint64_t number; /* in the order of submission, from 1 */
+    uint64_t number; /* jobs are numbered from 1 in the order of submission */
     api_job_state state;
-    const char *operation;             /* name of the route */
-    const char *phase;                 /* what the work is doing, "" before it runs */
-    double progress;                   /* 0 to 1, never decreases */
-    char mesh[ST_MESH_ID + 1];         /* id of its mesh; "" while the mesh has no id */
-    double created, started, finished; /* seconds since 1970 UTC; 0: not yet */
+    const char *operation;     /* operationId of the request's route */
+    const char *phase;         /* what the work is doing, such as "writing"; "" before it runs */
+    double progress;           /* fraction of the work that is done, 0 to 1; never decreases */
+    char mesh[ST_MESH_ID + 1]; /* id of its mesh; "" while the mesh has no id */
+    double created, started, finished; /* times in seconds since 1970 UTC; 0: not yet */
     int status;                        /* HTTP status of the answer; 0: no answer yet */
-    char location[API_JOB_LOCATION];   /* Location of the answer; "": none */
-    const char *body;                  /* borrowed for the call; NULL: no answer, or not kept */
+    char location[API_JOB_LOCATION];   /* value of the answer's header Location; "": none */
+    /* The answer's body, valid only while the callback that got this struct runs; NULL: there is no
+     * answer yet, or it was not kept. */
+    const char *body;
     size_t length;
-    api_blob blob; /* borrowed: the answer, if it is not in `body` */
-    bool shown;    /* `body` is JSON and part of the job's own representation */
-    /* The values of these headers, borrowed for the call; NULL for a header that is missing. */
+    api_blob blob; /* the answer, if it is not in `body`; valid as long as `body` would be */
+    bool shown;    /* `body` is JSON, and GET /v1/jobs/{job} shows it as a part of the job */
+    /* The values of the answer's headers, in the order of api_job_header_names, valid as long as
+     * `body`; NULL for a header that the answer does not have. */
     const char *headers[API_JOB_HEADERS];
 } api_job;
 

@@ -9,22 +9,22 @@
 #include <string.h>
 
 struct api_job_listener {
-    api_job_entry *job; /* with one use */
-    api_text text;      /* being sent */
+    api_job_entry *job; /* the job; the listener is counted in its `uses` */
+    api_text text;      /* the message that is being sent */
     size_t sent;
     bool begun, ended, stopping;
-    /* the state last sent */
+    /* the job as the last message described it */
     api_job_state state;
     const char *phase;
     double progress;
 
     void (*wake)(void *context);
     void *context;
-    bool waiting; /* it is in the job's list of listeners to wake */
+    bool waiting; /* the listener is in the job's list `waiting` */
     api_job_listener *next;
 };
 
-/* Progress smaller than this is not worth a message. */
+/* A message is sent when the progress has grown by this fraction of the whole work. */
 static const double STEP = 0.005;
 
 void api_job_entry_wake(api_job_entry *job)
@@ -52,8 +52,8 @@ static bool is_news(const api_job_listener *l, const api_job *facts)
            l->phase != facts->phase;
 }
 
-/* Writes the next message of a job's stream, or arranges that the listener is woken for it. Returns
- * false at the end. */
+/* Writes the next message of the stream to l->text. If there is no news of the job, the text is
+ * empty and the listener will be woken. Returns false at the end of the stream. */
 static bool next_message(api_job_listener *l)
 {
     api_job_entry *job = l->job;

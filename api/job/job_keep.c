@@ -1,7 +1,8 @@
 /* job_keep.c - keeps jobs across a restart: stores and loads them.
  *
- * A job is recorded when it is accepted and when it ends; the journal's records of its work show on
- * their own that it was done. So a job that is found without an end has changed nothing. */
+ * A job is recorded when it is accepted and when it ends. If its work changed a mesh, the journal's
+ * record of that change also shows that the job was done. So a job without a recorded end or change
+ * has changed nothing. */
 #include "api/job/job_entry.h"
 #include "api/json/problem.h"
 #include "base/mem.h"
@@ -10,11 +11,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The largest answer that is kept across a restart. */
+/* The largest body of an answer that is kept across a restart, in bytes. */
 enum { KEPT_BODY = 64 << 10 };
 
-/* Returns the state's number in the journal. Journals on disk contain the numbers of st_job_state,
- * so these must not depend on the order of api_job_state. */
+/* Returns the number that stands for the state in the journal. Journals on disk contain numbers of
+ * st_job_state, so that they do not depend on the order of api_job_state. */
 static st_job_state kept_state(api_job_state state)
 {
     switch (state) {
@@ -92,11 +93,12 @@ st_status api_job_forget(const api_job_entry *j)
     return j->is_kept ? st_job_forget(j->table->options.store, j->facts.id, &position) : ST_OK;
 }
 
-/* --- after a restart --- */
+/* --- loading jobs after a restart --- */
 
 enum { TEXTS = 2 + API_JOB_HEADERS };
 
-/* Copies the texts of a stored job that have no fixed size. Returns false when memory is out. */
+/* Copies those texts of a stored job for which api_job has only a pointer. Returns false when
+ * memory is out. */
 static bool copy_texts(api_job_entry *j, const st_job *job)
 {
     const char *from[TEXTS] = {job->operation, job->phase};
@@ -139,8 +141,8 @@ static bool copy_body(api_job_entry *j, const st_job *job)
     return true;
 }
 
-/* Restores the header Location, if the record of the work shows that it was done, but the answer
- * was not recorded before the restart. */
+/* Restores the header Location of a job that made a mesh, if the journal has the record of the new
+ * mesh but not of the job's answer. */
 static void locate(api_job *facts)
 {
     enum { CREATED = 201 };
@@ -224,8 +226,8 @@ bool api_job_restore(api_job_table *table)
     if (st_jobs_kept(table->options.store, take, table) != ST_OK) {
         return false;
     }
-    /* These ends are recorded after all jobs were read, because nothing can be recorded before. At
-     * the next restart these jobs are found as ended. */
+    /* The ends of interrupted jobs are recorded only now, because nothing can be recorded while
+     * jobs are read from the store. At the next restart these jobs are found as ended. */
     for (api_job_entry *j = table->first; j != NULL; j = j->next) {
         uint64_t position;
         if (j->interrupted) {

@@ -1,9 +1,9 @@
-/* job_measure.c - statistics of the table of jobs, for metrics. */
+/* job_measure.c - measures the table of jobs for the metrics. */
 #include "api/job/job_entry.h"
 
 static uint64_t micros_between(double from, double to)
 {
-    return to > from ? (uint64_t)((to - from) * 1e6) : 0; /* the system clock may be set back */
+    return to > from ? (uint64_t)((to - from) * 1e6) : 0; /* 0 if the system clock was set back */
 }
 
 void api_job_count_begin(api_job_entry *job)

@@ -27,7 +27,7 @@ void api_job_result_path(const api_job *job, char out[API_JOB_RESULT_PATH])
     }
 }
 
-/* A job as its members show it. */
+/* A job with the values of its JSON members that are not in api_job. */
 typedef struct shown {
     api_job job;
     const char *state;
@@ -36,7 +36,7 @@ typedef struct shown {
     char link[API_JOB_RESULT_PATH];
 } shown;
 
-/* Writes the body of the answer. */
+/* Writes the body of the job's answer if it is JSON that the job shows, else null. */
 static void write_body(api_out *out, const void *value)
 {
     const api_job *job = &((const shown *)value)->job;
@@ -86,7 +86,7 @@ static const api_field state_fields[] = {
 const api_record api_job_state_record = {"job_state_told", state_fields,
                                          sizeof state_fields / sizeof *state_fields};
 
-/* Fills `out` with a job as its members show it; `whole` adds the body of the answer. */
+/* Computes the values of a job's JSON members; `whole` includes the body of the answer. */
 static void show(const api_job *job, bool whole, shown *out)
 {
     const bool ended = job->state >= API_JOB_DONE;

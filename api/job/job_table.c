@@ -15,8 +15,8 @@
 const char *const api_job_header_names[API_JOB_HEADERS] = {"Content-Type", "Content-Disposition",
                                                            "ETag", "Export-Warnings"};
 
-/* Sends the state of a job to the listeners of its mesh. The mesh is passed by reference, not by
- * id, because a new mesh with this id must not get it. */
+/* Sends the state of a job to the listeners of its mesh. The mesh is passed as a pointer, not by
+ * its id, because a new mesh that has got this id must not get the event. */
 static void tell_listeners(st_mesh *mesh, const api_job *job)
 {
     if (mesh != NULL && st_is_followed(mesh)) {
@@ -35,7 +35,7 @@ static void free_work(api_job_work *work)
     }
 }
 
-/* --- the list of jobs, while the table's lock is held --- */
+/* --- the list of jobs; callers hold the table's lock --- */
 
 static void free_blob(api_job_entry *j)
 {
@@ -89,7 +89,7 @@ static void take_out(api_job_table *table, api_job_entry *j)
 
 static void forget(api_job_table *table, api_job_entry *j)
 {
-    (void)api_job_forget(j); /* on failure, the record expires by age */
+    (void)api_job_forget(j); /* if that fails, the record is deleted later because of its age */
     take_out(table, j);
 }
 
@@ -106,8 +106,9 @@ static api_job_entry *ended_first(const api_job_table *table)
     return found;
 }
 
-/* Drops jobs that have ended, to keep to the limits and to make space for `room` more jobs. The
- * newest answer stays, however large it is. */
+/* Drops jobs that have ended: those that are too old, and those that ended first while the table
+ * exceeds its limits or lacks space for `room` more jobs. The last answer is kept, however large it
+ * is. */
 static void tidy(api_job_table *table, size_t room)
 {
     double now = st_clock_utc();
@@ -145,9 +146,9 @@ api_job_entry *api_job_entry_find(const api_job_table *table, api_job_wanted wan
     return j != NULL && api_job_entry_is_seen(j, wanted.viewer) ? j : NULL;
 }
 
-/* --- running --- */
+/* --- running a job --- */
 
-/* Listeners are woken when the progress has grown by this much. */
+/* Listeners are woken when the progress has grown by this fraction of the whole work. */
 static const double WORTH = 0.005;
 
 static bool tell(void *context, const char *phase, double done)
@@ -183,7 +184,8 @@ static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
     return length == 0 || at != NULL;
 }
 
-/* Stores the answer in the job. If there is no memory for the headers, the body is dropped. */
+/* Stores the answer of the work in the job. If there is no memory for its headers, the body is
+ * dropped. */
 static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
 {
     j->facts.status = outcome->status;
@@ -206,7 +208,8 @@ static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
     j->facts.shown = outcome->shown;
 }
 
-/* Ends a job. Its work is freed first, so that its memory is free when clients see the end. */
+/* Ends a job. The work is freed first, so that the memory it used is free when clients see the
+ * end. */
 static void end(api_job_entry *j)
 {
     api_job_table *table = j->table;
@@ -233,8 +236,8 @@ static void end(api_job_entry *j)
     st_release(about);
 }
 
-/* Replaces the answer of a job whose change may never be in the journal. When memory is out, only
- * the status remains. */
+/* Replaces the answer by a problem, because the job's change could not be made durable, or may not
+ * be. When memory is out, only the status remains. */
 static void answer_lost(api_job_entry *j)
 {
     api_problem problem = {0};
@@ -284,8 +287,9 @@ static void decide_end(api_job_entry *j)
     j->noted = 0;
 }
 
-/* Records the end of a job in the store. A job that was cancelled because the server stops gets no
- * such record: after the restart it is found without an end, and marked as interrupted. */
+/* Decides in which state a job ends and records the end in the store. If the job was cancelled
+ * because the server stops, its end is not recorded: after the restart it is found without an end
+ * and marked as interrupted. */
 static void note_end(api_job_entry *j)
 {
     uint64_t position;
@@ -296,9 +300,9 @@ static void note_end(api_job_entry *j)
     }
 }
 
-/* Called when the changes of the work are durable, when they never will be, or when the server
- * stops. It then waits for the record of the job's end, so that a job that clients saw as done is
- * still done after a crash. */
+/* Called when the changes of the work are durable, when they are lost, or when the server stops.
+ * Ends the job when the record of its end is durable as well, so that a job that clients saw as
+ * done is still done after a crash. */
 static void resume(st_wait *wait)
 {
     api_job_entry *j = waiter(wait);
@@ -309,7 +313,7 @@ static void resume(st_wait *wait)
         answer_lost(j);
         note_end(j);
         break;
-    case ST_WAIT_STOPPED: /* the record may still become durable */
+    case ST_WAIT_STOPPED: /* the changes may still become durable */
         answer_lost(j);
         decide_end(j);
         break;
@@ -359,7 +363,8 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    tell_listeners(j->about, &facts); /* without the lock: `about` is released only at the end */
+    /* Needs no lock: `about` is released only when the job ends. */
+    tell_listeners(j->about, &facts);
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
     pthread_mutex_lock(&table->lock);
@@ -368,7 +373,7 @@ static void run(void *context)
     end_when_durable(j, &outcome);
 }
 
-/* --- the interface of job_table.h --- */
+/* --- the functions of job_table.h --- */
 
 const api_job *api_job_entry_facts(api_job_entry *j)
 {
@@ -419,8 +424,8 @@ static void resume_accepted(st_wait *wait)
     pthread_mutex_unlock(&table->lock);
 }
 
-/* Watches the job's record at `position` of the journal: if it can never become durable, the job is
- * stopped. The caller holds the table's lock. */
+/* Arranges that the job is stopped if its record at `position` of the journal can never become
+ * durable. The caller holds the table's lock. */
 static void watch_note(api_job_entry *j, uint64_t position)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
@@ -433,8 +438,8 @@ static void watch_note(api_job_entry *j, uint64_t position)
     }
 }
 
-/* Returns true if the holder of this work has as many jobs as it may have. The caller holds the
- * table's lock. */
+/* Returns true if the token that starts this work has as many jobs as allowed already. The caller
+ * holds the table's lock. */
 static bool is_beyond(const api_job_table *table, const api_job_work *work)
 {
     uint64_t open = 0;
@@ -553,8 +558,8 @@ bool api_job_list(api_job_table *table, const api_job_page *page,
     return more;
 }
 
-/* Cancels a job. The caller holds the table's lock. After unlocking, it must free the returned work
- * (of a job that was still queued) and release `about`. */
+/* Cancels a job. The caller holds the table's lock. After unlocking, it must free the returned
+ * work, if its `self` is not NULL (the job was still queued), and release `about`. */
 static api_job_work cancel(api_job_entry *j, st_mesh **about)
 {
     api_job_work work = {.self = NULL};
@@ -571,7 +576,7 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         api_job_count_end(j);
         if (j->is_kept && !j->table->stopped) {
             uint64_t position;
-            /* If this record fails, the job is found as interrupted after a restart. */
+            /* If the store cannot record this, the job is marked as interrupted after a restart. */
             (void)api_job_keep(j, &position);
         }
         api_job_entry_wake(j);
@@ -609,7 +614,8 @@ st_status api_job_remove(api_job_table *table, api_job_wanted wanted, bool *forg
     return status;
 }
 
-/* Cancels one queued job and returns its work; its members are NULL if no job is queued. */
+/* Cancels one queued job and returns its work, or a work whose members are all NULL if no job is
+ * queued. */
 static api_job_work cancel_one(api_job_table *table, st_mesh **about)
 {
     api_job_work work = {.self = NULL};

@@ -6,13 +6,14 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The size of the first block, which holds all texts of an ordinary request. With its header, the C
- * library still allocates it without a lock or a search. */
+/* The size of the first block, which holds all texts of an ordinary request, and the most by which
+ * a block may be larger than needed. The first block with its header is small enough for malloc to
+ * serve it from the thread's own cache, without a lock or a search. */
 enum { FIRST_BLOCK = 1024 - 64, LARGEST_STEP = 1 << 20 };
 
 struct api_block {
     api_block *older;
-    size_t used, size; /* of `bytes` */
+    size_t used, size; /* bytes allocated from `bytes`, and bytes in it */
     alignas(max_align_t) unsigned char bytes[];
 };
 

@@ -10,10 +10,11 @@
 typedef struct api_block api_block;
 
 typedef struct api_arena {
-    api_block *blocks; /* newest first */
+    api_block *blocks; /* list of blocks, the newest first */
 } api_arena;
 
-/* Returns memory that is not zeroed, or NULL when memory is out; then the arena is unchanged. */
+/* Returns `size` bytes of memory, which is not zeroed. Returns NULL, with the arena unchanged, when
+ * memory is out. */
 void *api_arena_alloc(api_arena *arena, size_t size);
 /* Allocates count * size bytes. Returns NULL also when the product overflows. */
 void *api_arena_array(api_arena *arena, size_t count, size_t size);

@@ -14,7 +14,7 @@ he_rule api_default_rule(he_type type)
     return type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
 }
 
-/* --- writing --- */
+/* --- writing attribute values --- */
 
 static void write_number(api_out *out, he_type type, const unsigned char *at)
 {
@@ -127,7 +127,7 @@ uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, u
     return numbers;
 }
 
-/* --- reading --- */
+/* --- reading attribute values --- */
 
 static bool read_whole(const api_in *in, double low, double high, double *out)
 {

@@ -1,9 +1,10 @@
 /* attribute_value.h - attribute values in JSON.
  *
  * A value is a number, true or false, or, when the attribute has several components, an array of
- * them. Numbers are written so that they read back to the same bits of the same type. A refusal
- * carries the JSON pointer of the value: wrong_type for another JSON type, bad_value for a number
- * that is not whole or out of range, not_finite for a number too large for a float. */
+ * them. Numbers are written so that they read back to the same bits of the same type. The problem
+ * of a refused value carries its JSON pointer. The codes are wrong_type for another JSON type,
+ * bad_value for a number that is not whole or out of range, not_finite for a number too large for a
+ * float. */
 #ifndef HE_API_JSON_ATTRIBUTE_VALUE_H
 #define HE_API_JSON_ATTRIBUTE_VALUE_H
 
@@ -11,7 +12,7 @@
 #include "api/json/json_out.h"
 #include "mesh/column.h"
 
-/* Writes the value that a column has in the row at `row`. */
+/* Writes the value in `row`, the bytes of one row of a column. */
 void api_write_value(api_out *out, const he_column *column, const unsigned char *row);
 /* Writes the components of one value into an array that the caller has opened. */
 void api_write_components(api_out *out, const he_column *column, const unsigned char *row);
@@ -23,9 +24,10 @@ bool api_read_values(const api_in *in, const he_column *column, unsigned char **
 /* Reads the definition of an attribute from an object: the members type, components, rule, default
  * and labels. Makes a new column without rows. The caller reads the other members. */
 bool api_read_column(const api_in *object, he_kind domain, const char *name, he_column **out);
-/* These three functions write members into an object that is open: api_write_head those from
- * "domain" to "default"; api_write_labels "labels", if there are any (they may be long);
- * api_write_column the head and "bytes", the size of all rows. */
+/* These three functions write members of an object that the caller has begun: api_write_head writes
+ * the members from "domain" to "default"; api_write_labels writes "labels" if the column has labels
+ * (the list may be long); api_write_column writes what api_write_head writes and "bytes", the size
+ * of all rows. */
 void api_write_head(api_out *out, const he_column *column);
 void api_write_labels(api_out *out, const he_column *column);
 void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);

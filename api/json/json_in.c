@@ -18,7 +18,8 @@ void api_in_setup(void)
     cJSON_InitHooks(&hooks);
 }
 
-/* Hashes a name by FNV-1a, so that names are compared as integers. */
+/* Hashes a member's name by FNV-1a, so that most names that differ are told apart by comparing
+ * integers. */
 static uint32_t hash(const char *text)
 {
     uint32_t h = 2166136261u;
@@ -52,8 +53,8 @@ static bool check_members(const api_in *object)
     return true;
 }
 
-/* Checks that no object has a repeated member. The recursion is bounded, because the scan has
- * refused more than API_MAX_DEPTH levels. */
+/* Checks that no object has a repeated member. The recursion is bounded, because the scan
+ * (json_scan.h) has refused more than API_MAX_DEPTH levels. */
 static bool check_objects(const api_in *in)
 {
     if (cJSON_IsObject(in->value) && !check_members(in)) {
@@ -68,14 +69,15 @@ static bool check_objects(const api_in *in)
     return true;
 }
 
-/* Parses one value of a text that was scanned; `*end` is set to where the value ends. */
+/* Parses one value of a text that json_scan.h has accepted; `*end` is set to where the value
+ * ends. */
 static bool parse(api_bytes text, const api_in *at, api_document *out, api_in *root,
                   const char **end)
 {
     api_in in = *at;
     in.value = out->root = cJSON_ParseWithLengthOpts(text.at, text.length, end, false);
     if (out->root == NULL) {
-        /* The text was scanned, so only memory can have failed. */
+        /* The scan has accepted the text, so parsing fails only when memory is out. */
         return api_problem_set(at->problem, HE_NO_MEMORY, "no memory to read the body");
     }
     if (!check_objects(&in)) {
@@ -136,7 +138,7 @@ void api_document_clear(api_document *document)
     document->root = NULL;
 }
 
-/* --- pointers --- */
+/* --- JSON pointers --- */
 
 static char *add_step(char *at, char *end, const char *step)
 {
@@ -177,7 +179,7 @@ void api_in_pointer(const api_in *in, char *out, size_t size)
         }
         char *next = add_step(at, end, name);
         if (next == at) {
-            break; /* the pointer of an enclosing value is still correct */
+            break; /* no space for this step: the result is the pointer of an enclosing value */
         }
         at = next;
     }
@@ -204,7 +206,7 @@ bool api_in_fail(const api_in *in, int code, const char *format, ...)
     return false;
 }
 
-/* --- shape --- */
+/* --- objects, arrays and types --- */
 
 bool api_in_is_null(const api_in *in)
 {
@@ -336,7 +338,7 @@ const char *api_in_name(const api_in *member)
     return member->value->string;
 }
 
-/* --- values --- */
+/* --- reading values --- */
 
 bool api_in_bool(const api_in *in, bool *out)
 {

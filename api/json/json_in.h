@@ -25,9 +25,9 @@ struct cJSON;
 
 typedef struct api_in {
     const struct cJSON *value;
-    const struct api_in *parent; /* NULL at the root */
-    size_t index;                /* index in an array; unused for a member of an object */
-    api_problem *problem;        /* where refusals go */
+    const struct api_in *parent; /* the array or object around the value; NULL for the root */
+    size_t index;         /* index of the value in its array; unused for a member of an object */
+    api_problem *problem; /* filled when the value is refused */
 } api_in;
 
 /* A parsed document. */
@@ -38,15 +38,16 @@ typedef struct api_document {
 /* The items of an array that is kept out of its document. They are parsed one at a time, so that a
  * long list needs no more memory than its text. */
 typedef struct api_items {
-    const char *name;     /* name of the root's member that holds the array */
-    const char *at, *end; /* their text; NULL: the root has no such array */
+    const char *name; /* name of the root object's member whose value is the array */
+    /* Begin and end of the items' text; NULL if the root has no such array. */
+    const char *at, *end;
     size_t count;
 } api_items;
 
-/* What a text may contain, and what is kept out of its document. */
+/* Limits and options for parsing a text. */
 typedef struct api_in_options {
-    size_t values;    /* the largest number of values */
-    api_items *items; /* with its name set; NULL: nothing is kept out */
+    size_t values;    /* how many values the text may contain at most */
+    api_items *items; /* the array to keep out, with `name` set; NULL: nothing is kept out */
 } api_in_options;
 
 /* One parsed item; reading the next item replaces it. {0} is no item. */
@@ -75,7 +76,7 @@ void api_document_clear(api_document *document);
 bool api_item_read(const api_items *items, size_t i, const api_in *list, api_item *item);
 void api_item_clear(api_item *item);
 
-/* --- shape --- */
+/* --- objects, arrays and types --- */
 bool api_in_is_null(const api_in *in);
 bool api_in_is_string(const api_in *in);
 bool api_in_is_array(const api_in *in);
@@ -85,20 +86,23 @@ bool api_in_is_number(const api_in *in);
 /* Checks that the value is an object with no other members than `names`, each of which may be
  * absent. `names` ends in NULL. */
 bool api_in_only(const api_in *in, const char *const *names);
-bool api_in_object(const api_in *in);                                  /* must be an object */
-bool api_in_find(const api_in *object, const char *name, api_in *out); /* false: absent */
-bool api_in_need(const api_in *object, const char *name, api_in *out); /* false: refused */
+bool api_in_object(const api_in *in); /* checks that it is an object */
+/* Returns false if there is no such member. */
+bool api_in_find(const api_in *object, const char *name, api_in *out);
+/* Refuses an object without it. */
+bool api_in_need(const api_in *object, const char *name, api_in *out);
 /* Checks that the value is an array of `min` to `max` values. */
 bool api_in_array(const api_in *in, size_t min, size_t max);
-size_t api_in_count(const api_in *in); /* number of values or members; takes linear time */
+/* Returns the number of values in an array or members in an object, in linear time. */
+size_t api_in_count(const api_in *in);
 /* Steps through an array or an object: for (bool more = api_in_first(&a, &i); more; more =
  * api_in_next(&i))
  */
 bool api_in_first(const api_in *in, api_in *child);
 bool api_in_next(api_in *child);
-const char *api_in_name(const api_in *member); /* name of a member of an object */
+const char *api_in_name(const api_in *member); /* returns the name of a member of an object */
 
-/* --- values --- */
+/* --- reading values --- */
 bool api_in_bool(const api_in *in, bool *out);
 bool api_in_number(const api_in *in, double *out); /* reads a finite number */
 /* Reads a number. Refuses a number outside [min, max] with bad_value; with `exclusive`, also `min`
@@ -108,7 +112,7 @@ bool api_in_number_within(const api_in *in, double min, double max, bool exclusi
 bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out);
 /* Reads an element id: a whole number below 2^32 - 2. */
 bool api_in_id(const api_in *in, uint32_t *out);
-/* Reads at least `min` ids into the arena. */
+/* Reads an array of at least `min` ids; `*ids` gets them, in the arena. */
 bool api_in_ids(const api_in *in, size_t min, api_arena *arena, uint32_t **ids, size_t *count);
 bool api_in_vec3(const api_in *in, he_vec3 *out);
 /* Reads a string of at most `max` bytes, which the document owns. */

@@ -17,7 +17,8 @@ static inline bool in_object(const api_out *out)
     return (out->objects >> out->depth & 1) != 0;
 }
 
-/* Writes what must come before the next value or key at this level. */
+/* Writes the comma that must come before the next value or key, if this level has a value
+ * already. */
 static void separate(api_out *out)
 {
     uint64_t bit = (uint64_t)1 << out->depth;
@@ -228,16 +229,17 @@ void api_out_id(api_out *out, uint32_t id)
     }
 }
 
-/* The output reserves space once for this many ids, and the longest text of an id. */
+/* The number of ids for which space in the output is reserved at once, and the length of the
+ * longest id with its comma. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
-/* Returns false if writing must stop: memory is out or the work was cancelled. In both cases the
- * text is marked as failed, because the caller drops the text of a cancelled request anyway. */
+/* Returns false if writing must stop: memory is out or the watch cancelled the work. In both cases
+ * the text is marked as failed, because the caller drops the text of a cancelled request anyway. */
 static bool goes_on(api_out *out)
 {
     he_error err = {0};
-    /* Progress is reported only once for many parts, because a report costs as much as writing a
-     * short list, and each operation may write one. */
+    /* Progress is reported only once for many parts of IDS_AT_ONCE ids, because a report costs as
+     * much as writing a short list, and each operation may write a list. */
     bool looks = ++out->parts % (HE_PROGRESS_STRIDE / IDS_AT_ONCE) == 0;
     if (looks && he_progress_step(out->progress, 0, 1, &err) != HE_OK) {
         out->text->failed = true;
@@ -295,8 +297,8 @@ void api_out_vec3(api_out *out, he_vec3 value)
     api_out_array_end(out);
 }
 
-/* Computes the Gregorian date of a day counted from 1970-01-01. It counts from 1 March of year 0,
- * so that a leap day is the last day of its year, in eras of 400 years. */
+/* Computes the Gregorian date of a day counted from 1970-01-01. The computation counts eras of 400
+ * years from 1 March of year 0, so that a leap day is the last day of its year. */
 static void date_of(int64_t day, int64_t *year, int *month, int *date)
 {
     day += 719468;
@@ -312,7 +314,7 @@ static void date_of(int64_t day, int64_t *year, int *month, int *date)
 
 void api_out_time(api_out *out, double seconds)
 {
-    /* Years that do not have four digits have no such form in ISO 8601. */
+    /* ISO 8601 has this form only for years with four digits. */
     if (!(seconds > -62167219200.0 && seconds < 253402300799.0)) {
         api_out_null(out);
         return;

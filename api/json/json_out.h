@@ -1,4 +1,4 @@
-/* json_out.h - writing JSON, in order, onto a text.
+/* json_out.h - writing JSON, value after value, to the end of a text.
  *
  *     api_out out;
  *     api_out_init(&out, &text);
@@ -10,8 +10,9 @@
  *
  * The writer inserts commas and colons. Strings are UTF-8 and are not re-encoded; quotes,
  * backslashes and control characters are escaped. Numbers are the shortest that read back to the
- * same double. Failure is sticky, as in text.h. A value without its key inside an object, or an end
- * that does not match, is a mistake of the caller and trips an assert. */
+ * same double. Failure is sticky (text.h): after a write has failed, all later writes are ignored.
+ * A value without its key inside an object, or an end that does not match, is a mistake of the
+ * caller and trips an assert. */
 #ifndef HE_API_JSON_JSON_OUT_H
 #define HE_API_JSON_JSON_OUT_H
 
@@ -22,12 +23,12 @@ enum { API_OUT_DEPTH = 63 };
 
 typedef struct api_out {
     api_text *text;
-    uint64_t objects; /* bit d is set: level d is an object */
-    uint64_t filled;  /* bit d is set: level d has a value already */
+    uint64_t objects; /* bit d is set if nesting level d is an object, clear if it is an array */
+    uint64_t filled;  /* bit d is set if nesting level d has a value already */
     unsigned depth;
-    bool keyed;                   /* a key was written and its value is missing */
-    struct he_progress *progress; /* polled in long lists, may end them; NULL: no polling */
-    unsigned parts;               /* parts of id lists written since `progress` was set */
+    bool keyed;                   /* a key was written, but not yet its value */
+    struct he_progress *progress; /* asked in long lists whether to stop; NULL: never */
+    unsigned parts; /* number of parts of lists of ids written since `progress` was set */
 } api_out;
 
 void api_out_init(api_out *out, api_text *text);

@@ -12,7 +12,8 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Returns true if `text` contains the word of `length` bytes, between '_' or its ends. */
+/* Returns true if one of the words of `text`, which '_' separates, is `word`, which has `length`
+ * bytes. */
 static bool has_word(const char *text, const char *word, size_t length)
 {
     while (true) {

@@ -1,4 +1,4 @@
-/* known_names.h - the part of a refusal of an unknown name that says which names exist.
+/* known_names.h - the end of a message that refuses an unknown name: it says which names exist.
  *
  *     api_known_names known = {.wanted = "split_edge"};
  *     for each name that exists {
@@ -6,7 +6,7 @@
  *     }
  *     "there is no operation \"split_edge\"%s", api_known_names_text(&known)
  *
- * The text goes on in one of three ways:
+ * api_known_names_text returns one of three endings:
  *
  *     ; did you mean "edge_split"?     one name is like the wanted one
  *     ; there are obj, off, ply        else, as many names as fit, with "..." for others
@@ -18,12 +18,12 @@
 
 enum { API_KNOWN_TEXT = 200 };
 
-/* The names that exist, and the wanted one. It begins with only `wanted` set; all names are
- * borrowed. */
+/* The wanted name and what is known of the names that exist. The caller sets `wanted` only; all
+ * names are borrowed. */
 typedef struct api_known_names {
     const char *wanted;
-    const char *nearest; /* NULL: none is like it */
-    size_t distance;     /* of the nearest */
+    const char *nearest; /* the existing name that is most like `wanted`; NULL: none is like it */
+    size_t distance;     /* api_name_distance between `wanted` and `nearest` */
     char list[API_KNOWN_TEXT];
     size_t length;
     size_t left_out;
@@ -31,7 +31,7 @@ typedef struct api_known_names {
 } api_known_names;
 
 void api_known_names_add(api_known_names *known, const char *name);
-/* Lives as long as `known`. */
+/* Returns the end of the message, which lives as long as `known`. */
 const char *api_known_names_text(api_known_names *known);
 
 /* Returns how many letters must be inserted, removed, replaced or exchanged with their neighbour to

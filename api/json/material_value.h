@@ -12,9 +12,10 @@
 #include "api/json/json_out.h"
 #include "mesh/material.h"
 
-/* Writes the materials as a list in the order of their slots. */
+/* Writes all materials of a mesh as a list, in the order in which the mesh stores them. */
 void api_write_materials(api_out *out, const he_materials *materials);
-/* Reads an array of three numbers, or up to `most`, each at least 0; `count` gets their number. */
+/* Reads a colour: an array of at least three and at most `most` numbers, each at least 0. `count`
+ * gets the number of numbers. */
 bool api_read_color(const api_in *in, size_t most, double color[4], size_t *count);
 /* Adds the materials of an array to an empty table.
  * Returns false with the pointer of the member at fault: bad_value and similar codes for an invalid

@@ -23,7 +23,7 @@ static const code_row rows[API_CODE_COUNT - HE_STATUS_COUNT] = {
 };
 
 /* The HTTP status of each refusal of core. Refusals that are not listed are about topology: they
- * get 422, and their title is the rule. */
+ * get 422, and their title names the rule that the edit would break. */
 static const struct {
     int http;
     const char *explanation;
@@ -137,7 +137,8 @@ int api_code_find(const char *slug)
     return -1;
 }
 
-/* Cuts a text that did not fit into its buffer at the end of a UTF-8 character. */
+/* Shortens a text that was cut off by the end of its buffer, so that it ends with a whole UTF-8
+ * character. */
 static void end_whole(char *text, size_t size, int wanted)
 {
     if (wanted < 0) {
@@ -306,8 +307,8 @@ static void write_report(const api_problem *problem, api_out *out)
     api_out_key_u64(out, "total", report->total);
 }
 
-/* Functions that run out of memory do not know why; the client gets to know whether the budget is
- * used up. */
+/* Replaces HE_NO_MEMORY by API_MEMORY_BUDGET if the memory budget is used up. Functions that run
+ * out of memory cannot tell the two apart, but the client should know. */
 static int named_code(int code)
 {
     return code == HE_NO_MEMORY && st_memory_was_over_budget() ? API_MEMORY_BUDGET : code;

@@ -1,9 +1,9 @@
-/* problem.h - every refusal a client can see, as RFC 9457 problem+json.
+/* problem.h - all refusals that clients can get, in the format problem+json of RFC 9457.
  *
  * A code is either a refusal of core (an he_status, same number and slug) or one of API_CODE_MAP.
- * Its row says the HTTP status, the title, and the paragraph served at /problems/{slug}, which is
- * the problem's `type`. Code that detects an error, in the server too, fills an api_problem and
- * calls api_problem_write. */
+ * For each code there is an HTTP status, the title, and a paragraph that explains it, shown by the
+ * page /problems/{slug}, whose path is the problem's `type`. All code that detects an error, also
+ * in server/, fills an api_problem, which api_problem_write writes. */
 #ifndef HE_API_JSON_PROBLEM_H
 #define HE_API_JSON_PROBLEM_H
 
@@ -13,7 +13,7 @@
 
 /* Each row: X(constant, slug, HTTP status, title, explanation) */
 #define API_CODE_MAP(X)                                                                            \
-    /* refusals because of the body */                                                             \
+    /* refusals because of the request's body */                                                   \
     X(MALFORMED_JSON, "malformed_json", 400, "The body is not valid JSON",                         \
       "The body must be one JSON value in UTF-8, as RFC 8259 defines it: no trailing commas, "     \
       "comments, leading zeros, raw control characters, lone surrogates, null characters or "      \
@@ -249,23 +249,26 @@ typedef enum api_code {
 
 enum { API_PROBLEM_DETAIL = 320, API_PROBLEM_POINTER = 256 };
 
-/* {0} is "no problem". */
+/* A refusal of a request. {0} means that there is no problem. */
 typedef struct api_problem {
-    int code;                        /* api_code or he_status; HE_OK: none */
-    int status;                      /* HTTP status; 0: the one of the code */
-    char detail[API_PROBLEM_DETAIL]; /* one sentence, UTF-8 */
-    bool has_pointer;                /* "" points at the whole body */
+    int code;                        /* an api_code or he_status; HE_OK: no problem */
+    int status;                      /* HTTP status; 0 selects the status of `code` */
+    char detail[API_PROBLEM_DETAIL]; /* the message: one sentence in UTF-8 */
+    bool has_pointer;                /* a JSON pointer is set; "" is the whole body */
     char pointer[API_PROBLEM_POINTER];
     bool has_element;
     he_kind kind;
     uint32_t id;
-    bool has_revision; /* `revision` is set: the present revision, with 412 */
+    bool has_revision; /* `revision` is set to the mesh's present revision (with status 412) */
     uint64_t revision;
-    const he_report *report; /* source of `elements` and `total`, borrowed; NULL: none */
-    unsigned repairs; /* the set of repairs with which the body would pass (repair.h); 0: none */
-    bool report_pointers; /* the body is a mesh document: add "/faces/3/1" to each element */
-    const char *const *supported; /* supported types, with 406 and 415; ends in NULL, borrowed */
-    uint64_t retry;               /* seconds until a retry makes sense; 0: unknown */
+    const he_report *report; /* borrowed; gives the members "elements" and "total"; NULL: none */
+    /* Set of the repairs (repair.h) with which the body would be accepted; 0: none. */
+    unsigned repairs;
+    /* The body is a mesh document: each element gets a JSON pointer such as "/faces/3/1". */
+    bool report_pointers;
+    /* Types or codings that would be accepted (406, 415); ends in NULL, borrowed. */
+    const char *const *supported;
+    uint64_t retry;   /* seconds until a retry makes sense; 0: unknown */
     const char *role; /* the role that the token lacks, with 403; a literal. NULL: none */
 } api_problem;
 
@@ -277,9 +280,9 @@ int api_code_http(int code);
 /* Returns the code with this slug, or -1. */
 int api_code_find(const char *slug);
 
-/* Both fill `problem` from scratch; no argument may be NULL. They return false, so that a refusal
- * is one statement. If `problem` is filled already, it is not changed: the first problem is
- * reported. */
+/* api_problem_set, api_problem_set_core and api_problem_set_path fill an empty `problem` and return
+ * false, so that a refusal is one statement. No argument may be NULL. A problem that is filled
+ * already is not changed: the first problem is reported. */
 bool api_problem_set(api_problem *problem, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Fills the problem from a refusal of core about a body; elements that do not exist give the status
@@ -288,8 +291,8 @@ bool api_problem_set_core(api_problem *problem, const he_error *err);
 /* Fills the problem from a refusal of core about the path; elements that do not exist give the
  * status 404 or 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Refuses an answer because its content did not become durable; `wait` has the reason. `changed`
- * says that the request itself made the change that was lost. */
+/* Fills the problem sent instead of an answer whose content did not become durable; `wait` has the
+ * reason. `changed` says that the request itself made the change that was lost. */
 bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -298,7 +301,7 @@ void api_problem_set_pointer(api_problem *problem, const char *format, ...)
  * in `detail`. */
 void api_problem_set_repairs(api_problem *problem, unsigned repairs);
 
-/* Writes the place of a defect in a mesh document: "/faces/3/1". */
+/* Writes the JSON pointer of a defect in a mesh document, such as "/faces/3/1". */
 enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
@@ -311,7 +314,7 @@ const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
  * literal. */
 const char *api_problem_unwritten(void);
 /* Appends the problem as a JSON object to `text`; `request_id` may be NULL. HE_NO_MEMORY is written
- * as API_MEMORY_BUDGET if it was the memory budget that refused. */
+ * as API_MEMORY_BUDGET if the memory budget is used up. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
 /* Writes the HTML page that explains a code, served at /problems/{code}. */
 void api_problem_page(int code, api_text *text);

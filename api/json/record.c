@@ -117,7 +117,7 @@ void api_record_write(api_out *out, const api_record *record, const void *value)
     api_out_object_end(out);
 }
 
-/* Returns true if a value may be missing only where the schema allows that. */
+/* Returns true if the member always has a value, or if its schema allows that it has none. */
 static bool is_missing_allowed(const api_field *field)
 {
     return !field->required || is_nullable(field) || (field->known == 0 && !field->zero_is_none);

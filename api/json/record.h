@@ -1,8 +1,8 @@
 /* record.h - writing plain structs as JSON objects, from tables.
  *
- * A row describes one member: its name, its type in the OpenAPI document, and where its value lies
- * in a struct. The same rows give the schema (api/describe/schemas.c) and the answer, so that these
- * cannot disagree:
+ * A row describes one member of the object: its name, its type in the OpenAPI document, and where
+ * its value lies in a struct. Schemas (api/describe/schemas.c) and answers are both made from the
+ * rows, so that they cannot disagree:
  *
  *     static const api_field fields[] = {
  *         API_FIELD("revision", "count", st_entry, revision, .required = true),
@@ -20,35 +20,36 @@
 
 #include <stddef.h>
 
-/* The C type of a value. API_FORM finds it. */
+/* The C type of a value in the struct. The macro API_FORM determines it. */
 typedef enum api_form {
-    API_FORM_NONE, /* the value is made by the row's function */
+    API_FORM_NONE, /* the value has no C type: the row's function `write` makes it */
     API_FORM_BOOL,
     API_FORM_INT,
     API_FORM_I64,
     API_FORM_U32,
     API_FORM_U64,
     API_FORM_DOUBLE,
-    API_FORM_TEXT,  /* const char *, may be NULL: no value */
+    API_FORM_TEXT,  /* const char *; NULL means no value */
     API_FORM_CHARS, /* an array of char */
     API_FORM_VEC3
 } api_form;
 
 typedef struct api_field {
     const char *name;
-    const char *type; /* as in api/describe/schema_rows.h */
+    const char *type; /* type of the schema, written as api/describe/schema_rows.h says */
     bool required;
-    const char *doc; /* may be NULL */
+    const char *doc; /* description in the OpenAPI document, may be NULL */
     api_form form;
-    size_t offset;     /* of the value in the struct */
+    size_t offset;     /* offset of the value in the struct */
     bool zero_is_none; /* 0 or "" means that there is no value */
-    size_t known;      /* 1 + the offset of a bool that says if there is a value; 0: always */
-    /* Writes a value that is not in the struct as it is shown, after its name; the struct is at
-     * `value`. */
+    /* 1 + the offset of a bool that says if there is a value (API_KNOWN); 0: there is always one */
+    size_t known;
+    /* Writes a value that must be computed from the struct at `value`, after the member's name;
+     * NULL if the value is written as it is. */
     void (*write)(api_out *out, const void *value);
 } api_field;
 
-/* All rows of a schema. */
+/* All members of an object that is written from a struct. */
 typedef struct api_record {
     const char *schema;
     const api_field *fields;
@@ -79,13 +80,13 @@ typedef struct api_record {
     }
 #define API_KNOWN(struct_, member_) (offsetof(struct_, member_) + 1)
 
-/* Writes the members of the struct at `value` into the object that is open. */
+/* Writes the members of the struct at `value` into an object that the caller has begun. */
 void api_record_members(api_out *out, const api_record *record, const void *value);
 /* Writes the struct at `value` as an object. */
 void api_record_write(api_out *out, const api_record *record, const void *value);
 
-/* Returns true if a value of this C type can be written as the schema's type says. A test asks that
- * of all rows. */
+/* Returns true if the C type of the row's value can be written as the type of its schema. A test
+ * checks all rows. */
 bool api_field_fits(const api_field *field);
 
 #endif

@@ -1,4 +1,4 @@
-/* text.h - a string of bytes that grows at its end.
+/* text.h - a buffer of bytes that grows by appending.
  *
  * Failure is sticky: when memory is out or `maximum` would be exceeded, `failed` is set and all
  * later writes are ignored, so that the caller checks only once, at the end. {0} is an empty text
@@ -29,10 +29,11 @@ static inline api_bytes api_text_bytes(const api_text *text)
 }
 
 void api_text_clear(api_text *text); /* frees the bytes; the text is {0} again */
-void api_text_empty(api_text *text); /* keeps memory and maximum, drops content and failure */
+void api_text_empty(api_text *text); /* makes it empty and not failed; keeps memory and maximum */
 
-/* Returns space for `size` more bytes at text->bytes + text->length, or NULL, with `failed` set.
- * The caller writes there and adds the number of bytes written to text->length. */
+/* Returns space for `size` more bytes, at text->bytes + text->length. Returns NULL and sets
+ * `failed` when memory is out or the maximum would be exceeded. The caller writes there and adds
+ * the number of bytes written to text->length. */
 char *api_text_room(api_text *text, size_t size);
 void api_text_add(api_text *text, const char *bytes, size_t length);
 void api_text_add_string(api_text *text, const char *string);

@@ -1,9 +1,9 @@
-/* limit.h - THE list of limits for one client.
+/* limit.h - the one list of the limits that apply to each client.
  *
- * A client is a token, or an address if a request has no valid token: the route is open, the server
- * has no tokens, or the token is unknown. Options of the server set the limits of every token and
- * of every address; a line of the file of tokens may set those of its own (token_file.h). 0 is no
- * limit.
+ * A client is a token. A request without a valid token (because the route is open, the server has
+ * no tokens, or the token is unknown) counts for the address that it comes from. Options of the
+ * server set the limits of every token and of every address; a line of the token file may set other
+ * limits for its token (token_file.h). 0 is no limit.
  *
  *     limit        of      counts                                         answered
  *     requests     both    requests a second: rate.h                      429 rate_limit
@@ -11,8 +11,7 @@
  *     connections  address open connections                               429 too_many_connections
  *     jobs         token   queued and running jobs          429 too_many_jobs_of_token
  *     meshes       token   existing meshes that it made     507 quota
- *     mesh_bytes   token   their memory, by their cards     507 quota
- */
+ *     mesh_bytes   token   their memory, by their cards     507 quota */
 #ifndef HE_API_LIMIT_LIMIT_H
 #define HE_API_LIMIT_LIMIT_H
 
@@ -21,7 +20,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* X(constant, word in the file of tokens, is it bytes, may a token have it) */
+/* Each row: X(constant, name in the token file, true if it counts bytes, true if tokens can have
+ * it) */
 #define API_LIMIT_MAP(X)                        \
     X(REQUESTS, "requests", false, true)        \
     X(BYTES, "bytes", true, true)               \
@@ -37,15 +37,15 @@ typedef enum api_limit {
         API_LIMIT_COUNT
 } api_limit;
 
-/* The largest values that limits may have. */
+/* The largest values that a limit of things and a limit of bytes may have. */
 #define API_LIMIT_MOST       UINT64_C(1000000000)
 #define API_LIMIT_MOST_BYTES (UINT64_C(1) << 40)
 
 /* The largest burst: how many seconds' worth of requests and bytes a bucket may hold. */
 enum { API_BURST_MOST = 3600 };
 
-/* The number of buckets for the rates of requests and bytes (rate.h) that are kept at one time, of
- * tokens and of addresses. */
+/* How many tokens and how many addresses have a bucket for their rates of requests and bytes
+ * (rate.h) at one time. */
 enum { API_TOKEN_RATES = 8192, API_ADDRESS_RATES = 65536 };
 
 /* The limits of one client, indexed by api_limit; 0 is no limit. */
@@ -53,18 +53,18 @@ typedef struct api_limits {
     uint64_t most[API_LIMIT_COUNT];
 } api_limits;
 
-/* Returns the name of a limit in the file of tokens and in metrics, such as "requests". */
+/* Returns the name of a limit in the token file and in metrics, such as "requests". */
 const char *api_limit_name(api_limit limit);
-/* Is it counted in bytes? */
+/* Returns true if the limit counts bytes. */
 bool api_limit_is_bytes(api_limit limit);
-/* May a token have it? */
+/* Returns true if tokens can have this limit; false if only addresses can. */
 bool api_limit_is_of_token(api_limit limit);
 
 /* Parses a whole number. If `bytes` is set, K, M, G or T may follow it (powers of 1024). */
 bool api_amount_parse(const char *text, size_t length, bool bytes, uint64_t *out);
 
 /* Counts the requests and connections that each limit has refused since the start, separately for
- * tokens and addresses. Any thread counts and reads, without a lock. */
+ * tokens and addresses. All threads may count and read at the same time; there is no lock. */
 typedef enum api_client_kind {
     API_CLIENT_TOKEN,
     API_CLIENT_ADDRESS,

@@ -15,10 +15,11 @@ enum { REQUESTS, BYTES, AMOUNTS };
 
 typedef struct bucket {
     api_rate_key key;
-    uint64_t at;             /* time of `taken` */
-    uint64_t full;           /* from this time on both amounts are 0 */
-    uint64_t taken[AMOUNTS]; /* in millionths */
-    uint32_t next;           /* next in the chain */
+    uint64_t at;   /* time for which `taken` was last computed */
+    uint64_t full; /* time from which the bucket is full, because both amounts are 0 */
+    /* Amounts not refilled yet, in millionths of a request and of a byte. */
+    uint64_t taken[AMOUNTS];
+    uint32_t next; /* next bucket in its chain of the hash table */
     uint32_t newer, older;
 } bucket;
 
@@ -31,7 +32,7 @@ struct api_rates {
     bucket *buckets;
 };
 
-/* --- the table --- */
+/* --- the table of buckets --- */
 
 api_rates *api_rates_new(size_t capacity)
 {
@@ -89,7 +90,8 @@ static void link_newest(api_rates *rates, uint32_t index)
     rates->newest = index;
 }
 
-/* Returns the bucket whose eviction loses least. The table must have a bucket. */
+/* Returns the bucket to evict: a full one if one of the oldest is full, else the oldest. The table
+ * must have a bucket. */
 static uint32_t choose_old(const api_rates *rates, uint64_t now)
 {
     uint32_t index = rates->oldest;
@@ -135,7 +137,7 @@ static bucket *find_or_add(api_rates *rates, const api_rate_key *key, uint64_t n
     return &rates->buckets[index];
 }
 
-/* --- one bucket --- */
+/* --- the amounts in one bucket --- */
 
 static uint64_t product(uint64_t a, uint64_t b)
 {
@@ -153,15 +155,15 @@ static uint64_t quotient_up(uint64_t a, uint64_t b)
     return a / b + (a % b != 0 ? 1 : 0);
 }
 
-/* Returns the microseconds until `millionths` of a unit are filled again, at `rate` units a
- * second. */
+/* Returns how many microseconds it takes to refill `millionths` of a request or byte at `rate` of
+ * them a second. */
 static uint64_t time_to_fill(uint64_t millionths, uint64_t rate)
 {
     return rate == 0 ? 0 : quotient_up(millionths, rate);
 }
 
-/* Fills a bucket for the time that has passed. A bucket without a limit becomes full at once, so
- * that it starts full if it gets a limit later. */
+/* Refills a bucket for the time since it was last refilled. Without a limit it becomes full at
+ * once, so that it starts full if the client gets a limit later. */
 static void fill(bucket *b, const api_rate *rate, uint64_t now)
 {
     const uint64_t rates[AMOUNTS] = {rate->requests, rate->bytes};
@@ -181,12 +183,14 @@ static void take(bucket *b, const api_rate *rate, int which, uint64_t amount)
     b->full = sum(b->at, requests > bytes ? requests : bytes);
 }
 
-/* Is one unit left? */
+/* Returns true if at least one request (or one byte, as `which` says) is left in the bucket; fills
+ * `out` in any case. */
 static bool look(const bucket *b, uint64_t rate, uint64_t seconds, int which, api_rate_left *out)
 {
     const uint64_t taken = b->taken[which];
     const uint64_t capacity = product(product(rate, seconds), MILLION);
-    const uint64_t wanted = capacity - MILLION; /* capacity is at least one: rate and seconds are */
+    /* Not negative: `rate` and `seconds` are at least 1. */
+    const uint64_t wanted = capacity - MILLION;
     *out = (api_rate_left){0};
     if (rate == 0) {
         return true;
@@ -232,9 +236,9 @@ size_t api_rates_count(api_rates *rates)
     return count;
 }
 
-/* --- fields --- */
+/* --- the values of header fields --- */
 
-/* Appends a text to a header field. It is written without printf, because every answer has these
+/* Appends a text to a header field. printf is avoided for speed, because every answer has these
  * fields. */
 static char *add_text(char *to, const char *text)
 {

@@ -4,7 +4,8 @@
  * A client's bucket holds `seconds` worth of its rate and fills at that rate. Each request takes
  * one unit from the bucket of requests; bodies and answers take their bytes as they are
  * transferred. A request is admitted if at least one request and one byte are left. So a large body
- * or answer is never cut, but leaves a debt: no request is admitted until it is paid.
+ * or answer is not cut off, but may take more bytes than the bucket has. No request is then
+ * admitted until this debt is refilled and one byte is left.
  *
  *     taken     0 ......... capacity ........ more: a debt of bytes
  *               full        empty
@@ -16,8 +17,7 @@
  * The table is allocated at the start. A full bucket can be evicted without loss, since a new one
  * is full, too: of the API_RATE_LOOKS buckets used longest ago, the first full one is evicted, else
  * the oldest. A request takes constant time, however many clients there are. Clients can choose
- * neither which buckets share a chain nor which bucket is evicted. Threads share one lock.
- */
+ * neither which buckets share a chain nor which bucket is evicted. Threads share one lock. */
 #ifndef HE_API_LIMIT_RATE_H
 #define HE_API_LIMIT_RATE_H
 
@@ -27,27 +27,27 @@ enum { API_RATE_LOOKS = 8 };
 
 typedef struct api_rates api_rates;
 
-/* Identifies the client whose bucket it is; no two clients have the same key. */
+/* Identifies a client in the table of buckets; no two clients have the same key. */
 typedef struct api_rate_key {
     uint64_t words[2];
 } api_rate_key;
 
-/* The rates that a client may have; 0 requests or bytes is no limit. `seconds`, the size of the
- * bucket, is at least 1. */
+/* The limits of a client's rate; 0 requests or 0 bytes is no limit. `seconds` is at least 1. */
 typedef struct api_rate {
-    uint64_t requests, bytes; /* per second */
-    uint64_t seconds;         /* seconds' worth of either that the bucket holds */
+    uint64_t requests, bytes; /* how many of each are allowed per second */
+    uint64_t seconds; /* capacity of the bucket: how many seconds of requests and bytes it holds */
 } api_rate;
 
-/* What is left of one of the two amounts, requests or bytes. */
+/* What is left of one of the two amounts of a bucket: of its requests or of its bytes. */
 typedef struct api_rate_left {
-    uint64_t left;  /* available now */
+    uint64_t left;  /* number that is available now */
     uint64_t reset; /* seconds until the bucket is full, rounded up */
-    uint64_t wait;  /* seconds until a request is admitted, rounded up; 0: it was */
+    /* Seconds until a request would be admitted, rounded up; 0 if this one was admitted. */
+    uint64_t wait;
 } api_rate_left;
 
 typedef struct api_rate_state {
-    api_rate_left requests, bytes; /* an amount without a limit is 0 */
+    api_rate_left requests, bytes; /* all zero for an amount without a limit */
 } api_rate_state;
 
 /* Makes a table for `capacity` clients. Returns NULL when memory is out. */
@@ -55,7 +55,7 @@ api_rates *api_rates_new(size_t capacity);
 void api_rates_free(api_rates *rates);
 
 /* Takes one request if a request and a byte are left. Otherwise returns false, takes nothing, and
- * sets `wait` in the part of `out` that refused it, or in both. */
+ * sets out->requests.wait or out->bytes.wait or both, depending on which was short. */
 bool api_rates_admit(api_rates *rates, const api_rate_key *key, const api_rate *rate, uint64_t now,
                      api_rate_state *out);
 /* Takes bytes from the client's bucket, even if fewer are left. */
@@ -65,8 +65,8 @@ void api_rates_charge(api_rates *rates, const api_rate_key *key, const api_rate 
 size_t api_rates_count(api_rates *rates);
 
 /* Writes the values of the fields RateLimit-Policy and RateLimit, after the draft of the IETF's
- * HTTPAPI group (draft-ietf-httpapi-ratelimit-headers-10), terminated by NUL: the policies
- * "requests" and "bytes", as far as they have limits. "" if there are none. */
+ * HTTPAPI group (draft-ietf-httpapi-ratelimit-headers-10), terminated by NUL: each has an entry
+ * "requests" and an entry "bytes" if these have limits, and is "" if neither has. */
 enum { API_RATE_FIELD = 128 };
 void api_rate_policy(const api_rate *rate, char out[API_RATE_FIELD]);
 void api_rate_field(const api_rate *rate, const api_rate_state *state, char out[API_RATE_FIELD]);

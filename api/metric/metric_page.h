@@ -4,8 +4,9 @@
  *     # TYPE hedge_meshes gauge
  *     hedge_meshes 12
  *
- * A family begins with its row of metric_rows.h; its samples follow, each with the values of the
- * row's labels in their order. Failure is sticky, as in text.h. */
+ * api_metric_begin writes the two comment lines of a metric from its row in metric_rows.h. Its
+ * samples must follow, each with the values of the row's labels in their order. Failure is sticky
+ * (text.h): after a write has failed, all later writes are ignored. */
 #ifndef HE_API_METRIC_METRIC_PAGE_H
 #define HE_API_METRIC_METRIC_PAGE_H
 
@@ -21,11 +22,11 @@ typedef enum api_metric_type {
     API_METRIC_HISTOGRAM
 } api_metric_type;
 
-/* A row of the table. */
+/* The description of a metric: a row of metric_rows.h. */
 typedef struct api_metric {
     const char *name;
     api_metric_type type;
-    const char *labels; /* separated by commas, "": none */
+    const char *labels; /* names of its labels, separated by commas; "" if it has none */
     const char *help;
 } api_metric;
 
@@ -40,7 +41,7 @@ const api_metric *api_metric_at(api_metric_id id);
 
 typedef struct api_metric_page {
     api_text *text;
-    const api_metric *row; /* of the present family */
+    const api_metric *row; /* the metric whose samples are being written */
 } api_metric_page;
 
 enum { API_METRIC_LABELS = 3 };
@@ -49,8 +50,8 @@ void api_metric_begin(api_metric_page *page, api_metric_id id);
 /* Writes a sample of a metric. `values` has a value for each label of the metric's row; NULL if it
  * has no labels. */
 void api_metric_put(api_metric_page *page, const char *const *values, double number);
-/* Writes a histogram. `scale` says how its values were counted; `unit` of these values are 1 on the
- * page. */
+/* Writes a histogram. `scale` has the upper bounds of its buckets; the page shows bounds and sum
+ * divided by `unit` (for example microseconds as seconds with 1e6). */
 void api_metric_put_histogram(api_metric_page *page, const char *const *values,
                               const st_distribution *distribution, const uint64_t scale[ST_BOUNDS],
                               double unit);

@@ -1,9 +1,9 @@
 /* metric_rows.h - the table of the metrics of GET /metrics, with name, type, labels and meaning.
  *
  * The page (api/read/metrics.c), the manual hedged(8) and the tests read the rows; a test compares
- * the names in server/alerts.yaml with them. A name is the thing, then its unit in base units, as
- * https://prometheus.io/docs/practices/naming/ has it. No client can choose the value of a label:
- * values that are not known in advance are "other". */
+ * the names in server/alerts.yaml with them. A name says what is measured and then its unit, as
+ * https://prometheus.io/docs/practices/naming/ recommends. Clients cannot make new label values: a
+ * value that is not known in advance, such as an unknown method, is counted as "other". */
 #ifndef HE_API_METRIC_METRIC_ROWS_H
 #define HE_API_METRIC_METRIC_ROWS_H
 

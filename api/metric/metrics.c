@@ -8,8 +8,9 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Where the parts of the table of counters begin: those without labels; problems by code; edits by
- * operation and result; and for each series and class the buckets of a histogram and its sum. */
+/* The index at which each part of the array of counters begins. First come the counters of
+ * api_counter, at 0; then problems by code; then edits by operation and result; then, for each
+ * series of requests and class of statuses, the buckets of a histogram and its sum. */
 enum {
     PROBLEMS = API_COUNTERS,
     EDITS = PROBLEMS + API_CODE_COUNT,
@@ -79,7 +80,7 @@ static api_class class_of(int status)
                            : API_CLASS_NONE;
 }
 
-/* Returns the index at which the histogram of a series begins. */
+/* Returns the index at which the histogram of a series and class of statuses begins. */
 static size_t series_at(const api_metrics *metrics, int route, api_method method, api_class of)
 {
     const size_t series = route == API_NO_ROUTE ? 2 * metrics->routes + method
@@ -90,7 +91,7 @@ static size_t series_at(const api_metrics *metrics, int route, api_method method
 void api_count_request(api_metrics *metrics, const api_served *served)
 {
     st_counters *counters = metrics->counters;
-    /* A row of the table of routes counts its own method and, separately, HEAD. */
+    /* Each route has two series, one for its own method and one for HEAD. */
     const api_method method = served->route == API_NO_ROUTE ? method_of(served->method)
                               : served->method[0] == 'H'    ? API_METHOD_HEAD
                                                             : API_METHOD_OTHER;

@@ -1,8 +1,8 @@
 /* metrics.h - counters of requests and connections for GET /metrics.
  *
- * Counting takes no lock and allocates nothing; any thread may do it. The rooms of core and the
- * table of jobs have counters of their own (st_store_measure, api_job_measure, st_pool_look), which
- * the page reads. */
+ * Counting takes no lock and allocates nothing; any thread may do it. The store, the thread pools
+ * and the table of jobs count themselves (st_store_measure, st_pool_look, api_job_measure); the
+ * page of metrics also reads these counters. */
 #ifndef HE_API_METRIC_METRICS_H
 #define HE_API_METRIC_METRICS_H
 
@@ -20,7 +20,7 @@ typedef struct api_metrics api_metrics;
 api_metrics *api_metrics_new(size_t routes);
 void api_metrics_free(api_metrics *metrics); /* takes NULL */
 
-/* --- requests --- */
+/* --- counting requests --- */
 
 typedef enum api_method {
     API_METHOD_GET,
@@ -36,7 +36,7 @@ typedef enum api_method {
 
 const char *api_method_name(api_method method); /* returns "other" for API_METHOD_OTHER */
 
-/* The classes of HTTP statuses. 1xx is missing, because it is no final answer. */
+/* The classes of HTTP statuses. 1xx is missing, because such answers are not final. */
 typedef enum api_class {
     API_CLASS_NONE, /* there was no answer */
     API_CLASS_2XX,
@@ -48,31 +48,31 @@ typedef enum api_class {
 
 const char *api_class_name(api_class of);
 
-/* The index that stands for requests that match no route. Requests are counted by series: a row of
- * the table of routes has one series for its own method and one for HEAD; requests that match no
- * row belong to a series of their method. */
+/* The index that stands for requests that match no route. Requests are counted in series: each
+ * route has one series for its own method and one for HEAD, and requests that match no route have
+ * one series for each method. */
 enum { API_NO_ROUTE = -1 };
 
 /* A request that ended. */
 typedef struct api_served {
-    int route; /* index of its row, or API_NO_ROUTE */
+    int route; /* index of the request's route in the table of routes, or API_NO_ROUTE */
     const char *method;
-    int status; /* 0: there was no answer */
-    int code;   /* api_code or he_status of the problem; HE_OK: none */
+    int status; /* HTTP status; 0: there was no answer */
+    int code;   /* the problem's code, an api_code or he_status; HE_OK: no problem */
     uint64_t bytes_in, bytes_out, micros;
 } api_served;
 
 void api_count_request(api_metrics *metrics, const api_served *served);
 
-/* Gets the statistics of a series and class of statuses. The series are the requests that matched
- * row `route` with its own method or with HEAD, or, if `route` is API_NO_ROUTE, those that matched
- * no row with this method. */
+/* Gets the durations of the requests of one series whose status is in one class. The series is that
+ * of `route` and HEAD if `method` is API_METHOD_HEAD, else of `route` and its own method; or, if
+ * `route` is API_NO_ROUTE, of the requests with this method that matched no route. */
 void api_requests_counted(const api_metrics *metrics, int route, api_method method, api_class of,
                           st_distribution *out);
 /* Returns the number of requests that were refused with this code. */
 uint64_t api_problems_counted(const api_metrics *metrics, int code);
 
-/* --- edits --- */
+/* --- counting edits --- */
 
 typedef enum api_edit_result {
     API_EDIT_APPLIED,
@@ -81,8 +81,8 @@ typedef enum api_edit_result {
     API_EDIT_RESULTS
 } api_edit_result;
 
-/* The numbers of operations are those of he_op_at; undo and redo follow the highest possible
- * number. */
+/* Edits are counted by the number of their operation (he_op_number). Undo and redo have the numbers
+ * after the highest possible one. */
 enum { API_MOST_OPERATIONS = 64, API_UNDO = API_MOST_OPERATIONS, API_REDO, API_OPERATIONS };
 
 /* Counts `count` operations that have this number and result. */
@@ -92,20 +92,21 @@ uint64_t api_edits_counted(const api_metrics *metrics, size_t number, api_edit_r
 /* --- counters that have neither a route nor an operation --- */
 
 typedef enum api_counter {
-    API_COUNT_BEGUN, /* requests */
+    API_COUNT_BEGUN, /* requests that have begun */
     API_COUNT_ENDED,
     API_COUNT_BYTES_IN,
     API_COUNT_BYTES_OUT,
-    API_COUNT_OPENED, /* connections */
+    API_COUNT_OPENED, /* connections that were opened */
     API_COUNT_CLOSED,
-    API_COUNT_REFUSED_LIMIT, /* connections that were refused, by reason */
+    API_COUNT_REFUSED_LIMIT, /* connections that were refused, one counter for each reason */
     API_COUNT_REFUSED_MEMORY,
     API_COUNT_REFUSED_STOPPING,
-    API_COUNT_LATE_IDLE, /* connections that were closed for being too slow, by stage */
+    /* Connections that were closed because the client was too slow, one counter for each stage. */
+    API_COUNT_LATE_IDLE,
     API_COUNT_LATE_HEAD,
     API_COUNT_LATE_BODY,
     API_COUNT_LATE_ANSWER,
-    API_COUNT_HANDSHAKES, /* of TLS, by result */
+    API_COUNT_HANDSHAKES, /* TLS handshakes that succeeded */
     API_COUNT_HANDSHAKES_FAILED,
     API_COUNTERS
 } api_counter;

@@ -1,5 +1,5 @@
-/* attributes.c - GET .../attributes, and the values of one attribute: a page, some by their ids, or
- * all rows as octets. */
+/* attributes.c - GET .../attributes, and the values of one attribute: a page of them, those of some
+ * ids, or all rows as binary data. */
 #include "api/request/handlers.h"
 
 #include "api/document/attribute_path.h"
@@ -45,7 +45,7 @@ const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
     return column;
 }
 
-/* Percent-encodes everything but letters, digits and a few marks. */
+/* Percent-encodes all characters except letters, digits, and - _ . ~. */
 static void write_segment(const char *name, char *out)
 {
     static const char digits[] = "0123456789ABCDEF";
@@ -72,7 +72,7 @@ void api_attribute_path(const api_exchange *x, char out[API_LOCATION])
              he_kind_plural(x->kind), segment);
 }
 
-/* --- as JSON --- */
+/* --- values as JSON --- */
 
 static void begin_values(api_exchange *x, const he_mesh *mesh, const he_column *column)
 {
@@ -107,10 +107,10 @@ static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
                              (unsigned long long)limit, cursor);
 }
 
-/* Which rows of an attribute the client wants. */
+/* Which values of an attribute the client wants. */
 typedef struct choice {
-    uint64_t from;      /* first id of a page */
-    const uint32_t *of; /* these ids only; NULL: a page */
+    uint64_t from;      /* first id of the page, if `of` is NULL */
+    const uint32_t *of; /* the ids whose values the client wants; NULL: it wants a page */
     size_t count;
 } choice;
 
@@ -143,7 +143,7 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
     api_answer_json(x, 200);
 }
 
-/* Reads "1,2,3": at most one id per two bytes of the parameter. */
+/* Reads the ids in a parameter such as "1,2,3". It has at most one id for every two bytes. */
 static bool read_ids(api_exchange *x, const char *text, choice *out)
 {
     uint32_t *ids = api_arena_array(&x->arena, strlen(text) / 2 + 1, sizeof *ids);
@@ -172,7 +172,7 @@ static bool read_ids(api_exchange *x, const char *text, choice *out)
     }
 }
 
-/* Reads ids of live elements. */
+/* Reads the ids that the client wants, which must be live. */
 static bool read_some(api_exchange *x, const he_mesh *mesh, choice *out)
 {
     he_error err = {0};
@@ -200,11 +200,11 @@ static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *c
     api_answer_json(x, 200);
 }
 
-/* --- as octets --- */
+/* --- values as binary data --- */
 
 typedef struct rows {
     const he_column *column;
-    uint64_t next, end; /* in bytes */
+    uint64_t next, end; /* positions in bytes */
 } rows;
 
 static void free_rows(void *stream)
@@ -212,7 +212,8 @@ static void free_rows(void *stream)
     he_mem_free(stream);
 }
 
-/* Reads the rows of an attribute as octets. Rows that are not stored hold the default. */
+/* Reads all rows of an attribute as binary data. Rows beyond the end of the column have the default
+ * value. */
 static int64_t read_rows(void *stream, char *buffer, size_t size)
 {
     rows *r = stream;

@@ -1,4 +1,4 @@
-/* backup.c - POST /v1/admin/backup: the whole store as one file. */
+/* backup.c - POST /v1/admin/backup: answers with the whole store as one file. */
 #include "api/request/handlers.h"
 
 static void make(api_exchange *x)
@@ -17,8 +17,8 @@ static void make(api_exchange *x)
     }
 }
 
-/* The size of the store is not known in advance, so a backup is a job unless the client prefers to
- * wait. */
+/* Makes a backup as a job, unless the client prefers to wait, because the size of the store and so
+ * the time are not known in advance. */
 void api_admin_backup(api_exchange *x)
 {
     if (x->service->options.backup == NULL) {

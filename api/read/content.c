@@ -1,5 +1,5 @@
-/* content.c - GET .../content: a mesh as a file or document, made from a snapshot while it is
- * sent. */
+/* content.c - GET .../content: answers with a mesh as a file or a JSON document, which is made from
+ * a snapshot while it is sent. */
 #include "api/request/handlers.h"
 
 #include "api/document/document_out.h"
@@ -11,7 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The writer of a file format, or of the JSON document; freed with the exchange. */
+/* The writer of the answer: `writer` for a file format, or `document` for a JSON document. It is
+ * freed with the exchange. */
 typedef struct content {
     he_writer *writer;
     api_document_out *document;
@@ -44,7 +45,7 @@ static bool find_encoding(api_exchange *x, const he_format *format, const char *
     return true;
 }
 
-/* Finds the index of the encoding that ?encoding= names. The compressed form of an encoding counts
+/* Finds the index of the encoding that ?encoding= or ?compress= names: a compressed form is listed
  * as an encoding of its own. */
 static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
 {
@@ -54,8 +55,8 @@ static bool choose_encoding(api_exchange *x, const he_format *format, size_t *en
            (packed == NULL || find_encoding(x, format, "compression", packed, encoding));
 }
 
-/* Finds the format that the client wants; NULL is the JSON document. Returns false if the client
- * accepts none. */
+/* Finds the format that the client wants; `*format` is NULL for a JSON document. Returns false if
+ * the client accepts none. */
 static bool choose(api_exchange *x, const he_format **format)
 {
     const char *name = api_param_text(x, "format");
@@ -75,10 +76,11 @@ static bool choose(api_exchange *x, const he_format **format)
     return true;
 }
 
-/* The maximum size of the header that lists warnings, and of its last words, "and N more". */
+/* The maximum size of the header that lists warnings, and of the words "and N more" at its end. */
 enum { MOST_WARNINGS = 1000, MORE_WARNINGS = 40 };
 
-/* Lists what the file cannot represent, so that the client does not lose it unawares. */
+/* Adds a header that lists what the file format cannot represent, so that the client knows what is
+ * lost. */
 static void answer_losses(api_exchange *x, const he_warnings *warnings)
 {
     char list[MOST_WARNINGS] = "", text[HE_ERROR_TEXT], more[MORE_WARNINGS] = "";
@@ -135,7 +137,7 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
         c->document = api_document_out_new(x->content, x->info.name);
         return c->document != NULL || api_fail_memory(x);
     }
-    he_progress_span(&x->progress, 0.5); /* in a job, the copy is about half of the time */
+    he_progress_span(&x->progress, 0.5); /* preparing the writer takes about half of a job's time */
     bool long_faces = format->writing != NULL && format->writing->cuts;
     if ((long_faces && he_long_faces_keep(x->content, &x->progress, &err) != HE_OK) ||
         he_writer_new(format, x->content, chosen->encoding, &x->progress, &c->writer, &err) !=
@@ -154,13 +156,13 @@ static bool is_plain(const char *name)
     return name[length] == '\0' && length > 0 && length <= HE_BESIDE_NAME && name[0] != '.';
 }
 
-/* Suggests a file name to the client. A material library gets the name by which the mesh's OBJ file
- * refers to it. */
+/* Suggests a file name to the client. The name of a material library (format mtl) is the one by
+ * which the mesh's OBJ file refers to it. */
 static void name_file(api_exchange *x, const he_format *format)
 {
     const char *names[HE_COLUMN_COMPONENTS];
-    /* Ranges are not supported: a file is made while it is sent, so a part of it would cost as much
-     * as the whole. */
+    /* Range requests are not supported: a file is made while it is sent, so a part of it would cost
+     * as much as the whole. */
     api_answer_header(x, "Accept-Ranges", "none");
     bool library = format != NULL && strcmp(format->name, "mtl") == 0;
     if (library && he_mtl_names(x->content, names) > 0 && is_plain(names[0])) {

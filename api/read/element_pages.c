@@ -1,5 +1,5 @@
-/* element_pages.c - GET .../vertices, halfedges, edges, faces: a page of a collection, or all of it
- * as lines. */
+/* element_pages.c - GET .../vertices, halfedges, edges, faces: a page of the elements of one kind,
+ * or all of them as lines of JSON. */
 #include "api/request/handlers.h"
 
 #include "api/read/elements.h"
@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* --- a page --- */
+/* --- one page of elements --- */
 
 static uint64_t page_limit(const api_exchange *x)
 {
@@ -65,20 +65,20 @@ static void answer_page(api_exchange *x)
     }
 }
 
-/* --- the whole collection, one line per element --- */
+/* --- all elements of a kind, one line per element --- */
 
-/* The number of bytes that are made at a time; the line of a face with many corners may be
- * longer. */
+/* The number of bytes after which the text is sent. The last line in it may make it longer, by much
+ * if it is that of a face with many corners. */
 enum { LINES_BUFFER = 64 * 1024 };
 
 typedef struct lines {
     const he_mesh *mesh;
     he_kind kind;
     uint64_t next;  /* next id to visit */
-    uint64_t count; /* lines written */
+    uint64_t count; /* number of lines written */
     bool ended;
     api_text text;
-    size_t sent; /* bytes of the text */
+    size_t sent; /* how many bytes of `text` were sent */
 } lines;
 
 static void free_lines(void *stream)
@@ -156,8 +156,8 @@ static bool wants_lines(const api_exchange *x)
     return strcmp(x->media_out, "application/x-ndjson") == 0;
 }
 
-/* Estimates the cost of a collection. Its lines are made from a copy of the mesh, and writing an
- * element takes as long as copying about twenty. */
+/* Estimates the cost of reading elements. Lines are made from a copy of the mesh, and writing an
+ * element takes about as long as copying twenty. */
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";

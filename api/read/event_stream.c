@@ -4,9 +4,10 @@
 #include "api/event/event_follow.h"
 #include "api/event/events.h"
 
-/* Reads from where the client wants events. A browser that reconnects repeats its request with
- * Last-Event-ID, which is newer than the `since` in the URL. An id that this server did not make is
- * treated as one of another incarnation, because a refusal would end an EventSource for good. */
+/* Reads after which revision the client wants events. A browser that reconnects repeats its request
+ * with Last-Event-ID, which is newer than the `since` in the URL. A Last-Event-ID that this server
+ * did not make is treated as one of another mesh, because a browser would not reconnect after a
+ * refusal. */
 static bool read_since(api_exchange *x, st_since *since)
 {
     const char *last = x->request.headers[API_HEADER_LAST_EVENT_ID];

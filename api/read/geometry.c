@@ -1,9 +1,10 @@
 /* geometry.c - GET .../geometry: the arrays from which a renderer draws a mesh, or the changes in
- * them; see geometry_rows.h for the layout.
+ * them. geometry_rows.h describes the arrays.
  *
- * The slots of a mesh's triangles (their rows in the arrays) are computed when they are first
- * needed and kept with the mesh; a later request brings them up to date. A few changed rows are
- * drawn under the read lock; all rows, or many, from a snapshot. */
+ * A slot is the row of a triangle in the array of triangles. The slots of a mesh are computed when
+ * they are first needed and are then kept with the mesh; a later request brings them up to date. A
+ * few changed rows are written while the mesh is locked for reading; many or all rows are written
+ * from a snapshot. */
 #include "api/request/handlers.h"
 
 #include "api/read/geometry_rows.h"
@@ -19,11 +20,11 @@ typedef struct geometry {
     api_rows rows;
 } geometry;
 
-/* The outcome of using the slots that are kept with the mesh. */
+/* What came of the attempt to answer with the slots that are kept with the mesh. */
 typedef enum geometry_step {
-    TAKEN,   /* g->rows is filled */
+    TAKEN,   /* g->rows has the rows to send */
     MISSING, /* no slots are kept */
-    LATER,   /* too much work for a worker */
+    LATER,   /* this is too much work for a worker */
     ANSWERED /* the request was answered or refused */
 } geometry_step;
 
@@ -44,11 +45,11 @@ static bool is_working(const api_exchange *x)
     return x->phase != API_PHASE_BODY;
 }
 
-/* --- the slots --- */
+/* --- using and making slots --- */
 
-/* Brings the slots up to date. On a worker it returns HE_LIMIT if that takes long, and another
- * thread does it. There it may take a while, but less than making the slots again, which visits all
- * rows. */
+/* Brings the slots up to date with the revision in x->info. Returns HE_LIMIT if that takes too long
+ * for a worker. Returns HE_UNSUPPORTED if the slots must be made anew, because the history does not
+ * reach back or because an update would take about as long. */
 static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, const he_mesh *mesh,
                                he_error *err)
 {
@@ -110,7 +111,7 @@ static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_draw_sl
     return api_rows_take_all(&g->rows, slots, &err) == HE_OK ? TAKEN : fail(g->x, &err);
 }
 
-/* Fills g->rows from slots that are up to date with the present revision. */
+/* Chooses the rows to send (g->rows) from slots that are up to date with the present revision. */
 static geometry_step take(geometry *g, const he_mesh *mesh, const he_draw_slots *slots)
 {
     api_exchange *x = g->x;
@@ -138,8 +139,8 @@ static geometry_step take(geometry *g, const he_mesh *mesh, const he_draw_slots 
     return is_not_modified(x, slots, since) ? ANSWERED : TAKEN;
 }
 
-/* Fills g->rows from the kept slots, if possible. The caller holds the read lock. Slots that cannot
- * be brought up to date are dropped. */
+/* Chooses the rows to send (g->rows) from the slots that are kept with the mesh, if possible. The
+ * caller has locked the mesh for reading. Slots that cannot be brought up to date are dropped. */
 static geometry_step take_kept(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -163,8 +164,9 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
     return outcome;
 }
 
-/* Keeps new slots. If two requests made slots at the same time, the second one uses those of the
- * first; if these are of another revision by now, it uses its own without keeping them. */
+/* Keeps new slots with the mesh and chooses all rows to send. If another request has made slots
+ * meanwhile, those are used instead; if they are of another revision, the new slots are used but
+ * not kept. */
 static geometry_step keep_or_take(geometry *g, he_draw_slots *slots)
 {
     api_exchange *x = g->x;
@@ -183,7 +185,7 @@ static geometry_step keep_or_take(geometry *g, he_draw_slots *slots)
     return outcome;
 }
 
-/* --- answers --- */
+/* --- answering the request --- */
 
 static int64_t read_rows(void *stream, char *buffer, size_t size)
 {
@@ -205,7 +207,8 @@ static void answer_stream(api_exchange *x, geometry *g)
     api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
-/* Answers with the changed rows, which are drawn under the read lock if they are few. */
+/* Answers with the changed rows, while the mesh is locked for reading. Returns LATER if they are
+ * too many for that. */
 static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -236,7 +239,8 @@ static geometry_step make_slots(geometry *g)
     api_exchange *x = g->x;
     he_error err = {0};
     he_draw_slots *slots = NULL;
-    /* The number of the layout has 53 bits, so that JSON readers represent it exactly. */
+    /* The number that identifies the layout has 53 bits, so that JSON readers represent it
+     * exactly. */
     uint64_t layout = st_random() >> 11 | 1;
     if (he_draw_slots_new(x->content, layout, x->info.revision, &slots, &err) != HE_OK) {
         return fail(x, &err);
@@ -244,7 +248,8 @@ static geometry_step make_slots(geometry *g)
     return keep_or_take(g, slots);
 }
 
-/* Sends a few changed rows under the lock; for more, the handler must take a snapshot. */
+/* Answers with a few changed rows while the mesh is locked for reading. For more rows it takes a
+ * snapshot and chooses the rows to send (g->rows). */
 static geometry_step answer_or_take(geometry *g)
 {
     api_exchange *x = g->x;
@@ -264,8 +269,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Answers 304 before a job is made: a client with the present tag got its arrays from the cached
- * slots. */
+/* Sets the tag of the answer if it can be known from the kept slots, so that If-None-Match is
+ * answered 304 before a job is made. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
@@ -285,7 +290,7 @@ static bool name_kept(api_exchange *x)
 bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* the cost depends on the kept slots */
+    (void)out; /* the cost is unknown before the slots are looked at */
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
         return api_fail(x, API_BAD_PARAMETER, "\"since\" and \"layout\" must be given together");
     }

@@ -16,7 +16,7 @@ void api_rows_clear(api_rows *r)
     *r = (api_rows){0};
 }
 
-/* --- choosing rows --- */
+/* --- choosing the rows to send --- */
 
 static he_status take(api_rows *r, const he_draw_slots *slots, uint64_t since, size_t triangles,
                       he_error *err)
@@ -76,7 +76,7 @@ uint64_t api_rows_count(const api_rows *r)
     return (uint64_t)vertex_rows(r) + triangle_rows(r);
 }
 
-/* --- drawing --- */
+/* --- preparing to write the rows --- */
 
 he_status api_rows_draw(api_rows *r, const he_mesh *mesh, uint64_t most, he_error *err)
 {
@@ -101,7 +101,7 @@ he_status api_rows_draw(api_rows *r, const he_mesh *mesh, uint64_t most, he_erro
     return status;
 }
 
-/* --- writing --- */
+/* --- writing the rows --- */
 
 static uint64_t ids_bytes(const api_rows *r, uint32_t rows)
 {
@@ -189,8 +189,8 @@ static bool put_vertex(api_rows *r)
     return true;
 }
 
-/* Writes the row of a triangle. The slots of a face are consecutive, so its triangles are computed
- * once. */
+/* Writes the row of a triangle. The slots of a face are consecutive, so the triangulation of the
+ * face is computed only once. */
 static bool put_triangle(api_rows *r)
 {
     if (r->next == triangle_rows(r)) {
@@ -209,7 +209,8 @@ static bool put_triangle(api_rows *r)
     return true;
 }
 
-/* Writes the next piece of the current part of the answer: the header, four ids, or a row. */
+/* Writes the next piece of the current part of the answer: the header, four ids, or a row. Returns
+ * false if the part has ended. */
 static bool put(api_rows *r)
 {
     switch (r->part) {

@@ -1,4 +1,4 @@
-/* geometry_rows.h - the binary answers of GET .../geometry: choosing and writing their rows.
+/* geometry_rows.h - the binary answers of GET .../geometry: chooses and writes their rows.
  *
  * An answer holds all rows of one revision, or only those that changed since an earlier one. All
  * values are little-endian.
@@ -18,15 +18,15 @@
  *     else        u32 each: the row numbers, ascending, and zeros up to a multiple of 16 bytes;
  *                 then the rows, vertices f32 x 4, triangles u32 x 4
  *
- * See draw/draw_arrays.h for the rows; slots without a face are four zeros. Each list begins at a
- * multiple of 16. Within a layout the numbers of rows never decrease, and new rows that are not
- * listed are zeros.
+ * draw/draw_arrays.h says what a row contains. Row i of the triangles is called slot i; the row of
+ * a slot without a triangle is four zeros. Each list begins at a multiple of 16 bytes. Within a
+ * layout the numbers of rows never decrease, and new rows that are not in the answer are zeros.
  *
  * A CLIENT fetches all rows, draws, and then requests ?since=REVISION&layout=LAYOUT with its own
  * revision and layout. If the answer's base is 0, it starts again with these rows. Otherwise it
  * extends its arrays with zeros to the numbers of rows in the header and replaces the rows listed.
- * Its arrays are then byte for byte those of the answer's revision. Origin and scale do not change
- * within a layout. */
+ * The client's arrays are then equal, byte for byte, to all rows of the answer's revision. Origin
+ * and scale do not change within a layout. */
 #ifndef HE_API_READ_GEOMETRY_ROWS_H
 #define HE_API_READ_GEOMETRY_ROWS_H
 
@@ -35,39 +35,38 @@
 
 enum { API_ROWS_AT_ONCE = 1024, API_ROW_BYTES = 16 };
 
-/* The rows of an answer, and how many of them were read. {0} is empty. */
+/* The rows of an answer, and how far the answer was read. {0} is empty. */
 typedef struct api_rows {
     uint64_t revision, base, layout;
     he_frame frame;
-    uint32_t vertices, triangles; /* numbers of rows at the revision */
-    he_ids vertex_ids, slot_ids;  /* the rows to send, if base is not 0 */
-    uint32_t *owner;              /* the owner of each triangle to send: see draw_slots.h */
+    uint32_t vertices, triangles; /* numbers of all rows of the revision */
+    he_ids vertex_ids, slot_ids;  /* the rows to send, if `base` is not 0 */
+    uint32_t *owner; /* the face of each triangle to send, or a mark for none (draw_slots.h) */
     he_draw_arrays drawing;
     he_draw_arrays_walk walk;
     int part;
-    uint32_t next;     /* next row of the part */
-    size_t begin, end; /* the unread bytes in the buffer */
+    uint32_t next;     /* next row or id of the present part */
+    size_t begin, end; /* range of `buffer` that was not read yet */
     unsigned char buffer[API_ROWS_AT_ONCE * API_ROW_BYTES];
 } api_rows;
 
-/* Both choose the rows to send: all, or those changed since a revision. The slots are not needed
- * afterwards.
+/* These two functions choose the rows to send: all rows, or those that changed after revision
+ * `since`. The slots are not needed afterwards.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_UNSUPPORTED if only all rows can answer the request.
+ * Returns HE_UNSUPPORTED if the changed rows are not known, so that all rows must be sent.
  * Returns HE_LIMIT if more than `most` changes would have to be visited. */
 HE_NODISCARD he_status api_rows_take_all(api_rows *rows, const he_draw_slots *slots, he_error *err);
 HE_NODISCARD he_status api_rows_take_changes(api_rows *rows, const he_draw_slots *slots,
                                              uint64_t since, uint64_t most, he_error *err);
-/* Returns the number of rows of the answer. */
+/* Returns the number of rows that the answer will contain. */
 uint64_t api_rows_count(const api_rows *rows);
-/* Prepares to read the rows from a mesh at their revision, which must not change until the last row
- * was read. On failure nothing is prepared.
+/* Prepares to read the rows from the mesh at their revision, which must not change until the last
+ * row was read. On failure nothing changes.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_LIMIT if the changed rows take more than `most` steps.
- */
+ * Returns HE_LIMIT if the changed rows take more than `most` steps. */
 HE_NODISCARD he_status api_rows_draw(api_rows *rows, const he_mesh *mesh, uint64_t most,
                                      he_error *err);
-/* Returns the size of the answer. */
+/* Returns the size of the answer in bytes. */
 int64_t api_rows_bytes(const api_rows *rows);
 /* Reads the next bytes of the answer; returns 0 at its end. */
 size_t api_rows_read(api_rows *rows, char *buffer, size_t size);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Writes "a,b,..." as ["a","b","..."]. */
+/* Writes the names of an entry's operations, stored as "a,b,...", as a list ["a","b","..."]. */
 static void write_ops(api_out *out, const void *value)
 {
     const char *names = ((const st_entry *)value)->ops;
@@ -77,19 +77,22 @@ static const api_field entry_fields[] = {
 const api_record api_entry_record = {"entry", entry_fields,
                                      sizeof entry_fields / sizeof *entry_fields};
 
-/* A page of the history: entries from revision `first` down to the one after `last`. */
+/* A page of the history, newest entry first: at most `limit` entries from revision `first` down to
+ * `last` + 1. */
 typedef struct page {
     uint64_t first, last, limit;
 } page;
 
-/* Finds the entry of a revision, unless it is past the end of the page. */
+/* Finds the entry of a revision. Returns false if the history has none, or if the revision is not
+ * after p->last. */
 static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, st_entry *out)
 {
     return revision > p->last &&
            st_history_entry(x->mesh, (size_t)(x->info.revision - revision), out);
 }
 
-/* Sets `*next` to the revision after the page's entries, or to 0 at the end. */
+/* Writes the entries of the page. Sets `*next` to the revision with which the next page begins, or
+ * to 0 if there is none. */
 static void write_entries(api_exchange *x, const page *p, uint64_t *next)
 {
     st_entry entry;
@@ -105,8 +108,8 @@ static void write_entries(api_exchange *x, const page *p, uint64_t *next)
     *next = more ? revision : 0;
 }
 
-/* Writes the cursor of the next page. It is a revision number, so edits made meanwhile do not move
- * it. */
+/* Writes the cursor of the next page. It contains a revision number, so edits that are made between
+ * two requests do not change the pages. */
 static void write_next(api_exchange *x, const page *p, uint64_t next)
 {
     char cursor[API_CURSOR];

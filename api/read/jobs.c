@@ -33,8 +33,8 @@ void api_job_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
-/* Sends the headers that were kept with a job's answer, except those that the answer sets on its
- * own. */
+/* Adds the headers that were kept with a job's answer, except Content-Type and ETag, which are set
+ * elsewhere. */
 static void answer_kept_headers(api_exchange *x, const api_job *job)
 {
     for (size_t i = 0; i < API_JOB_HEADERS; i++) {
@@ -125,7 +125,7 @@ void api_job_events(api_exchange *x)
     }
 }
 
-/* State of writing a page of the list. */
+/* The state of writing one page of the list of jobs. */
 typedef struct page {
     api_out *out;
     uint64_t last; /* number of the last job on the page */

@@ -1,4 +1,4 @@
-/* materials.c - GET .../materials: the table of materials, to which faces refer. */
+/* materials.c - GET .../materials: the list of the mesh's materials, to which faces refer. */
 #include "api/request/handlers.h"
 
 #include "api/json/material_value.h"

@@ -1,5 +1,5 @@
-/* meshes.c - the collection of meshes and its members, except the making of content: list, summary,
- * name, deletion, copy. */
+/* meshes.c - the list of meshes, and requests to one mesh that do not change its content: rename,
+ * delete, copy. */
 #include "api/request/handlers.h"
 
 #include "api/document/summary.h"
@@ -27,8 +27,8 @@ static bool read_list_cursor(api_exchange *x, const char **after)
     return true;
 }
 
-/* Writes totals of the whole server, which help a client decide what to delete. A token with
- * prefixes does not see them, since they include meshes of others. */
+/* Writes totals of the whole server, which help a client decide what to delete. They are not shown
+ * to a token with prefixes, because they include meshes that it cannot see. */
 static void write_server(api_exchange *x)
 {
     uint64_t used, budget;
@@ -43,15 +43,16 @@ static void write_server(api_exchange *x)
     }
 }
 
-/* The number of cards (descriptions of meshes) that are read at once; when memory is short, large
- * blocks are refused first. */
+/* The number of cards (descriptions of meshes) that are read at once; there are few, because large
+ * allocations fail first when memory is short. */
 enum { CARDS = 32 };
 
-/* State of writing a page. */
+/* The state of writing one page of the list of meshes. */
 typedef struct list_page {
     st_card *cards;      /* an array of CARDS */
-    size_t limit, given; /* in items */
-    /* The search goes on after this id; at the start of a range it is no valid id. */
+    size_t limit, given; /* numbers of items on the page: at most, and written so far */
+    /* The search continues after this text, which is an id or, at the beginning of a range, a text
+     * just before the range (go_to). */
     char from[ST_MESH_ID + 1];
     char last[ST_MESH_ID + 1]; /* id of the last item */
     bool more;                 /* there is a next page */
@@ -88,9 +89,9 @@ static bool write_range(api_exchange *x, list_page *p, const char *prefix)
     return true;
 }
 
-/* Moves to just before the first id that begins with `prefix`, unless the page is already past it.
- * The text is the prefix with its last character lowered by one, and then \x7f, which sorts after
- * all characters of ids. */
+/* Sets p->from to a text just before the first id that begins with `prefix`, unless p->from is
+ * already after it. That text is the prefix with its last character lowered by one, followed by
+ * \x7f, which sorts after all characters of ids. */
 static void go_to(list_page *p, const char *prefix)
 {
     char before[API_TOKEN_PREFIX + 2];
@@ -104,8 +105,8 @@ static void go_to(list_page *p, const char *prefix)
     }
 }
 
-/* Writes the page. It reads only ids that the token can see, however many other meshes there
- * are. */
+/* Writes the page. It looks only at ids that the token can see, so the time does not depend on the
+ * number of other meshes. */
 static bool write_items(api_exchange *x, list_page *p)
 {
     const char *ranges[API_TOKEN_PREFIXES];
@@ -229,7 +230,8 @@ void api_mesh_delete_cold(api_exchange *x, st_cold *cold)
 
 static const char *const copy_members[] = {"id", "name", NULL};
 
-/* The wanted id of the copy; NULL if the server is to choose one. */
+/* The id and the name that the client wants for the copy. A NULL id is chosen by the server; with a
+ * NULL name the copy gets the name of the original. */
 typedef struct copy_request {
     const char *id, *name;
 } copy_request;
@@ -259,7 +261,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
            api_in_string(&member, ST_MESH_NAME, &r->name);
 }
 
-/* The share of copying in the progress; the rest is computing the summary. */
+/* The progress that is reached after copying; the rest is computing the summary. */
 static const double COPY_SHARE = 0.4;
 
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
@@ -276,8 +278,8 @@ bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     return read_copy(x, r) && api_preconditions_hold(x, NULL);
 }
 
-/* Copies the content of a mesh and computes the copy's summary, before other requests can change
- * the copy. */
+/* Copies the content of a mesh and computes the summary of the copy, which is not stored yet, so
+ * that no other request can change it. */
 static bool make_copy(api_exchange *x, he_mesh **out, api_summary *summary)
 {
     he_mesh *fresh = NULL;

@@ -1,6 +1,7 @@
-/* metrics.c - GET /metrics: each family of metric_rows.h, from counters and from the present state.
+/* metrics.c - GET /metrics: writes each metric of metric_rows.h from counters and from the present
+ * state of the server.
  *
- * Nothing here blocks, so a worker can answer: locks are held only for moments. */
+ * A worker can answer this request, because locks are held only for moments. */
 #include "api/metric/metric_page.h"
 
 #include "api/json/problem.h"
@@ -8,7 +9,7 @@
 #include "system/memory.h"
 #include "system/process.h"
 
-/* All that is read once for a page of metrics. */
+/* Measurements that are taken once for each page of metrics. */
 typedef struct sources {
     const api_service *service;
     const api_metrics *metrics;
@@ -35,7 +36,7 @@ static void read_sources(const api_exchange *x, sources *s)
     st_process_read(&s->process);
 }
 
-/* --- samples --- */
+/* --- writing samples --- */
 
 static void put(sources *s, double number)
 {
@@ -57,7 +58,7 @@ static void put_times(sources *s, const st_distribution *times)
     api_metric_put_histogram(&s->page, NULL, times, st_scale_micros, MICROS);
 }
 
-/* --- requests --- */
+/* --- metrics of requests --- */
 
 static uint64_t total_of(const st_distribution *distribution)
 {
@@ -68,16 +69,16 @@ static uint64_t total_of(const st_distribution *distribution)
     return total;
 }
 
-/* The requests of one route by one method: how the page labels them, and what they are counted
- * under. */
+/* The requests of one route with one method: their labels on the page, and the arguments of
+ * api_requests_counted. */
 typedef struct series {
     const char *route_label, *method_label;
-    int route; /* its index in the table of routes, or API_NO_ROUTE */
+    int route; /* index of the route in the table of routes, or API_NO_ROUTE */
     api_method method;
 } series;
 
-/* Writes the samples of a series. It appears with its first request, since most possible series
- * never get one. */
+/* Writes the samples of a series, one for each class of statuses that was counted. Most possible
+ * series never get a request, so they are not shown before their first one. */
 static void put_series(sources *s, const series *requests, bool times)
 {
     for (api_class of = 0; of < API_CLASSES; of++) {
@@ -120,8 +121,8 @@ static void put_problems(sources *s)
     }
 }
 
-/* Returns the difference of two counters. They are read in such an order that requests which end in
- * between never make it negative. */
+/* Returns `begun` minus `ended`. `ended` is read first, so that requests which end between the two
+ * reads never make the result negative. */
 static uint64_t difference(const api_metrics *metrics, api_counter begun, api_counter ended)
 {
     const uint64_t ends = api_counted(metrics, ended), begins = api_counted(metrics, begun);
@@ -146,7 +147,7 @@ static void put_limited(sources *s)
     }
 }
 
-/* --- edits --- */
+/* --- metrics of edits --- */
 
 static const char *operation_name(size_t number)
 {
@@ -171,7 +172,7 @@ static void put_edits(sources *s)
     }
 }
 
-/* --- the store and memory --- */
+/* --- metrics of the store and of memory --- */
 
 static void put_elements(sources *s)
 {
@@ -216,7 +217,7 @@ static void put_store_state(sources *s)
     put_of(s, "failed", status == ST_FAILED);
 }
 
-/* --- jobs and threads --- */
+/* --- metrics of jobs and threads --- */
 
 static void put_jobs(sources *s, bool ended)
 {
@@ -252,7 +253,7 @@ static void put_pools(sources *s, api_metric_id id)
     }
 }
 
-/* --- the page --- */
+/* --- the whole page of metrics --- */
 
 static void put_family(sources *s, api_metric_id id)
 {

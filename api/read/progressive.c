@@ -1,7 +1,8 @@
 /* progressive.c - GET .../progressive: a coarse mesh and the splits that refine it, made from a
- * snapshot; see progressive_rows.h for the layout. It is computed for each answer, with the same
- * result each time. While it is computed, by all threads for long work, it takes about three times
- * the memory of the mesh; while it is sent, it takes the memory of what is still to be sent. */
+ * snapshot. progressive_rows.h describes the layout. Each answer is computed anew, with equal
+ * results for equal requests. The computation is parallel and needs about three times the memory of
+ * the mesh; the answer, while it is sent, needs only the memory of the part that is still to be
+ * sent. */
 #include "api/request/handlers.h"
 
 #include "api/read/progressive_rows.h"
@@ -32,8 +33,8 @@ static he_decimate_options options_of(const api_exchange *x)
                                      api_param_number(x, "boundary_weight", HE_BOUNDARY_WEIGHT)};
 }
 
-/* The length of the representation's name in the ETag. Each combination of parameters is another
- * representation; the name contains their hash. */
+/* The length of the representation's name in the ETag. Each combination of parameters is a
+ * representation of its own, whose name contains a hash of the parameters. */
 enum { REPRESENTATION = 32 };
 
 static void name_representation(api_exchange *x, char out[REPRESENTATION])
@@ -73,7 +74,7 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     return api_progressive_write(p, &x->progress, &err) == HE_OK || api_fail_core(x, &err);
 }
 
-/* Returns false if the mesh has other faces than triangles, as far as its counts show that. */
+/* Returns false if the counts of the mesh show that not all faces are triangles. */
 static bool may_be_triangles(const he_mesh *mesh)
 {
     uint64_t corners = 2 * (uint64_t)he_mesh_edges(mesh) - he_mesh_boundary_halfedges(mesh);

@@ -33,7 +33,7 @@ static unsigned char *put_point(unsigned char *at, he_vec3 point)
     return at;
 }
 
-/* --- the base --- */
+/* --- writing the base --- */
 
 static unsigned char *put_header(unsigned char *at, const api_progressive *p)
 {
@@ -75,7 +75,7 @@ static unsigned char *put_element(unsigned char *at, const he_mesh *base, he_kin
     return at;
 }
 
-/* Drops the splits before `first`, which are not sent. Splits are sent from the last to the
+/* Drops the splits before `first`, which are the finest. Splits are sent from the last to the
  * first. */
 static void drop_splits(he_progressive *mesh, size_t first)
 {
@@ -92,7 +92,7 @@ static void drop_splits(he_progressive *mesh, size_t first)
     memmove(mesh->moved.ids, mesh->moved.ids + moved, mesh->moved.count * sizeof *mesh->moved.ids);
 }
 
-/* Frees unused capacity of the lists. If that fails, nothing is lost. */
+/* Frees unused capacity of the lists. If that fails, the lists stay as they are. */
 static void fit(he_progressive *mesh)
 {
     he_progressive_split *splits = he_mem_array(mesh->splits, mesh->count + 1, sizeof *splits);
@@ -145,7 +145,7 @@ void api_progressive_clear(api_progressive *p)
     p->base = NULL;
 }
 
-/* --- the splits --- */
+/* --- writing the splits --- */
 
 static const he_progressive_split *split_at(const api_progressive *p, size_t i)
 {

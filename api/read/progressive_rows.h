@@ -1,5 +1,5 @@
 /* progressive_rows.h - the binary answer of GET .../progressive: a coarse mesh, and the vertex
- * splits that refine it to the present mesh. algo/progressive.h explains them.
+ * splits that refine it to the present mesh. algo/progressive.h explains vertex splits.
  *
  * All values are little-endian, and 0xFFFFFFFF stands for none.
  *
@@ -25,11 +25,11 @@
  *     96  u32 each: those faces, in which the new vertex replaces the split vertex; then
  *         zeros
  *
- * The edge of a half-edge is its id halved; an even half-edge has the direction of its edge. The
- * corners of the left face are new vertex, split vertex, left corner; those of the right face are
- * split vertex, new vertex, right corner. Edges from the split vertex to corners of faces that move
- * also move to the new vertex, except those to the left and right corner. The mesh is valid after
- * any number of splits. */
+ * The id of a half-edge halved is the id of its edge; a half-edge with an even id has the direction
+ * of its edge. The corners of the left face are new vertex, split vertex, left corner; those of the
+ * right face are split vertex, new vertex, right corner. Edges from the split vertex to corners of
+ * faces that move also move to the new vertex, except those to the left and right corner. The mesh
+ * is valid after any number of splits. */
 #ifndef HE_API_READ_PROGRESSIVE_ROWS_H
 #define HE_API_READ_PROGRESSIVE_ROWS_H
 
@@ -38,24 +38,24 @@
 
 enum { API_SPLIT_BYTES = 96 + 4 * HE_DECIMATE_DEGREE + 8 };
 
-/* A progressive mesh while it is sent: it holds only what is still to be sent. */
+/* A progressive mesh while it is sent: it keeps only what is still to be sent. */
 typedef struct api_progressive {
-    he_progressive mesh; /* its base is freed when it has been written */
+    he_progressive mesh; /* the splits to send; its base is freed by api_progressive_write */
     uint64_t revision;
     size_t wanted; /* number of splits to send */
     uint32_t issued[HE_KIND_COUNT];
     he_vec3 low, high;
-    unsigned char *base; /* the header and the elements of the base */
+    unsigned char *base; /* the bytes of the header and of the elements of the base */
     size_t base_bytes, base_sent;
-    size_t next; /* next split */
+    size_t next; /* index of the next split to send */
     size_t begin, end;
     unsigned char split[API_SPLIT_BYTES];
 } api_progressive;
 
 void api_progressive_clear(api_progressive *p);
 
-/* Writes the base, and frees its mesh and the splits that are not wanted. All members down to
- * `high` must be set. `progress` may be NULL.
+/* Writes the bytes of the base, and frees the base's mesh and the splits that are not wanted. The
+ * caller must have set all members down to `high`. `progress` may be NULL.
  * Returns HE_NO_MEMORY or HE_CANCELLED. */
 HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_progress *progress,
                                              he_error *err);

@@ -1,12 +1,13 @@
-/* records.h - the members of answers that handlers of this room write from tables. */
+/* records.h - the tables of JSON members (api/json/record.h) from which handlers of this room write
+ * their answers. */
 #ifndef HE_API_READ_RECORDS_H
 #define HE_API_READ_RECORDS_H
 
 #include "api/json/record.h"
 
-/* An entry of the history, and the numbers of elements in it. */
+/* The members of an entry of the history, and of the object in it that counts changed elements. */
 extern const api_record api_entry_record, api_counted_record;
-/* The rights of a token, a ticket, and how many tokens were read. */
+/* The members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
 extern const api_record api_token_record, api_ticket_record, api_reloaded_record;
 
 #endif

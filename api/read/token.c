@@ -1,5 +1,5 @@
-/* token.c - GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: the token of a request, a
- * ticket that replaces it, and reading the file of tokens again. */
+/* token.c - GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: the rights of a request's
+ * token, a ticket that replaces the token, and reading the token file again. */
 #include "api/request/handlers.h"
 
 #include "api/read/records.h"
@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The rights of a token as their members show them. */
+/* The values of the JSON members that describe the rights of a token. */
 typedef struct rights {
-    const api_token *token; /* NULL: the server needs no tokens */
+    const api_token *token; /* NULL: the server has no tokens */
     const char *name, *role;
     bool ends;
     double expires;
@@ -82,7 +82,8 @@ void api_token_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
-/* Checks a raw path with its query, as it will appear in the request line of a GET. */
+/* Checks the target of a ticket: a raw path with its query, as it will appear in the request line
+ * of a GET. */
 static bool check_target(api_exchange *x, const api_in *in, const char *target)
 {
     const size_t most = API_MAX_URI - sizeof "?" API_TICKET - API_TOKEN_TEXT;
@@ -159,5 +160,5 @@ static void reload(api_exchange *x)
 
 void api_admin_reload(api_exchange *x)
 {
-    api_defer(x, reload); /* it reads files */
+    api_defer(x, reload); /* reload() reads files, so it must not run on a worker */
 }

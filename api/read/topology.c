@@ -1,11 +1,12 @@
-/* topology.c - the mesh as a whole: GET .../boundaries and .../components. */
+/* topology.c - GET .../boundaries and GET .../components: the boundary loops and the components of
+ * the whole mesh. */
 #include "api/request/handlers.h"
 
 #include "mesh/walk.h"
 #include "query/topology.h"
 #include "query/traverse.h"
 
-/* Answers 200 with an object that has the revision and what `write` adds. */
+/* Answers 200 with an object that has the member "revision" and those that `write` writes. */
 static void answer(api_exchange *x, bool (*write)(api_exchange *x, const he_mesh *mesh))
 {
     api_out_object_begin(&x->out);
@@ -16,7 +17,7 @@ static void answer(api_exchange *x, bool (*write)(api_exchange *x, const he_mesh
     }
 }
 
-/* --- boundaries --- */
+/* --- GET .../boundaries --- */
 
 static void write_loop(api_out *out, const he_mesh *mesh, const he_boundary *loop,
                        const he_ids *halfedges)
@@ -61,7 +62,7 @@ void api_boundaries_get(api_exchange *x)
     answer(x, write_boundaries);
 }
 
-/* --- components --- */
+/* --- GET .../components --- */
 
 static bool write_components(api_exchange *x, const he_mesh *mesh)
 {

@@ -268,7 +268,7 @@ bool api_answer_from_card(api_exchange *x)
     }
     if (status != ST_OK || mesh != NULL) {
         st_release(mesh);
-        return false; /* loading finds the mesh or the error */
+        return false; /* loading the mesh will find it or report the error */
     }
     x->info = cold.info;
     x->has_info = true;
@@ -339,8 +339,8 @@ bool api_refuse_format(api_exchange *x, const char *detail)
     return false;
 }
 
-/* Content-Types that say nothing about the body: curl -T sends none, and curl --data-binary sends a
- * form's for any file. */
+/* Returns true if a Content-Type says nothing about the body: curl -T sends none, and curl
+ * --data-binary sends that of a form for any file. */
 static bool is_generic(const char *type)
 {
     return type == NULL || api_media_is(type, "text/plain") ||

@@ -1,12 +1,13 @@
-/* admit.h - the checks before a request reaches its handler: route, parameters in path and query,
- * the mesh, the headers of the body, Accept. service.c does the rest. */
+/* admit.h - the checks before a request reaches its handler: of the route, the parameters in path
+ * and query, the mesh, the headers of the body, and Accept. service.c handles the request from then
+ * on. */
 #ifndef HE_API_REQUEST_ADMIT_H
 #define HE_API_REQUEST_ADMIT_H
 
 #include "api/request/exchange.h"
 
-/* Makes these checks and fills the request's part of `x`. Returns false if the request was refused,
- * or answered (OPTIONS). */
+/* Makes all these checks and fills the members of `x` that describe the request. Returns false if
+ * the request was refused, or answered (OPTIONS). */
 bool api_admit(api_exchange *x);
 
 /* Looks for the mesh on disk if x->is_cold, which means that it is not in memory. Blocks. Returns
@@ -16,9 +17,10 @@ bool api_load_mesh(api_exchange *x);
  * card (name, revision and counts), without loading the mesh. Returns true if it could. Blocks. */
 bool api_answer_from_card(api_exchange *x);
 
-/* Returns the most bytes that the route's body may have. */
+/* Returns how many bytes the body of the request may have. */
 uint64_t api_body_cap(const api_exchange *x);
-/* Refuses a body that is too long, or one where none is allowed. Always returns false. */
+/* Refuses a body that is too long, or any body where the route allows none. Always returns
+ * false. */
 bool api_refuse_size(api_exchange *x);
 /* Refuses a missing or empty body where the route needs one. Always returns false. */
 bool api_refuse_empty(api_exchange *x);

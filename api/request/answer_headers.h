@@ -1,4 +1,4 @@
-/* answer_headers.h - THE list of response headers.
+/* answer_headers.h - the one list of the response headers that the server sends.
  *
  * A page of another origin can read only the headers named in Access-Control-Expose-Headers, and
  * those few that browsers always show. That header is made from this list. The server asserts that
@@ -8,8 +8,8 @@
 
 #include <stdbool.h>
 
-/* Each row: X(name, separator), for the headers that must be named so that a page can read them, in
- * order. */
+/* Each row: X(name, separator). The list has, in order, the headers that
+ * Access-Control-Expose-Headers must name so that a page can read them. */
 #define API_EXPOSED_HEADERS(X)           \
     X("Accept-Encoding", ", ")           \
     X("Accept-Ranges", ", ")             \
@@ -38,8 +38,8 @@
 /* The value of Access-Control-Expose-Headers: "Accept-Encoding, Allow, ..." */
 extern const char api_exposed_headers[];
 
-/* Returns true if a header may be sent: it is in the list, or one that browsers always show
- * (Cache-Control, Content-Type), or one of CORS (Access-Control-...). */
+/* Returns true if the server may send the header: it is in the list, or pages can always read it
+ * (Cache-Control, Content-Type), or it belongs to CORS (Access-Control-...). */
 bool api_header_is_listed(const char *name);
 
 #endif

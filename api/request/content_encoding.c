@@ -48,7 +48,7 @@ bool api_content_encoding_varies(const api_exchange *x)
     return !x->service->options.plain_answers && x->answer.live == NULL && x->answer.status != 204;
 }
 
-/* --- the answer --- */
+/* --- compressing the answer --- */
 
 static api_header *find_header(api_exchange *x, const char *name)
 {
@@ -84,8 +84,8 @@ static bool is_worth_it(api_exchange *x)
     return !x->codings.allowed[API_IDENTITY] || (!small && !is_packed(x));
 }
 
-/* Adds the coding to the headers and the tag. Returns false, with nothing added, when memory is
- * out. */
+/* Adds the header Content-Encoding and the suffix of the coding to the ETag. Returns false, with
+ * nothing added, when memory is out. */
 static bool name_coding(api_exchange *x)
 {
     api_header *tag = find_header(x, "ETag");
@@ -106,7 +106,7 @@ static bool name_coding(api_exchange *x)
 /* Compresses the whole answer now, so that its length is known. */
 static void code_whole(api_exchange *x, size_t length)
 {
-    size_t room = length + length / 4 + 512; /* more than the worst case of either library */
+    size_t room = length + length / 4 + 512; /* more than zlib or zstd needs in the worst case */
     x->coded = he_mem_alloc(room);
     if (x->coded == NULL || !api_compressor_begin(x->compressor)) {
         return;
@@ -119,7 +119,8 @@ static void code_whole(api_exchange *x, size_t length)
     }
 }
 
-/* Replaces a kept body by its compressed form, if that is shorter or the only one allowed. */
+/* Replaces a body that is kept in memory (kept.h) by its compressed form, if that is shorter or the
+ * client accepts no other. */
 static void code_kept(api_exchange *x)
 {
     api_answer *a = &x->answer;
@@ -159,8 +160,8 @@ void api_content_encoding_answer(api_exchange *x)
         }
         return;
     }
-    /* Part of the body was read already: if it cannot be compressed, the compressor returns it
-     * unchanged. */
+    /* The packer has read part of the body already, so it must deliver the rest even if it cannot
+     * compress: then it passes the body on unchanged. */
     a->read = api_compressor_read;
     a->context = x->compressor;
     a->bytes = NULL;

@@ -118,7 +118,8 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
-/* A write to a mesh whose changes were lost is refused with the reason of the loss. */
+/* Refuses a request to a mesh whose changes were lost. A write is refused with what is wrong with
+ * the store, if something still is. */
 static bool fail_lost(api_exchange *x)
 {
     st_health health;
@@ -211,7 +212,7 @@ bool api_fail_accept(api_exchange *x)
     return false;
 }
 
-/* --- writes --- */
+/* --- writing to the mesh --- */
 
 static bool refuse_stale(api_exchange *x, const char *what)
 {
@@ -247,7 +248,8 @@ static bool read_expected(const api_in *expected, uint64_t *revision)
     return expected == NULL || api_in_u64(expected, 1, (uint64_t)1 << 53, revision);
 }
 
-/* Handles the result of beginning a write. Even a refusal waits until the state that it reports is
+/* Handles the result of beginning a write: sets x->info and refuses if the write did not begin.
+ * x->info is also set for a refusal, which is sent only when the state that it reports is
  * durable. */
 static bool write_began(api_exchange *x, st_status status)
 {
@@ -308,7 +310,7 @@ bool api_precondition_absent(api_exchange *x)
            api_fail(x, API_PRECONDITION, "If-Match is given, but the mesh does not exist");
 }
 
-/* --- work --- */
+/* --- long work --- */
 
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x))
 {
@@ -503,8 +505,8 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
     char coded[API_ETAG];
     api_coding coding;
     const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
-    /* If the tag had matched when the job was requested, there would be no job; the mesh may have
-     * changed since. */
+    /* A job never answers 304: its client asked for the result, and the mesh may have got this tag
+     * after the request. */
     if (none == NULL || x->phase == API_PHASE_JOB ||
         !api_etag_listed(none, etag, &x->codings, &coding)) {
         api_answer_header(x, "ETag", etag);

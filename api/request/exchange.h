@@ -2,10 +2,10 @@
  *
  * By the time a row's `run` is called, service.c has found the route, decoded path and query,
  * checked Content-Type, Accept and the size of the body, parsed a control document, and obtained
- * the mesh as the row's `reads` says (or answered 404; mesh_access.h). A handler reads those and
- * either answers, or fills x->problem, which service.c then sends. A handler that does neither is a
- * bug and becomes 500. If it does both, the problem is sent and the answer with its headers is
- * dropped.
+ * the mesh as the row's `reads` says (or answered 404; mesh_access.h). A handler reads the results
+ * of these steps and either answers, or fills x->problem, which service.c then sends. A handler
+ * that does neither is a bug and becomes 500. If it does both, the problem is sent and the answer
+ * with its headers is dropped.
  *
  *     void api_vertex_get(api_exchange *x)
  *     {
@@ -18,8 +18,8 @@
  *         }
  *     }
  *
- * Everything in the arena, the texts and the state are freed with the exchange, after the answer
- * was sent. */
+ * The arena, the texts and the handler's state are freed with the exchange, after the answer was
+ * sent. */
 #ifndef HE_API_REQUEST_EXCHANGE_H
 #define HE_API_REQUEST_EXCHANGE_H
 
@@ -41,24 +41,26 @@
 
 struct api_service {
     st_store *store;
-    /* Documents about the API, which depend on nothing but the options. NULL: not written yet. */
+    /* The documents GET /v1/operations and GET /v1/openapi.json. They depend on the options only
+     * and are made when first requested; NULL: not yet. */
     _Atomic(api_kept *) operations, openapi;
     api_route_table table;
-    api_route_tree *routes; /* of `table` */
+    api_route_tree *routes; /* `table` as a tree of path segments */
     api_options options;
     api_backfills backfills;
     api_tickets *tickets;
-    api_rates *token_rates, *address_rates; /* buckets; NULL: no client has a limit */
+    /* The buckets of tokens and of addresses; NULL: no client has a limit. */
+    api_rates *token_rates, *address_rates;
     api_limited limited;
     api_metrics *metrics;
-    api_decompressor_room decompressing; /* memory of the decoders of request bodies */
+    api_decompressor_room decompressing; /* counts the memory of all decoders of request bodies */
 };
 
-/* How far an exchange is. It only moves forward: on a worker, on a thread that may block, in a job,
- * answered. */
+/* How far an exchange is: it receives the body on a worker, works on a thread that may block, works
+ * in a job, or is answered. It only moves forward. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
-enum { API_LOCATION = 512 }; /* a path of this API, escaped */
+enum { API_LOCATION = 512 }; /* bytes of a percent-encoded path of this API */
 
 struct api_exchange {
     api_service *service;
@@ -68,109 +70,126 @@ struct api_exchange {
 
     /* --- the request --- */
     api_request request;
-    const api_route *route; /* NULL: no route matched */
-    bool head;              /* HEAD: the server sends the headers only */
-    const char *mesh_id;    /* in the path, well formed; NULL: none */
-    he_kind kind;           /* {domain} of the path, or the row's */
-    uint32_t id;            /* {id} of the path */
-    const char *code;       /* {code} of the path */
-    const char *attribute;  /* {name} of the path */
-    const char *job_id;     /* {job} of the path, any text */
-    api_token *token;       /* a reference; NULL: the route is open, or the server asks for none */
-    bool rehearses_only;    /* the token may only do a dry run of this write: gate.h */
-    bool has_bad_token;     /* the request has an unknown token */
-    api_rates *rates;       /* where the client's bucket is; NULL: it has no limit */
-    api_rate_key rate_key;  /* key of the client's bucket */
-    api_rate rate;          /* the client's rate */
-    api_rate_state rate_state; /* the bucket after the request was let in or refused */
-    bool at_gate;              /* refused at the gate, before anything stored was read */
+    const api_route *route; /* the row of the table of routes; NULL: no route matched */
+    bool head;              /* the method is HEAD: the server sends no body */
+    const char *mesh_id;    /* id of the mesh in the path, well formed; NULL: none */
+    he_kind kind;           /* kind of {domain} in the path, or of the route */
+    uint32_t id;            /* {id} in the path */
+    const char *code;       /* {code} in the path */
+    const char *attribute;  /* {name} in the path */
+    const char *job_id;     /* {job} in the path; any text */
+    /* The client's token, with a reference held; NULL: the route is open, or the server has no
+     * tokens. */
+    api_token *token;
+    bool rehearses_only;   /* the token allows only a dry run of this write (gate.h) */
+    bool has_bad_token;    /* the request has an unknown token */
+    api_rates *rates;      /* the table with the client's bucket; NULL: the client has no limit */
+    api_rate_key rate_key; /* key of the client's bucket */
+    api_rate rate;         /* the client's rate */
+    api_rate_state rate_state; /* what the bucket held after the request was admitted or refused */
+    bool at_gate;              /* the request was refused before anything in the store was read */
     api_query query;
-    const char *media_in;  /* the type of the body, out of route->consumes; NULL without a body */
-    const char *media_out; /* the type of the answer, out of route->produces */
+    const char *media_in;  /* media type of the body, one of route->consumes; NULL without a body */
+    const char *media_out; /* media type of the answer, one of route->produces */
     api_prefer prefer;
-    char allow[API_ALLOW]; /* after 405: the methods of the path */
-    const char *key;       /* Idempotency-Key; NULL: none, or the row takes none */
-    he_siphash hash;       /* hash of a request with a key */
-    st_keyed *keyed;       /* the entry of the key; NULL: none, or it was settled */
-    uint64_t noted;        /* position of the record that the answer waits for; 0: none */
-    const char *own_job;   /* id of the job that does this work; NULL: none */
-    api_coding coding_in;  /* content coding of the body */
-    api_codings codings;   /* content codings that the answer may have */
+    char allow[API_ALLOW]; /* the methods that the path has, for the header Allow of a 405 */
+    const char *key;       /* Idempotency-Key; NULL: none, or the route does not read it */
+    he_siphash hash;       /* hash of the request, if it has an Idempotency-Key */
+    /* The store's entry of the Idempotency-Key; NULL: no key, or api_idempotency_settle has ended
+     * it. */
+    st_keyed *keyed;
+    /* Position in the journal of the record of the Idempotency-Key, for which the answer waits; 0:
+     * none. */
+    uint64_t noted;
+    const char *own_job;  /* id of the job that does this work; NULL: none */
+    api_coding coding_in; /* content coding of the body */
+    api_codings codings;  /* content codings that the answer may have */
 
     /* --- the request's body --- */
     api_text body;
-    uint64_t arrived;               /* bytes received, compressed */
-    uint64_t received;              /* bytes after decompression */
-    api_decompressor *decompressor; /* decoder; NULL: the body is uncompressed, or has ended */
+    uint64_t arrived;  /* bytes received, before decompression */
+    uint64_t received; /* bytes after decompression */
+    api_decompressor
+        *decompressor; /* decompresses the body; NULL: the body is not compressed, or has ended */
     api_document document;
     bool has_root;
-    api_in root;   /* root of a control document */
+    api_in root;   /* cursor at the root of a control document */
     api_items ops; /* operations of an edit list, which lies in `body` */
 
     /* --- the mesh --- */
-    st_mesh *mesh;     /* a reference; NULL: the route has none, or the mesh is absent */
-    bool is_cold;      /* the mesh is not in memory; it is looked for after the body arrived */
-    st_mesh_info info; /* filled by read_begin, write_begin and write_commit */
+    /* The mesh in the path, with a reference held; NULL: the path has none, or the mesh does not
+     * exist or is not in memory. */
+    st_mesh *mesh;
+    bool is_cold;      /* the mesh is not in memory: it is loaded after the body has arrived */
+    st_mesh_info info; /* description of the mesh, set whenever the mesh is read or written */
     bool has_info;
-    /* Whether the answer may show more of the store than `info`: see `shown` of api_answer. */
+    /* Whether the answer may show more of the store than `info`; it then waits for more changes to
+     * be durable (`shown` in api_answer). */
     bool shows_all;
-    uint64_t since;      /* all records up to this position were durable when the exchange began */
-    st_write write;      /* of the mesh; a claim outlives the handler that began it */
-    api_reading reading; /* what the row says the handler reads */
-    const he_mesh *content; /* the mesh while a handler that reads runs; NULL: none */
-    st_snapshot *snapshot;  /* owner of `content`; NULL: it is under the shared lock */
-    bool keeps;             /* keep `snapshot` until the exchange is freed */
+    uint64_t since;      /* the journal was durable up to this position when the exchange began */
+    st_write write;      /* the write to the mesh; a claim outlives the handler that began it */
+    api_reading reading; /* what the handler reads: a copy of the route's members */
+    const he_mesh *content; /* the mesh that the handler may read while it runs; NULL: none */
+    /* The snapshot that owns `content`; NULL: `content` is read under the shared lock. */
+    st_snapshot *snapshot;
+    bool keeps; /* `snapshot` must be kept until the exchange is freed */
 
-    /* --- state of the handler, freed by `free_state` with the exchange --- */
+    /* --- the handler's state, which `free_state` frees with the exchange --- */
     void *state;
     void (*free_state)(void *state);
     void (*deferred)(api_exchange *x);
-    bool is_job;          /* `deferred` shall run as a job */
+    bool is_job;          /* `deferred` is to run as a job */
     double seconds;       /* estimated duration; 0: not estimated */
-    he_progress progress; /* threads and callback for the work */
-    api_problem given_up; /* why the work was stopped; code HE_OK: no reason given */
+    he_progress progress; /* the threads that the work may use, and the callback for its progress */
+    /* Why the watch stopped the work; its code is HE_OK if no reason was given. */
+    api_problem given_up;
 
     /* --- the answer --- */
-    int published; /* see api_publish; 0: nothing was published */
+    int published; /* 201 or 204 after api_publish; 0: the write has not taken effect */
     char location[API_LOCATION];
     char retry[API_RETRY];
     api_rate_fields rate_fields;
     api_problem problem;
     api_text text;
-    api_out out; /* writes x->text */
+    api_out out; /* writes JSON to `text` */
     bool answered;
     api_answer answer;
     void *stream;
     void (*free_stream)(void *stream);
     api_source live;
-    api_compressor *compressor; /* compresses the answer, or owns all of it; NULL: neither */
-    char *coded;                /* the whole compressed answer */
-    api_kept *kept;             /* the answer's body, if it never changes; NULL: it is another */
-    api_blob blob;              /* the answer; freed with the exchange unless it is borrowed */
+    /* Compresses the answer, or holds its uncompressed bytes (api_compressor_whole); NULL:
+     * neither. */
+    api_compressor *compressor;
+    char *coded;    /* the bytes of an answer that was compressed as a whole */
+    api_kept *kept; /* the answer's body, if it is one that never changes (kept.h), else NULL */
+    /* The answer's body, if it is a blob; freed with the exchange unless it is borrowed. */
+    api_blob blob;
     uint64_t blob_at;
 };
 
-/* --- query parameters: already checked against the row, so these functions cannot fail --- */
-const char *api_param_text(const api_exchange *x, const char *name); /* NULL when absent */
-bool api_param_flag(const api_exchange *x, const char *name);        /* false when absent */
+/* --- query parameters: they were checked against the route, so these functions cannot fail --- */
+const char *api_param_text(const api_exchange *x, const char *name); /* returns NULL if absent */
+bool api_param_flag(const api_exchange *x, const char *name);        /* returns false if absent */
 uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback);
 double api_param_number(const api_exchange *x, const char *name, double fallback);
-/* Returns the index of the choice, -1 if the parameter is absent. */
+/* Returns the index of the parameter's value in its list of choices, or -1 if the parameter is
+ * absent. */
 int api_param_choice(const api_exchange *x, const char *name);
-/* Returns a bit set of the choices that are named. */
+/* Returns the choices that the parameter names, as a bit set of their indices. */
 unsigned api_param_choices(const api_exchange *x, const char *name);
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
 
-/* Returns the cause to store with the request's changes. */
+/* Returns what the journal records about who makes the request's changes: Idempotency-Key, job and
+ * token. */
 st_cause api_cause(const api_exchange *x);
 
-/* --- writes --- */
+/* --- writing to the mesh --- */
 /* Begins x->write, fills x->info and checks preconditions (If-Match, If-None-Match). `expected` is
  * a cursor at the body's expected_revision, or NULL. api_write_commit or st_write_abort ends the
- * write. Returns false, without a lock, with the problem filled. */
+ * write. On failure returns false with the problem filled and without holding a lock. */
 bool api_write_begin(api_exchange *x, const api_in *expected);
-/* Begins x->write as a claim, for a long edit that works without the lock (store/write.h). The
- * exchange ends it if the handler did not. */
+/* Begins x->write as a claim, for a long edit that works on a copy without the mesh's lock
+ * (store/write.h). The exchange ends the claim if the handler did not. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
 /* Commits x->write. From then on the client gets at least 204, even if the answer fails
  * (api_publish). Returns false with the problem filled and nothing changed if the journal has no
@@ -183,35 +202,40 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
  * does, If-Match does not. */
 bool api_precondition_absent(api_exchange *x);
 
-/* --- work --- */
-/* Makes `handler` run instead of the present handler, on a thread that may block. The present one
- * must call it before it takes a lock, and then return. In api_work `handler` runs at once. */
+/* --- long work --- */
+/* Arranges that `handler` runs instead of the handler that calls this function, on a thread that
+ * may block. The caller must hold no lock, and must return after the call. On a thread that may
+ * block already (api_work), `handler` is called at once. */
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
-/* Runs `handler`, whose work may be long. It becomes a job if the client prefers that, or if
- * `seconds` exceeds the client's patience; otherwise it is deferred to a thread that may block if
- * `costly` is set, or called at once. The route must have API_LONG. Handlers that read leave this
- * to mesh_access.h. */
+/* Runs `handler`, whose work may be long. The work becomes a job if the client prefers that, or if
+ * `seconds` is longer than the client will wait. Otherwise `handler` runs on a thread that may
+ * block if `costly` is set, else it is called at once. The route must have API_LONG. Handlers that
+ * read leave this to mesh_access.h. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
 /* Returns the seconds that the client will wait; longer work becomes a job. Negative: all work
  * becomes a job. HUGE_VAL: no work can. */
 double api_patience(const api_exchange *x);
 /* Returns true if work that takes this many seconds must become a job. */
 bool api_wants_job(const api_exchange *x, double seconds);
-/* Returns true if work on this many elements (or bytes) should leave the worker. Returns false in
- * api_work. */
+/* Returns true if work on `amount` elements or bytes must move from a worker to a thread that may
+ * block, because `amount` exceeds `threshold`. Returns false in api_work, which is on such a
+ * thread. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
-/* Returns the number of ids of vertices, half-edges and faces, dead ones included: the cost of work
- * on the whole mesh. */
+/* Returns the number of all ids of vertices, half-edges and faces, including deleted elements,
+ * which is the cost of work on the whole mesh. */
 uint64_t api_elements_of(const he_mesh *mesh);
-/* Returns true if work on the whole mesh should leave the worker. Returns false in api_work. */
+/* Returns true if work on the whole mesh must move from a worker to a thread that may block.
+ * Returns false in api_work, which is on such a thread. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 
-/* --- answers: call one of these, once --- */
+/* --- answers: a handler calls one of these, once --- */
 /* Declares that the write took effect, so that a refusal would be wrong. If a problem comes up
  * later (no memory for the answer, the mesh deleted meanwhile), the client gets `status`, 201 or
- * 204, without a body. With 201, x->info is the new mesh's, and Location is made from it. */
+ * 204, without a body. With 201, the header Location is made from x->info, which must be that of
+ * the new mesh. */
 void api_publish(api_exchange *x, int status);
-/* Answers with the text that x->out wrote, as application/json or as another type. */
+/* Answers with the text that x->out has written: api_answer_json as application/json,
+ * api_answer_text as `type`. */
 void api_answer_json(api_exchange *x, int status);
 void api_answer_text(api_exchange *x, int status, const char *type);
 /* Answers with bytes that must stay valid as long as the service or the exchange. */
@@ -220,27 +244,27 @@ void api_answer_bytes(api_exchange *x, int status, const char *type, const char 
 /* Answers 200 with a body that never changes and outlives the exchange, or 304 if the client has it
  * (If-None-Match). */
 void api_answer_kept(api_exchange *x, const char *type, api_kept *kept);
-void api_answer_empty(api_exchange *x, int status); /* without a body: 204 and others */
+void api_answer_empty(api_exchange *x, int status); /* answers without a body, as with 204 */
 /* If the client prefers return=minimal, answers 204 and returns true. */
 bool api_answer_minimal(api_exchange *x);
-/* A body that is made while it is sent. */
+/* An answer's body that is made while it is sent. */
 typedef struct api_stream {
-    int64_t length;                                         /* -1: unknown */
-    int64_t (*read)(void *self, char *buffer, size_t size); /* as in api_answer */
+    int64_t length; /* length of the body in bytes; -1: unknown */
+    int64_t (*read)(void *self, char *buffer, size_t size); /* as `read` in api_answer */
     void *self;
     void (*free)(void *self); /* NULL: the stream is borrowed */
 } api_stream;
 
-/* Answers with a stream, which it takes and frees with the exchange. */
+/* Answers with a stream. The exchange takes the stream and frees it at its end. */
 void api_answer_stream(api_exchange *x, int status, const char *type, const api_stream *stream);
-/* Answers with a blob, which it takes if the blob has a function `free`. A job keeps the blob
+/* Answers with a blob. The exchange takes the blob if its `free` is not NULL. A job keeps the blob
  * without copying it. */
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
-/* Answers with a stream without a known end, which is sent while the token is valid. Takes `source`
- * and frees it with the exchange. */
+/* Answers with a stream without a known end, which is sent while the client's token is valid. The
+ * exchange takes `source` and frees it at its end. */
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source);
-/* Sets a header of the answer, replacing one with this name; `value` is copied. Call it before or
- * after the answer. */
+/* Sets a header of the answer, replacing one with this name; `value` is copied. It may be called
+ * before or after the function that answers. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
@@ -249,14 +273,17 @@ void api_answer_etag(api_exchange *x, const char *representation);
 /* Sets the ETag. If If-None-Match names it, answers 304 and returns true. A job never does that:
  * its client asked for the result. */
 bool api_not_modified(api_exchange *x, const char *representation);
-/* Does what api_not_modified does for a tag that is not a mesh's. */
+/* Does what api_not_modified does, with the given tag instead of one made from the mesh's
+ * revision. */
 bool api_not_modified_since(api_exchange *x, const char *etag);
 
 /* --- refusals: they fill x->problem and always return false --- */
 bool api_fail(api_exchange *x, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-bool api_fail_core(api_exchange *x, const he_error *err); /* an error about the body */
-bool api_fail_path(api_exchange *x, const he_error *err); /* an error about the path */
+/* Refuses because of an error in the body. */
+bool api_fail_core(api_exchange *x, const he_error *err);
+/* Refuses because of an error in the path. */
+bool api_fail_path(api_exchange *x, const he_error *err);
 bool api_fail_store(api_exchange *x, st_status status);
 bool api_fail_memory(api_exchange *x);
 /* Refuses because Accept allows none of the route's types. */

@@ -55,8 +55,8 @@ const char *api_gate_ticket(const char *query)
     return strncmp(last, API_TICKET, strlen(API_TICKET)) == 0 ? last : NULL;
 }
 
-/* Finds the token by the ticket in the query, and removes the ticket from the query, because it was
- * made for the rest of the query. */
+/* Finds the token by the ticket in the query, and removes the ticket from the query, since the
+ * ticket was made for a query without it. */
 static bool take_ticket(api_exchange *x, const char *ticket)
 {
     const char *path = x->request.path, *query = x->request.query;

@@ -1,12 +1,12 @@
-/* gate.h - what a request's token may do: all checks, one function for each.
+/* gate.h - checks what the token of a request allows, with one function for each check.
  *
- *     api_gate_enter       the route: its row's role, before anything of the request is read but
- *                          its method and path. 401, 403 `forbidden`; and the client's rate
- *                          (rating.h), 429
- *     api_gate_sees        a mesh: a mesh outside the token's prefixes is answered with the same
- *                          bytes as one that does not exist. 404
- *     api_gate_may_create  an id for a new mesh. 403 `prefix`
- *     api_gate_may_change  a write by a token that may only do a dry run. 403 `forbidden`
+ *     api_gate_enter       may the token use the route? It looks only at method, path and token.
+ *                          Refuses with 401 or 403 `forbidden`, or with 429 if the client exceeds
+ *                          its rate (rating.h)
+ *     api_gate_sees        may it see a mesh? A mesh outside the token's prefixes is answered with
+ *                          the same bytes as one that does not exist: 404
+ *     api_gate_may_create  may it make a mesh with this id? Refuses with 403 `prefix`
+ *     api_gate_may_change  may it write, and not only do a dry run? Refuses with 403 `forbidden`
  *
  * If the server has no tokens (`tokens` of api_options is NULL), all checks pass. If it has tokens,
  * x->token is set after the gate on every route that is not open. */
@@ -16,26 +16,27 @@
 #include "api/request/exchange.h"
 
 /* Finds the token and sets x->token; sets x->rehearses_only if the token may do nothing but a dry
- * run of this write. Returns false with the problem filled; x->at_gate then says that nothing
- * stored was read. */
+ * run of this write. Returns false with the problem filled; x->at_gate then says that nothing in
+ * the store was read. */
 bool api_gate_enter(api_exchange *x);
 /* Returns false if the token may not see a mesh with this id, whether or not it exists. */
 bool api_gate_sees(const api_exchange *x, const char *mesh);
 /* Checks that the token may make a mesh with this id. Returns false with the problem filled if
  * not. */
 bool api_gate_may_create(api_exchange *x, const char *mesh);
-/* Checks that the token may change the store. Returns false with the problem filled if it may only
- * make dry runs. A handler calls it when it knows that its request is no dry run; the commit calls
- * it once more. */
+/* Checks that the token may change the store. Returns false with the problem filled if the token
+ * allows only dry runs. A handler calls it when it knows that its request is no dry run, and
+ * api_write_commit calls it again. */
 bool api_gate_may_change(api_exchange *x);
 
-/* A ticket (api/token/tickets.h) is the last parameter of the query and replaces the Authorization
- * header. */
+/* The last parameter of a query may be a ticket (api/token/tickets.h), which replaces the header
+ * Authorization. */
 #define API_TICKET "ticket="
-/* Returns where the ticket begins in a query, or NULL. */
+/* Returns the position of the ticket parameter in a query; NULL if there is none. */
 const char *api_gate_ticket(const char *query);
 
-/* Returns the value of WWW-Authenticate for the problem of the exchange, or NULL. */
+/* Returns the value of the header WWW-Authenticate for the problem of the exchange; NULL if it
+ * needs none. */
 const char *api_gate_challenge(const api_exchange *x);
 
 #endif

@@ -1,7 +1,7 @@
 #include "api/request/gather.h"
 
-/* The number of bytes that are read between two reports of progress; an answer of known length is
- * read at once. */
+/* The number of bytes that are read at a time. After each piece the watch is asked whether to
+ * stop. */
 enum { PIECE = 256 * 1024 };
 
 static bool read_piece(api_exchange *x, bool *ended)
@@ -35,7 +35,7 @@ void api_gather(api_exchange *x)
         api_fail_core(x, &err);
         return;
     }
-    /* The room is one piece larger than the answer, for the last read, which finds the end. */
+    /* One piece more than the answer is reserved, for the last read, which finds the end. */
     if (expected > 0 && api_text_room(&x->text, (size_t)expected + PIECE) == NULL) {
         api_fail_memory(x);
         return;

@@ -1,7 +1,7 @@
 /* gather.h - reading a streamed answer into memory.
  *
- * A job keeps its answer until a client fetches it, when the stream that makes it would be gone. So
- * the stream is read to its end while the job runs. */
+ * A job keeps its answer until a client fetches it, but a stream lives only as long as its
+ * exchange. So the stream is read to its end while the job runs. */
 #ifndef HE_API_REQUEST_GATHER_H
 #define HE_API_REQUEST_GATHER_H
 

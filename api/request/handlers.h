@@ -1,12 +1,12 @@
-/* handlers.h - the functions that rows of routes.c call. Each runs under the contract of
- * exchange.h. A handler whose row declares a cost has a second function that estimates it
- * (api_reading in route.h). */
+/* handlers.h - the handlers, which the rows of routes.c name. exchange.h says what a handler may
+ * rely on. A handler whose row declares a cost has a second function that estimates it (api_reading
+ * in route.h). */
 #ifndef HE_API_REQUEST_HANDLERS_H
 #define HE_API_REQUEST_HANDLERS_H
 
 #include "api/request/exchange.h"
 
-/* pages.c: everything that is not about a mesh. */
+/* pages.c: pages and documents that are not about a mesh. */
 void api_live_get(api_exchange *x);
 void api_ready_get(api_exchange *x);
 void api_version_get(api_exchange *x);
@@ -17,28 +17,28 @@ void api_problem_get(api_exchange *x);
 void api_operations_get(api_exchange *x);
 void api_openapi_get(api_exchange *x);
 
-/* token.c */
+/* The rights of a token, tickets, and reading the token file again (token.c). */
 void api_token_get(api_exchange *x);
 void api_tickets_post(api_exchange *x);
 void api_admin_reload(api_exchange *x);
 
-/* backup.c */
+/* The backup of the store (backup.c). */
 void api_admin_backup(api_exchange *x);
 
-/* Jobs; they use x->job_id. */
+/* Jobs. These handlers use x->job_id. */
 void api_jobs_list(api_exchange *x);
 void api_job_get(api_exchange *x);
 void api_job_delete(api_exchange *x);
 void api_job_result(api_exchange *x);
 void api_job_events(api_exchange *x);
 
-/* The collection of meshes. */
+/* The list of meshes, and new meshes. */
 void api_meshes_list(api_exchange *x);
 void api_meshes_create_begin(api_exchange *x);
 void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length);
 void api_meshes_create(api_exchange *x);
 
-/* One mesh. */
+/* One mesh as a whole. */
 void api_mesh_patch(api_exchange *x);
 void api_mesh_put_begin(api_exchange *x);
 void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length);
@@ -54,13 +54,13 @@ bool api_progressive_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_mesh_copy(api_exchange *x);
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
-/* Elements of a mesh; they use x->kind, x->id, x->relation. */
+/* Elements of a mesh. These handlers use x->kind, x->id, and the route's relation. */
 void api_elements_list(api_exchange *x);
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_element_get(api_exchange *x);
 void api_relation_get(api_exchange *x);
 
-/* Attributes of a mesh; they use x->kind, x->attribute. */
+/* Attributes of a mesh. These handlers use x->kind and x->attribute. */
 void api_attributes_list(api_exchange *x);
 void api_materials_list(api_exchange *x);
 void api_attribute_get(api_exchange *x);
@@ -71,7 +71,7 @@ void api_attribute_put(api_exchange *x);
 void api_attribute_patch(api_exchange *x);
 void api_attribute_delete(api_exchange *x);
 
-/* Queries. */
+/* Questions about a mesh. */
 void api_query_post(api_exchange *x);
 bool api_query_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_traverse_post(api_exchange *x);

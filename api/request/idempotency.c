@@ -55,7 +55,8 @@ void api_idempotency_body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
-/* Returns the word for the representation in the ETag of the route's answers. */
+/* Returns the word that stands for the representation (etag.h) in the ETag of the route's
+ * answers. */
 static const char *representation_of(const api_route *route)
 {
     if (route->flags & API_IDEMPOTENCY_KEY_NEW || strcmp(route->path, "/v1/meshes/{mesh}") == 0) {
@@ -64,8 +65,8 @@ static const char *representation_of(const api_route *route)
     return strstr(route->path, "/attributes/") != NULL ? "attribute" : "edits";
 }
 
-/* Sends the answer that was kept. It checks again whether the token may see the mesh, because the
- * token's prefixes may have changed since it made the mesh. */
+/* Sends the answer kept under the key. If that answer is about a mesh, the token must still be
+ * allowed to make a mesh with this id, because the token's prefixes may have changed since. */
 static void replay(api_exchange *x)
 {
     const st_kept *kept = st_keyed_answer(x->keyed);
@@ -134,8 +135,8 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
     return "";
 }
 
-/* Stores the key if no record of a change holds it: the request gets a record of its own, and the
- * answer waits for it. */
+/* Stores the key of a request that changed nothing. The key of a change is part of the change's
+ * record in the journal; this one gets a record of its own, for which the answer waits. */
 static void note_unchanged(api_exchange *x, st_kept *kept)
 {
     st_keyed_note(x->store, x->keyed, &x->info, &x->noted);
@@ -148,7 +149,9 @@ void api_idempotency_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
     if (x->keyed == NULL || st_keyed_answer(x->keyed)->status != 0) {
-        return; /* no key, or a replayed answer, which is borrowed until the end */
+        /* There is no key, or the answer is the kept one, which is borrowed until the exchange
+         * ends. */
+        return;
     }
     if (answer->status < 300) {
         st_kept kept = {.status = answer->status,

@@ -1,26 +1,26 @@
 /* idempotency.h - requests with an Idempotency-Key: executed once, and answered the same way each
  * time.
  *
- * Rows with API_IDEMPOTENCY_KEY or API_IDEMPOTENCY_KEY_NEW read the header
+ * Routes with the flag API_IDEMPOTENCY_KEY or API_IDEMPOTENCY_KEY_NEW read the header
  * (draft-ietf-httpapi-idempotency-key-header): 1 to API_KEY_LENGTH visible characters, quoted or
- * not, taken literally. With API_IDEMPOTENCY_KEY the key belongs to the mesh and is deleted with
- * it; with API_IDEMPOTENCY_KEY_NEW it belongs to the store.
+ * not, taken literally. With API_IDEMPOTENCY_KEY, keys are kept for each mesh and deleted with it.
+ * With API_IDEMPOTENCY_KEY_NEW, for requests that make a mesh, they are kept for the whole store.
  *
  * Two requests are equal if method, path, query, Content-Type and every byte of the decompressed
  * body are. For multipart/form-data the names, types and bytes of the files are compared, and not
  * the boundary, which clients choose anew each time. The store keeps a keyed hash of 128 bits of
- * all this, because bodies are too large to keep. Preconditions are not compared: a write that is
- * sent again meets the revision that it made.
+ * all this, because bodies are too large to keep. Preconditions such as If-Match are not compared,
+ * because the write itself has changed the revision that a repeated request would find.
  *
- * 2xx answers are kept. Refusals and failures are not, so that the client may try again when their
- * reason is gone. */
+ * Answers with a status 2xx are kept. Refusals and failures are not, so that the client may try
+ * again when their reason is gone. */
 #ifndef HE_API_REQUEST_IDEMPOTENCY_H
 #define HE_API_REQUEST_IDEMPOTENCY_H
 
 #include "api/request/exchange.h"
 
-/* Checks the header Idempotency-Key and begins the hash of the request, after the route was
- * found. */
+/* Checks the header Idempotency-Key and begins the hash of the request. It is called when the route
+ * is known. */
 bool api_idempotency_begin(api_exchange *x);
 void api_idempotency_body(api_exchange *x, const char *bytes, size_t length);
 /* Adds bytes of the body to the hash. The reader of multipart/form-data calls it with the files,

@@ -2,8 +2,8 @@
 
 #include "api/request/at_revision.h"
 
-/* Checks x->info. Returns false with 503 if the mesh was lost, or with 404 if it was deleted. A
- * route that may create it treats a deleted mesh as absent. */
+/* Checks x->info. Refuses with 503 if changes of the mesh were lost, or with 404 if it was deleted.
+ * A route that may create the mesh treats a deleted mesh as absent. */
 static bool is_there(api_exchange *x)
 {
     if (x->info.lost) {
@@ -21,7 +21,8 @@ static bool is_there(api_exchange *x)
     return true;
 }
 
-/* Takes the shared lock on the content, if the mesh is there. */
+/* Takes the shared lock on the mesh's content. Returns false, without the lock, if is_there
+ * refuses. */
 static bool lock(api_exchange *x)
 {
     x->content = st_read_begin(x->mesh, &x->info);
@@ -32,7 +33,8 @@ static bool lock(api_exchange *x)
     return is_there(x);
 }
 
-/* Releases the snapshot or the shared lock on the mesh that the handler has read. */
+/* Ends the handler's access to the mesh: releases the snapshot, unless it must be kept, or the
+ * shared lock. */
 static void give_back(api_exchange *x)
 {
     if (x->content != NULL && x->snapshot == NULL) {
@@ -45,7 +47,7 @@ static void give_back(api_exchange *x)
     x->content = NULL;
 }
 
-/* Replaces the shared lock on the mesh by a snapshot of it. */
+/* Takes a snapshot of the mesh and releases the shared lock on it, also on failure. */
 static bool take_snapshot(api_exchange *x)
 {
     st_status status = st_snapshot_held(x->mesh, &x->snapshot);
@@ -67,8 +69,8 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
     }
     if (x->phase == API_PHASE_BODY) {
         /* Taking an earlier revision may copy the mesh and replay changes, so it is deferred to a
-         * thread that may block. A request that will be refused must not become a job, so this was
-         * checked before. */
+         * thread that may block. The check above comes first, because a request that will be
+         * refused must not become a job. */
         x->deferred = api_read;
         return false;
     }
@@ -80,7 +82,8 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
 }
 
 /* Decides, after the mesh was obtained, whether the handler runs on this thread. Returns false if
- * the work is deferred, or if the client has the answer already. */
+ * the work is deferred, if the request is refused, or if the client has the answer already
+ * (304). */
 static bool is_read_here(api_exchange *x)
 {
     api_cost cost = {0};
@@ -102,7 +105,7 @@ static bool is_read_here(api_exchange *x)
 static bool obtain(api_exchange *x)
 {
     uint64_t revision;
-    x->keeps = false; /* a snapshot that an earlier attempt had to keep */
+    x->keeps = false; /* an earlier attempt may have kept its snapshot, which is released now */
     give_back(x);
     if (!lock(x)) {
         return false;
@@ -118,8 +121,8 @@ static bool obtain(api_exchange *x)
     return !copies || take_snapshot(x);
 }
 
-/* Decides, before a write, whether the handler runs on this thread. A route that may create its
- * mesh may have no mesh to read. */
+/* Decides whether a handler that writes runs on this thread: `cost` of the route reads the mesh, if
+ * there is one (a route may create its mesh). */
 static bool look(api_exchange *x)
 {
     api_cost cost = {0};

@@ -1,41 +1,42 @@
 /* mesh_access.h - how a handler gets the mesh that it reads.
  *
  * A row of the table of routes says what its handler reads (api_reads) and what that costs. Before
- * the handler runs, the mesh is obtained here: the present one or an earlier revision
- * (at_revision.h), on a worker, on a thread that may block, or in a job. The handler finds it in
- * x->content, with x->info of the same revision, and releases nothing. It is called once, unless it
+ * the handler runs, api_read obtains the mesh: the present one or an earlier revision
+ * (at_revision.h), on a worker, on a thread that may block, or in a job. The handler finds the mesh
+ * in x->content, described by x->info, and need not release it. A handler is called once, unless it
  * calls api_begin_elsewhere.
  *
- * A handler that changes a mesh begins a write (api_write_begin, api_write_claim). If its row needs
- * facts of the content before that, such as its size, `cost` finds them (API_READS_BEFORE). The
- * row's `begin`, called before the body arrives, gets what `begin_reads` says.
- */
+ * A handler that changes a mesh begins a write (api_write_begin, api_write_claim). Facts about the
+ * content that are needed before that, such as its size, are found by the row's `cost`
+ * (API_READS_BEFORE). For the row's `begin`, which is called before the body arrives,
+ * api_read_at_head obtains what `begin_reads` says. */
 #ifndef HE_API_REQUEST_MESH_ACCESS_H
 #define HE_API_REQUEST_MESH_ACCESS_H
 
 #include "api/request/exchange.h"
 
 /* Obtains what x->reading says the handler reads, and runs the handler. A failure fills the problem
- * (404, 410, 507). A representation that the client has already is answered 304. Work that is too
- * costly for a worker, or becomes a job, stores this function in x->deferred. */
+ * (404, 410, 507). If the client has the representation already, the answer is 304. If the work is
+ * too costly for a worker or becomes a job, the handler does not run: x->deferred is set to
+ * api_read, which is then called on another thread. */
 void api_read(api_exchange *x);
-/* Runs the row's `begin` with the mesh that it reads. */
+/* Obtains what the row's `begin_reads` says, and runs the row's `begin`. */
 void api_read_at_head(api_exchange *x);
-/* Reads the mesh by `reading` instead of by the route's row. A handler that has changed the mesh
- * calls it to answer with the representation of another route. */
+/* Does what api_read does, with `reading` instead of what the route's row says. A handler that has
+ * changed the mesh calls it to answer like another route. */
 void api_read_as(api_exchange *x, const api_reading *reading);
 
 /* --- for handlers that read --- */
-/* Keeps the mesh as long as the exchange, for a streamed answer. A shared lock is released:
- * x->content is a snapshot from then on, so handlers call this also before long work. Returns false
- * with the problem filled when memory is out. */
+/* Keeps the mesh as long as the exchange, for a streamed answer. If the mesh was read under the
+ * shared lock, the lock is released and x->content becomes a snapshot. So handlers also call this
+ * function before long work. Returns false with the problem filled when memory is out. */
 bool api_keep_mesh(api_exchange *x);
-/* A handler that finds its work too much for a worker calls this and returns: its output
- * is dropped, and it is called again on a thread that may block. */
+/* A handler that finds that its work takes too long for a worker calls this function and returns.
+ * Its output is dropped, and the handler is called again on a thread that may block. */
 void api_begin_elsewhere(api_exchange *x);
 
-/* --- for `cost` of a row --- */
-/* Estimates the cost of a handler that visits the whole mesh. */
+/* --- for the member `cost` of a route --- */
+/* Sets the cost of a handler that visits the whole mesh: the number of its elements. */
 bool api_cost_of_mesh(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 #endif

@@ -1,5 +1,5 @@
-/* quota.h - quotas of tokens: the meshes and bytes that the store counts for each
- * (store/holder/holders.h).
+/* quota.h - refusals for exceeded quotas. A quota limits the meshes that a token has made, by
+ * number and by bytes, which the store counts (store/holder/holders.h).
  *
  * A mesh counts for the token that made it, also when another token makes it grow. */
 #ifndef HE_API_REQUEST_QUOTA_H
@@ -7,8 +7,9 @@
 
 #include "api/request/exchange.h"
 
-/* Both fill the problem after the store returned ST_QUOTA, and always return false. */
-bool api_quota_fail_new(api_exchange *x); /* for a mesh that the request would make */
+/* Refuses a new mesh. Both functions fill the problem after the store returned ST_QUOTA, and always
+ * return false. */
+bool api_quota_fail_new(api_exchange *x);
 /* Refuses the growth of x->mesh. The message does not say what another token's quota is. */
 bool api_quota_fail(api_exchange *x);
 

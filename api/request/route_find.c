@@ -29,16 +29,17 @@ bool api_choices_parse(const char *const *choices, const char *list, unsigned *o
 
 /* --- the tree of templates --- */
 
-/* The most rows of the table that have one path and differ in the method. */
+/* The maximum number of rows that have equal paths and differ in the method. */
 enum { MOST_METHODS = 5 };
 
-/* One segment of templates, below the segments before it. The children of a node are either
- * different literal segments or a single variable. */
+/* One segment of path templates; its parent is the segment before it. The children of a node are
+ * either different literal segments or a single variable. */
 typedef struct node {
-    const char *segment; /* in a template; ends at a slash or at the end of the text */
+    const char *segment; /* points into a template; ends at a slash or at the end of the text */
     size_t length;
-    struct node *child, *sibling;            /* first child, next sibling */
-    const api_route *rows[MOST_METHODS + 1]; /* rows whose template ends here; ends in NULL */
+    struct node *child, *sibling; /* first child, next sibling */
+    /* Rows whose template ends with this segment; ends in NULL. */
+    const api_route *rows[MOST_METHODS + 1];
 } node;
 
 struct api_route_tree {
@@ -51,7 +52,8 @@ static bool is_variable(const node *n)
     return n->segment[0] == '{';
 }
 
-/* Returns the letter after the brace of a variable, which differs for each variable. */
+/* Returns the first letter of a variable's name, which differs for each variable; 0 for a literal
+ * segment. */
 static char letter_of(const node *n)
 {
     return is_variable(n) ? n->segment[1] : '\0';

@@ -1,4 +1,5 @@
-/* served.c - finds the row and the problem of a request that has ended, by which it is counted. */
+/* served.c - finds the route and the problem by which the metrics count a request that has
+ * ended. */
 #include "api/request/exchange.h"
 
 api_metrics *api_metrics_of(const api_service *service)

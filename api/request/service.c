@@ -30,8 +30,8 @@ static bool has_header(const api_exchange *x, const char *name)
     return header_of_answer(&x->answer, name) != NULL;
 }
 
-/* Sets a header of any answer. Its name and value must stay valid as long as the exchange, so that
- * this needs no memory and works when memory is out. */
+/* Adds a header to the answer, unless it has one with this name. Name and value must stay valid as
+ * long as the exchange: they are not copied, so that this works when memory is out. */
 static void put_header(api_exchange *x, const char *name, const char *value)
 {
     if (x->answer.header_count < API_ANSWER_HEADERS && !has_header(x, name)) {
@@ -91,7 +91,7 @@ static void answer_problem(api_exchange *x)
     }
 }
 
-/* Keeps only the status of the answer to a write that took effect. */
+/* Replaces the answer by the bare status of api_publish, because the write took effect. */
 static void answer_published(api_exchange *x)
 {
     x->problem = (api_problem){0};
@@ -104,8 +104,8 @@ static void answer_published(api_exchange *x)
     }
 }
 
-/* Returns true if the route has several representations under one URL, so that caches must look at
- * Accept. */
+/* Returns true if the route answers in several media types under one URL, so that caches must look
+ * at Accept. */
 static bool varies(const api_exchange *x)
 {
     const api_route *route = x->route;
@@ -113,7 +113,8 @@ static bool varies(const api_exchange *x)
            route->produces[1] != NULL && !(route->flags & API_FIXED);
 }
 
-/* Ends the claim before the answer is sent, so that the client may write at once after it. */
+/* Ends the claim on the mesh before the answer is sent, so that the client can write again as soon
+ * as it has the answer. */
 static void end_claim(api_exchange *x)
 {
     if (x->write.claimed) {
@@ -121,8 +122,7 @@ static void end_claim(api_exchange *x)
     }
 }
 
-/* Replaces the problem of work that was interrupted: the client gets the reason of the
- * interruption. */
+/* If the watch stopped the work, replaces the problem by the reason that api_give_up has stored. */
 static void end_given_up(api_exchange *x)
 {
     if (x->progress.cancelled && x->problem.code != HE_OK) {
@@ -133,15 +133,15 @@ static void end_given_up(api_exchange *x)
     }
 }
 
-/* Returns the position of the journal that the answer must wait for. An answer that is not about
- * one mesh alone may show whether other meshes exist, and so may a refusal. */
+/* Returns what must be durable before the answer is sent. An answer that is not about one mesh
+ * alone may show whether other meshes exist, and so may a refusal. */
 static st_shown shown(const api_exchange *x)
 {
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
-    /* Failures of the server itself depend on no mesh. They wait for nothing, so that the client
-     * gets this failure and not another loss with the same cause. */
+    /* Failures of the server itself depend on no mesh. They wait for nothing: if they waited for a
+     * journal that cannot be written, the client would get that loss instead of this failure. */
     if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
         return (st_shown){.position = 0};
     }
@@ -150,15 +150,15 @@ static st_shown shown(const api_exchange *x)
         one.position = x->noted > one.position ? x->noted : one.position;
         return one;
     }
-    /* Whatever a write read of other meshes was stored before it, so waiting up to its position is
-     * enough. */
+    /* What a write has read from other meshes comes before the write in the journal, so waiting for
+     * the write's own position is enough. */
     if (x->published != 0 && x->has_info && x->info.position != 0) {
         return (st_shown){.position = x->info.position, .since = x->since};
     }
     return st_shown_all(x->store, x->since);
 }
 
-/* Frees what the handler worked on. */
+/* Frees what the handler needed for its work: its state, the body and the mesh. */
 static void free_work(api_exchange *x)
 {
     if (x->free_state != NULL) {
@@ -173,8 +173,8 @@ static void free_work(api_exchange *x)
     x->mesh = NULL;
 }
 
-/* The answer to a write may wait for the disk, and then for its client. Until then it needs only
- * its own bytes: the body is freed, and the mesh may be evicted. */
+/* Frees the body of a write and lets its mesh be evicted, because the answer needs neither while it
+ * waits for the disk and then for the client. */
 static void let_go(api_exchange *x)
 {
     if (x->route != NULL && (x->route->flags & API_WRITES) && x->keyed == NULL &&
@@ -213,11 +213,12 @@ static api_step finish(api_exchange *x)
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
-    api_idempotency_settle(x); /* may add to what the answer waits for */
+    api_idempotency_settle(x); /* called before shown(), because it may set x->noted */
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;
     if (x->phase != API_PHASE_JOB) {
-        api_content_encoding_answer(x); /* kept answers (keys, jobs) are uncompressed */
+        /* Answers that are kept for jobs and Idempotency-Keys are not compressed. */
+        api_content_encoding_answer(x);
     }
     let_go(x);
     x->phase = API_PHASE_DONE;
@@ -233,7 +234,7 @@ static api_step finish_early(api_exchange *x)
     return finish(x);
 }
 
-/* --- begin --- */
+/* --- beginning an exchange --- */
 
 static bool copy_request(api_exchange *x, const api_request *request)
 {
@@ -249,11 +250,11 @@ static bool copy_request(api_exchange *x, const api_request *request)
            x->request.request_id != NULL;
 }
 
-/* --- detaching --- */
+/* --- turning an exchange into a job --- */
 
-/* Copies the headers of the request, because the work reads them when the connection is gone:
- * preconditions when it publishes, Accept when it answers. Returns false, with nothing changed,
- * when memory is out. */
+/* Copies the headers of the request, because the work of a job reads them after the connection has
+ * ended: preconditions when it commits, Accept when it answers. Returns false, with nothing
+ * changed, when memory is out. */
 static bool copy_headers(api_exchange *x)
 {
     const char *copies[API_REQUEST_HEADERS] = {NULL};
@@ -340,14 +341,16 @@ static void answer_job(api_exchange *x, const api_job *job)
     api_answer_json(x, 202);
 }
 
-/* Returns the answer's bytes for a job to keep; NULL when memory is out or there are none. */
+/* Returns the bytes of the answer, which the job will own; NULL when memory is out or the answer
+ * has no bytes. */
 static char *take_bytes(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
     char *bytes = NULL;
     if (answer->bytes != NULL && answer->bytes == x->text.bytes) {
         bytes = he_mem_resize(x->text.bytes, answer->length > 0 ? (size_t)answer->length : 1);
-        bytes = bytes == NULL ? x->text.bytes : bytes; /* keeps the block if it cannot shrink */
+        /* If shrinking the block fails, it is used as it is. */
+        bytes = bytes == NULL ? x->text.bytes : bytes;
         x->text = (api_text){0};
     } else if (answer->bytes != NULL && answer->length > 0) {
         bytes = he_mem_alloc((size_t)answer->length);
@@ -358,7 +361,7 @@ static char *take_bytes(api_exchange *x)
     return bytes;
 }
 
-/* Runs the work of the exchange as a job of the table. */
+/* Runs the work of the exchange as a job of the job table. */
 static void run_job(void *self, const char *id, api_job_progress *progress, void *context,
                     api_job_outcome *out)
 {
@@ -491,7 +494,7 @@ api_exchange *api_begin(api_service *service, const api_request *request, api_st
     return x;
 }
 
-/* --- the body --- */
+/* --- the request's body --- */
 
 api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *used)
 {
@@ -518,7 +521,8 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
     return step;
 }
 
-/* Ends the decompression of the body and frees the decoder, which may hold megabytes. */
+/* Ends the decompression of the body, when all of it has arrived, and frees the decoder, which may
+ * hold megabytes. */
 static bool end_coding(api_exchange *x)
 {
     bool good = x->decompressor == NULL || api_decompressor_end(x->decompressor, &x->problem);
@@ -549,7 +553,8 @@ static bool parse_body(api_exchange *x)
     return x->has_root;
 }
 
-/* Resets a read that took too long for a worker and has changed nothing. */
+/* Resets a reading request that took too long for a worker, so that it starts again on a thread
+ * that may block. */
 static void begin_anew(api_exchange *x)
 {
     drop_answer(x);
@@ -595,8 +600,8 @@ static void parse_and_run(api_exchange *x)
     }
 }
 
-/* Goes on with the request: decodes a document, which may take long if it is large, and runs the
- * handler with its mesh, if it has one. */
+/* Handles a request whose body has arrived: looks up its Idempotency-Key, parses and decodes its
+ * document, and runs the handler. A large document is parsed on a thread that may block. */
 static void go_on(api_exchange *x)
 {
     if (!api_idempotency_find(x)) {
@@ -609,8 +614,8 @@ static void go_on(api_exchange *x)
     }
 }
 
-/* Loads the mesh and goes on with the request: a short one reads the mesh under its lock without a
- * copy, a long one continues in this thread. */
+/* Loads the mesh and handles the request as if the mesh had been in memory. This thread may block,
+ * so it also does the work that a worker would defer, except the work of a job. */
 static void load_and_go_on(api_exchange *x)
 {
     if (api_answer_from_card(x) || !api_load_mesh(x)) {
@@ -644,7 +649,7 @@ static api_step work(api_exchange *x)
     void (*handler)(api_exchange * x) = x->deferred;
     he_error err = {0};
     x->deferred = NULL;
-    /* Loading may have taken long, and the client may have disconnected. */
+    /* The request may have waited long for this thread, and the client may have disconnected. */
     if (he_progress_step(&x->progress, 0, 1, &err) != HE_OK) {
         api_fail_core(x, &err);
     } else {

@@ -1,7 +1,7 @@
 #include "api/request/exchange.h"
 
-/* Makes the buckets for rates whenever the server has tokens, because a file of tokens that is read
- * later may set limits. */
+/* Makes the buckets for the rates of tokens if the server has tokens, because a token file that is
+ * read later may set limits; and the buckets of addresses if these have limits. */
 static bool make_rates(api_service *service, const api_options *options)
 {
     const uint64_t *most = options->address_limits.most;

@@ -8,16 +8,16 @@
 
 typedef struct stream {
     api_tokens *tokens;
-    api_token *token; /* a reference */
+    api_token *token; /* a reference to the token is held */
     api_source inner;
     api_token_watch watch;
     void (*wake)(void *context);
     void *context;
     _Atomic bool started;
     bool begun, ended;
-    char tail[2]; /* the last two bytes sent: an event ends in two newlines */
+    char tail[2]; /* the last two bytes sent; an event ends with two newlines */
     api_text bye;
-    size_t sent; /* bytes sent of it */
+    size_t sent; /* how many bytes of `bye` were sent */
 } stream;
 
 /* Wakes the stream because its token was revoked. Before `started` is set no wake is needed,
@@ -45,7 +45,7 @@ static bool is_between_events(const stream *s)
     return !s->begun || (s->tail[0] == '\n' && s->tail[1] == '\n');
 }
 
-/* Returns how many of these bytes belong to the event that was begun before them. */
+/* Returns how many of these bytes still belong to the event of which a part was sent before. */
 static size_t rest_of_event(const stream *s, const char *bytes, size_t length)
 {
     char before[2] = {s->tail[0], s->tail[1]};
@@ -95,7 +95,7 @@ static int64_t read_stream(void *self, char *buffer, size_t size)
     }
     int64_t got = s->inner.read(s->inner.self, buffer, size);
     if (!good && got == API_READ_WAIT) {
-        return -1; /* cuts the connection: the source would wait in the middle of an event */
+        return -1; /* cuts the connection, because the source waits in the middle of an event */
     }
     if (got > 0) {
         got = good ? got : (int64_t)rest_of_event(s, buffer, (size_t)got);

@@ -5,17 +5,17 @@
 #include <pthread.h>
 #include <string.h>
 
-/* A ticket. Its two hashes lie side by side, so that one comparison in constant time covers
- * both. */
+/* A ticket that the server has issued. Its two hashes lie side by side, so that one comparison in
+ * constant time covers both. */
 typedef struct ticket {
     unsigned char hashes[2 * API_TOKEN_HASH]; /* hash of the ticket, then of its target */
     double expires;
-    api_token *token; /* a reference */
+    api_token *token; /* the token that made it, with a reference held */
 } ticket;
 
 struct api_tickets {
     pthread_mutex_t lock;
-    ticket items[API_TICKETS]; /* the valid ones come first */
+    ticket items[API_TICKETS]; /* the first `count` items are valid */
     size_t count;
 };
 

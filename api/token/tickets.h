@@ -2,8 +2,9 @@
  *
  * A browser sends no Authorization header for an image or a download. So a page that has a token
  * requests a ticket and appends it to the URL. The URL works once and within API_TICKET_SECONDS, so
- * a copy in a browser history or a log is worthless. A ticket has the rights of its token, while
- * that is valid. The server keeps only hashes of tickets and of their targets. */
+ * a copy in a browser history or a log is worthless. A ticket has the rights of the token that
+ * requested it, while that token is valid. The server keeps only hashes of tickets and of their
+ * targets. */
 #ifndef HE_API_TOKEN_TICKETS_H
 #define HE_API_TOKEN_TICKETS_H
 
@@ -11,19 +12,19 @@
 
 enum {
     API_TICKET_SECONDS = 60,
-    API_TICKETS = 1024,          /* valid at one time */
-    API_TICKETS_OF_A_TOKEN = 256 /* valid at one time, per token */
+    API_TICKETS = 1024,          /* tickets valid at one time */
+    API_TICKETS_OF_A_TOKEN = 256 /* tickets of one token valid at one time */
 };
 
 typedef struct api_tickets api_tickets;
 
-api_tickets *api_tickets_new(void); /* NULL when memory is out */
+api_tickets *api_tickets_new(void); /* returns NULL when memory is out */
 void api_tickets_free(api_tickets *tickets);
 
-/* A ticket, for the client. */
+/* A new ticket, as it is sent to the client. */
 typedef struct api_ticket {
     char text[API_TOKEN_TEXT + 1];
-    double expires; /* it is valid while `now` is less than this */
+    double expires; /* the ticket is valid before this time (seconds since 1970) */
 } api_ticket;
 
 /* Makes a ticket of this token for one target (a path with its query). `token` is NULL if the
@@ -31,9 +32,9 @@ typedef struct api_ticket {
  * Returns false if the maximum number of tickets is valid already. */
 bool api_tickets_make(api_tickets *tickets, api_token *token, const char *target, double now,
                       api_ticket *out);
-/* Returns the token of a ticket, with a reference held, if this text is a ticket that is valid for
- * the target; the ticket is then used up. A ticket that is presented for another target stays
- * valid. */
+/* Returns true if this text is a ticket that is valid for the target; the ticket is then used up,
+ * and `out` gets its token, with a reference held. A ticket that is presented for another target
+ * stays valid. */
 bool api_tickets_take(api_tickets *tickets, const char *text, const char *target, double now,
                       api_token **out);
 

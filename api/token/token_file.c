@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-/* One field of a line: bytes of the file. */
+/* One field of a line, borrowed from the bytes of the file. */
 typedef struct word {
     const char *at;
     size_t length;
@@ -32,7 +32,7 @@ static bool fail(const reader *r, const char *format, ...)
     return false;
 }
 
-/* --- fields --- */
+/* --- reading the fields of a line --- */
 
 static bool is_id_character(char c)
 {
@@ -144,8 +144,8 @@ static int number_at(word w, size_t at, size_t digits)
     return value;
 }
 
-/* Reads the time at which a token expires. The library turns a date that does not exist into
- * another date, which shows that it does not exist. */
+/* Reads the time at which a token expires. A date that does not exist is refused: timegm turns it
+ * into another date. */
 static bool read_expiry(const reader *r, word w, api_token *out)
 {
     bool timed = has_shape(w, "9999-99-99T99:99:99Z");
@@ -168,7 +168,7 @@ static bool read_expiry(const reader *r, word w, api_token *out)
     return fail(r, "expires= takes a day or time such as 2027-01-01 or 2027-01-01T12:00:00Z");
 }
 
-/* The optional fields that may follow the first three of a line, each only once. */
+/* The optional fields that may follow the first three fields of a line, each only once. */
 static const struct {
     const char *name;
     bool (*read)(const reader *r, word w, api_token *out);
@@ -226,7 +226,7 @@ static bool read_setting(const reader *r, word w, unsigned *seen, api_token *out
                          "bytes=, jobs=, meshes= or mesh-bytes=");
 }
 
-/* --- a line --- */
+/* --- reading a line --- */
 
 static bool is_blank(char c)
 {
@@ -281,12 +281,12 @@ static bool read_line(const reader *r, const char *at, size_t length, api_token 
            fail(r, "a token of the role %s takes no prefix=", api_role_name(out->role));
 }
 
-/* --- the file --- */
+/* --- reading the whole file --- */
 
-/* A hash table of the names and hashes seen so far: as many buckets as tokens, which hold
- * indices. */
+/* A hash table that finds repeated names or repeated token hashes. Its chains consist of indices of
+ * tokens. */
 typedef struct met {
-    uint32_t *heads, *nexts; /* index + 1; 0: none */
+    uint32_t *heads, *nexts; /* index of a token, plus 1; 0: end of the chain */
     uint64_t secret[2];
 } met;
 
@@ -307,8 +307,8 @@ static void met_free(met *m)
     he_mem_free(m->nexts);
 }
 
-/* Finds an earlier token whose member of `size` bytes at `offset` equals that of the last one, and
- * adds the last one. */
+/* Returns an earlier token of the list whose member of `size` bytes at `offset` equals that of the
+ * last token. If there is none, adds the last token to the table and returns NULL. */
 static const api_token *met_find(met *m, const api_token_list *list, size_t offset, size_t size)
 {
     uint32_t last = (uint32_t)list->count - 1;
@@ -324,7 +324,7 @@ static const api_token *met_find(met *m, const api_token_list *list, size_t offs
     return NULL;
 }
 
-/* The tokens read so far, and their names and hashes, which must differ. */
+/* The tokens read so far, and tables of their names and hashes, each of which must be unique. */
 typedef struct gathered {
     api_token_list list;
     met names, hashes;

@@ -7,13 +7,14 @@
 #include <pthread.h>
 #include <string.h>
 
-/* A power of two, large enough that few tokens share a bucket. */
+/* The number of buckets of the hash table is a power of two, large enough that few tokens share a
+ * bucket. */
 enum { BUCKETS = 2 * API_TOKENS, NONE = UINT16_MAX };
 
 struct api_tokens {
     pthread_mutex_t lock;
     api_token_list list;
-    uint16_t heads[BUCKETS]; /* indices into `list`; NONE: the end */
+    uint16_t heads[BUCKETS]; /* indices into `list`; NONE: end of the chain */
     uint16_t nexts[API_TOKENS];
     uint64_t secret[2]; /* hash key: clients cannot predict the buckets */
     api_limits defaults;
@@ -65,7 +66,7 @@ void api_tokens_limit(api_tokens *tokens, const api_limits *defaults)
     pthread_mutex_unlock(&tokens->lock);
 }
 
-/* Ignores limits. */
+/* Returns true if two tokens are equal apart from their limits. */
 static bool says_the_same(const api_token *a, const api_token *b)
 {
     return strcmp(a->name, b->name) == 0 && a->role == b->role && a->expires == b->expires &&
@@ -82,8 +83,8 @@ static void set_limits(api_token *to, const api_token *line, const api_limits *d
     }
 }
 
-/* Replaces each new token whose line is unchanged by the token object from before, to which
- * requests hold references. */
+/* Replaces each new token that equals a token in force, apart from limits, by that token, because
+ * requests hold references to it; sets the limits of all. */
 static void keep_known(api_tokens *tokens, api_token_list *fresh)
 {
     for (size_t i = 0; i < fresh->count; i++) {

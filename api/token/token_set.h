@@ -1,13 +1,14 @@
-/* token_set.h - the tokens in force: looked up by every request, replaced when the file of tokens
- * is read again.
+/* token_set.h - the tokens in force: each request looks up its token, and all tokens are replaced
+ * when the token file is read again.
  *
  *     file --api_tokens_load--> tokens <--api_tokens_find-- requests
  *                                 |
  *                                 +-- a token is revoked --> its watches: open streams
  *
  * A request looks up its token and holds a reference until its end, so it never sees a partly
- * loaded file. Threads share one lock, for the length of a table lookup; hashing happens before. A
- * successful lookup takes less than a microsecond: `make bench-http` measures it. */
+ * loaded file. All threads share one lock, which is held only for a table lookup; the token is
+ * hashed before. A successful lookup takes less than a microsecond: `make bench-http` measures
+ * it. */
 #ifndef HE_API_TOKEN_TOKEN_SET_H
 #define HE_API_TOKEN_TOKEN_SET_H
 
@@ -18,15 +19,16 @@ typedef struct api_tokens api_tokens;
 /* Makes an empty set: no client has access until a file is loaded. Returns NULL when memory is
  * out. */
 api_tokens *api_tokens_new(void);
-/* No watch may be left. */
+/* Frees the set. All watches must have been removed. */
 void api_tokens_free(api_tokens *tokens);
 
-/* Sets the limits of tokens whose lines set none; they apply from the next load on. Without this
- * call there are no limits. */
+/* Sets the limits of tokens whose lines set none; they take effect with the next api_tokens_load.
+ * Without this call these tokens have no limits. */
 void api_tokens_limit(api_tokens *tokens, const api_limits *defaults);
 
-/* Replaces the tokens by those of a file (token_file.h), all or nothing. Tokens whose lines differ
- * in nothing but limits stay, with the new limits; the others are revoked and their watches called.
+/* Replaces all tokens by those of a token file (token_file.h), or none if the file is wrong. Tokens
+ * whose lines differ in nothing but limits stay, with the new limits; the others are revoked and
+ * their watches called.
  * Returns false with a sentence in `message` if the file is wrong. */
 bool api_tokens_load(api_tokens *tokens, const char *bytes, size_t length,
                      char message[API_TOKENS_MESSAGE]);
@@ -41,16 +43,18 @@ bool api_tokens_all(api_tokens *tokens, api_token_list *out);
  * expired; the two cases are not distinguished, so that answers do not reveal which. */
 api_token *api_tokens_find(api_tokens *tokens, const char *text, size_t length, double now);
 
-/* A callback for the end of a token. `gone` is called at most once, under the lock; it may wake
- * other threads but do nothing else. The watching code provides the storage. */
+/* A callback for the revocation of a token. `gone` is called at most once, with the lock of the set
+ * held; it may wake other threads but do nothing else. The caller of api_tokens_watch owns the
+ * memory of the watch. */
 typedef struct api_token_watch {
     const api_token *token;
     void (*gone)(struct api_token_watch *watch);
-    struct api_token_watch *next, **place; /* `place` is NULL: not watching */
+    /* Links of the list of watches; `place` is NULL if the watch is not in it. */
+    struct api_token_watch *next, **place;
 } api_token_watch;
 
-/* Adds a watch for the end of its token. If the token is revoked already, it calls `gone` before it
- * returns. */
+/* Adds a watch, which is called when its token is revoked. If the token is revoked already, it
+ * calls `gone` before it returns. */
 void api_tokens_watch(api_tokens *tokens, api_token_watch *watch);
 /* Removes a watch. After this function has returned, `gone` is not called. */
 void api_tokens_unwatch(api_tokens *tokens, api_token_watch *watch);

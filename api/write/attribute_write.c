@@ -14,18 +14,19 @@
 
 /* The state of a request between the decoding of its body and its answer. */
 typedef struct writing {
-    api_text body; /* body of a PUT */
+    api_text body; /* the body of a PUT */
     api_document document;
     api_in root, expected;
     bool has_expected, dry_run, octets;
     he_column *column;     /* the new column of a PUT, until the mesh owns it */
-    unsigned char *values; /* packed rows */
+    unsigned char *values; /* new values, one row after the other */
     size_t count;
     bool same; /* `values` is one value for all elements */
-    api_in at; /* place of the values, for refusals */
+    api_in at; /* cursor at the values, for the JSON pointer of a refusal */
     bool has_at;
-    bool effect;        /* the new values differ from the old ones */
-    size_t revision_at; /* position in the answer of the revision, which is known at the commit */
+    bool effect; /* the new values differ from the old ones */
+    /* Position of the revision in the answer, where it is filled in after the commit. */
+    size_t revision_at;
 } writing;
 
 static void free_writing(void *state)
@@ -51,10 +52,10 @@ static writing *begin(api_exchange *x)
     return w;
 }
 
-/* --- publishing --- */
+/* --- ending a write --- */
 
 /* Writes the whole answer before the commit, so that no failure can follow the commit. Only the
- * revision is filled in later. */
+ * revision is filled in after it. */
 static bool write_answer(api_exchange *x, writing *w)
 {
     const he_mesh *mesh = x->write.content;
@@ -80,7 +81,8 @@ static bool write_answer(api_exchange *x, writing *w)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* Commits the write of api_write_begin if the work was `good`, else aborts it. */
+/* Ends the write that was begun: if `good`, commits it and answers; else aborts it. Dry runs, and
+ * writes that change nothing, are also aborted and answered. */
 static void publish(api_exchange *x, writing *w, const char *op, int status, bool good)
 {
     he_error err = {0};
@@ -129,7 +131,7 @@ static he_mesh *write_begin(api_exchange *x, writing *w)
     return begun ? x->write.content : NULL;
 }
 
-/* Refuses values with 422, since they are wrong for this mesh only. */
+/* Refuses values with 422, because they are well formed but do not fit this mesh. */
 static bool refuse_values(api_exchange *x, const writing *w, const he_error *err)
 {
     api_fail_core(x, err);
@@ -142,7 +144,7 @@ static bool refuse_values(api_exchange *x, const writing *w, const he_error *err
     return false;
 }
 
-/* --- members of PUT and PATCH --- */
+/* --- reading the members that PUT and PATCH share --- */
 
 static bool read_common(writing *w, const api_in *root)
 {
@@ -186,8 +188,8 @@ static bool refuse_body(api_exchange *x, const writing *w)
                     w->octets ? "" : "; application/octet-stream may be larger");
 }
 
-/* Limits the body to the size of valid octets, which is known before the body arrives if the mesh
- * is in memory. */
+/* Sets the maximum size of the body. The exact size of a binary body is known before it arrives if
+ * the mesh is in memory. */
 static void set_maximum(api_exchange *x, writing *w)
 {
     uint64_t most = body_cap(w);
@@ -297,8 +299,8 @@ static bool decode_octets(api_exchange *x, writing *w)
     return true;
 }
 
-/* Fills the column: one value for each live element, one for all of them, all rows as octets, or
- * the default. */
+/* Fills the new column with what the request has: a value for each live element, one value for all,
+ * all rows as binary data, or nothing, which means the default. */
 static bool fill(api_exchange *x, writing *w, const he_mesh *mesh)
 {
     he_column *column = w->column;
@@ -340,7 +342,7 @@ static size_t count_columns(const he_mesh *mesh)
     return count;
 }
 
-/* Puts the column into the content of the write that was begun, and commits that. */
+/* Adds the column to the mesh of the write that was begun, and ends the write. */
 static void put(api_exchange *x, writing *w)
 {
     he_mesh *mesh = x->write.content;
@@ -359,8 +361,8 @@ static void put(api_exchange *x, writing *w)
     publish(x, w, is_new ? "attribute_create" : "attribute_replace", is_new ? 201 : 200, good);
 }
 
-/* A copy of the mesh gets the column, so that the record is written to the disk without the lock.
- */
+/* Adds a large column to a copy of the mesh, under a claim, so that the mesh is not locked while
+ * the change is written to the disk. */
 static void put_claimed(api_exchange *x)
 {
     he_error err = {0};
@@ -375,8 +377,9 @@ static void put_claimed(api_exchange *x)
     put(x, x->state);
 }
 
-/* Is the column too large to be encoded under the lock? The elements of all kinds are an upper
- * bound where the request does not give each a value. */
+/* Returns true if the column is too large to be encoded for the journal while the mesh is locked.
+ * If the request has no value for each element, the number of all elements of the mesh is taken as
+ * the number of rows, which is an upper bound. */
 static bool is_large(const api_exchange *x, const writing *w)
 {
     st_mesh_info info;
@@ -399,7 +402,7 @@ void api_attribute_put(api_exchange *x)
 
 /* --- PATCH --- */
 
-/* Reads the ids that a request names; NULL stands for all live elements. */
+/* Reads the ids that a request names. `*ids` is set to NULL if it names all live elements. */
 static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uint32_t **ids,
                      size_t *count)
 {
@@ -416,7 +419,8 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
     return api_in_ids(in, 1, &x->arena, ids, count);
 }
 
-/* Sets the JSON pointer of a refusal to the last place in `ids` that names the element. */
+/* Sets the JSON pointer of a refusal to the last item of the list `ids` that names the refused
+ * element. */
 static void point_at_id(const api_exchange *x, const api_in *ids)
 {
     api_in child, found;

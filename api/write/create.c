@@ -7,8 +7,7 @@
 #include "api/document/summary.h"
 #include "api/document/upload.h"
 
-/* Reads a piece of the body. Both routes do that in one way; they differ in where the mesh is
- * stored. */
+/* Reads a piece of the body, for both routes. */
 static void body(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->problem.code == HE_OK) {
@@ -45,7 +44,7 @@ static bool forget_removed(api_exchange *x)
 /* Refuses failed preconditions before the client has sent the body. */
 void api_mesh_put_begin(api_exchange *x)
 {
-    bool good = x->is_cold; /* a mesh on disk is checked after the body */
+    bool good = x->is_cold; /* a mesh that is not in memory is checked after the body has arrived */
     if (x->mesh != NULL) {
         good = (!x->info.busy || api_fail_store(x, ST_BUSY)) && api_preconditions_hold(x, NULL);
     } else if (!x->is_cold) {
@@ -61,7 +60,7 @@ void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* A mesh before it is stored, with facts that are computed before other requests can change it. */
+/* A mesh that is not stored yet, so that no other request can change it, and its summary. */
 typedef struct made {
     he_mesh *mesh;
     api_summary summary;
@@ -82,7 +81,7 @@ static bool build(api_exchange *x, made *out)
     return true;
 }
 
-/* Returns the name that a new mesh gets. */
+/* Returns the name that the request gives to a new mesh, or "". */
 static const char *first_name(const api_exchange *x)
 {
     const char *name = api_upload_name(x);
@@ -111,7 +110,8 @@ static void create(api_exchange *x)
     }
 }
 
-/* Replaces a damaged mesh. It keeps its id, and its name unless the request has one. */
+/* Replaces a damaged mesh. The new mesh gets the id of the damaged one, and also its name unless
+ * the request has a name. Returns false if the damaged mesh was deleted meanwhile. */
 static bool replace_damaged(api_exchange *x, const made *m)
 {
     st_mesh *fresh = NULL;
@@ -175,8 +175,8 @@ static bool replace(api_exchange *x, const made *m)
     return true;
 }
 
-/* Creates the mesh under the id of the path. Returns false, with nothing changed, if the mesh
- * exists by now; x->mesh is then a reference to it. */
+/* Creates the mesh under the id in the path. Returns false, with nothing changed, if another
+ * request has created a mesh with this id meanwhile; x->mesh then refers to that mesh. */
 static bool create_named(api_exchange *x, const made *m)
 {
     if (!api_precondition_absent(x)) {
@@ -199,8 +199,8 @@ static bool create_named(api_exchange *x, const made *m)
     return true;
 }
 
-/* The mesh may be created or deleted by other requests meanwhile, so this tries to replace and to
- * create it in turn. */
+/* Stores the mesh of a PUT. Other requests may create or delete a mesh with this id meanwhile, so
+ * this tries in turn to replace and to create it. */
 static void put(api_exchange *x)
 {
     made m;

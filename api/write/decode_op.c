@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* The state of decoding one operation. */
+/* What the functions that decode one operation share. */
 typedef struct decoder {
     const api_in *object;
     const api_op_scope *scope;
@@ -55,8 +55,8 @@ static bool decode_element(const decoder *d, const he_param *param, const api_in
     return true;
 }
 
-/* Reads a list of ids in two passes: the first adds up the length, because references may insert
- * lists. */
+/* Reads a list of ids in two passes. The first one adds up the length of the result, because a
+ * reference may stand for a list. */
 static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in *in, he_arg *arg)
 {
     if (!api_in_array(in, min, SIZE_MAX)) {
@@ -227,7 +227,8 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_MATRIX:
         return decode_matrix(in, arg);
     case HE_PARAM_CYCLE:
-        /* A list of too few corners is refused by the operation itself, not by the decoder. */
+        /* No minimum length is given, because the operation itself refuses a list with too few
+         * corners. */
         return decode_list(d, param->kind, 0, in, arg);
     case HE_PARAM_TEXT:
         return api_in_string(in, SIZE_MAX, &arg->text);
@@ -239,8 +240,8 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     return api_in_fail(in, API_INTERNAL, "a parameter has no type");
 }
 
-/* Returns the index of the parameter that a member names, or -1; `*plural` says whether by its
- * plural. */
+/* Returns the index of the parameter that the member `name` gives, or -1. `*plural` says whether
+ * the member has the parameter's plural name. */
 static int find_param(const he_op *op, const char *name, bool *plural)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
@@ -322,7 +323,8 @@ static bool decode_member(const decoder *d, const api_in *in)
     return decode_value(d, &d->op->params[i], in, plural, arg);
 }
 
-/* Checks that all required parameters are given, and at most one of each group of alternatives. */
+/* Checks that all required parameters are given, and that at most one parameter of each group of
+ * alternatives is given. */
 static bool check_given(const decoder *d)
 {
     for (size_t i = 0; i < he_op_params(d->op); i++) {
@@ -358,7 +360,7 @@ static bool check_given(const decoder *d)
     return true;
 }
 
-/* Checks that a list of points is as long as the list of elements that it belongs to. */
+/* Checks that a list of points is as long as the operation's list of elements. */
 static bool check_points(const decoder *d)
 {
     size_t elements = 0;

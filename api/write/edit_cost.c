@@ -11,8 +11,8 @@ void api_edit_cost_clear(api_edit_cost *cost)
     }
 }
 
-/* Adds one id to the elements that an edit visits. If there are more than a worker may visit, it is
- * enough to know that. */
+/* Adds one id to the elements that an edit visits. Ids beyond API_COSTLY_ELEMENTS are not
+ * collected: it is then known that the edit is too costly for a worker. */
 static he_status gather(api_edit_cost *cost, const he_param *param, uint32_t id, he_error *err)
 {
     he_ids *lists = (param->flags & HE_REACHES) != 0 ? cost->reached : cost->named;
@@ -43,8 +43,8 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
     return status;
 }
 
-/* Returns the number of steps around the origin of `first`, or, if `turn` is false, around its face
- * or hole; at most `most`. */
+/* Returns the number of half-edges around the origin of `first`, or, if `turn` is false, around its
+ * face or hole; at most `most`. */
 static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most)
 {
     he_halfedge h = first;
@@ -56,9 +56,9 @@ static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_
     return count;
 }
 
-/* Returns the number of half-edges around an edge. Splitting an edge does not walk around the hole
- * beside it, however long that is; only operations that name a half-edge of the hole do
- * (`holes`). */
+/* Returns the number of half-edges around both ends of an edge and around its faces. A hole beside
+ * the edge is counted only with `holes`: operations that name an edge, such as edge_split, do not
+ * walk around the hole, but those that name a half-edge do. */
 static uint64_t about_edge(const he_mesh *mesh, he_edge e, bool holes, uint64_t most)
 {
     uint64_t count = 0;
@@ -92,7 +92,7 @@ static uint64_t about(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t m
     return 0;
 }
 
-/* Returns the corners of the faces around a vertex, plus its edges at holes. */
+/* Returns the number of corners of all faces around a vertex, plus one for each hole there. */
 static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
 {
     he_halfedge first = he_vertex_halfedge(mesh, v), h = first;
@@ -107,8 +107,8 @@ static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
     return count;
 }
 
-/* Returns the number of edges at the corners of a loop, or, with `faces`, the number of corners of
- * the faces around them. */
+/* Sums over the vertices of a loop: the number of edges at each, or, with `faces`, the number of
+ * corners of all faces around it. */
 static uint64_t along(const he_mesh *mesh, he_halfedge first, bool faces, uint64_t most)
 {
     he_halfedge h = first;
@@ -146,7 +146,8 @@ static uint64_t reach(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t m
     return count;
 }
 
-/* Sums `count` over ids of one kind, starting from `total`, until the sum exceeds `most`. */
+/* Adds to `total` what the function `count` returns for each of `ids`, until the sum exceeds
+ * `most`. Returns the sum. */
 static uint64_t add_all(const he_mesh *mesh, he_kind kind, const he_ids *ids,
                         uint64_t (*count)(const he_mesh *mesh, he_kind kind, uint32_t id,
                                           uint64_t most),
@@ -174,18 +175,18 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
     return total > most;
 }
 
-/* --- the charges of a list of operations --- */
+/* --- what the operations of a list are charged --- */
 
-/* Degrees below this are not cached. */
+/* Degrees below this are not cached (api_hubs). */
 enum { HUB = 256 };
 
-/* Returns the steps around a vertex, or around the face of `first`, from the cache if possible. */
+/* Does what steps does, with a cache of high degrees. */
 static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most,
                           api_hubs *hubs)
 {
     uint32_t id = turn ? he_origin(mesh, first).i : he_face_of(mesh, first).i;
     if (id >= HE_MAX_ROWS) {
-        return steps(mesh, first, turn, most); /* a hole has no id to cache it by */
+        return steps(mesh, first, turn, most); /* not cached: a hole has no id */
     }
     uint32_t key = 2 * id + 2 + (turn ? 0 : 1);
     size_t slot = key / 2 % (sizeof hubs->slots / sizeof hubs->slots[0]);
@@ -215,7 +216,7 @@ static uint64_t walk_about_edge(const he_mesh *mesh, he_edge e, bool holes, uint
     return count;
 }
 
-/* Returns the steps around all corners of a face except the origin of h. */
+/* Returns the sum of the degrees of all vertices of the face of `h` except the origin of `h`. */
 static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t most,
                                    api_hubs *hubs)
 {
@@ -226,7 +227,7 @@ static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t 
     return count;
 }
 
-/* The steps that sorting, comparing and relinking one face is worth. */
+/* How many steps are charged for sorting, comparing and relinking one face. */
 enum { FACE_STEPS = 250 };
 
 static uint64_t walk_about_faces(const he_mesh *mesh, he_vertex v, uint64_t most, api_hubs *hubs)
@@ -290,8 +291,8 @@ uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t
             count += walk_about(mesh, param, arg->ids[j], most, hubs);
         }
     }
-    /* An operation walks over no part of the mesh more than a few times, even if many of its
-     * elements have that part around them. */
+    /* An operation visits each half-edge only a few times, even if the half-edge is near many of
+     * the elements that the operation names. */
     uint64_t all = 8 * (uint64_t)he_mesh_count(mesh, HE_HALFEDGE);
     return count < all ? count : all;
 }

@@ -15,46 +15,50 @@
 
 /* The state of a request between the decoding of its body and its answer. */
 typedef struct edits {
-    api_in list; /* cursor at the array of operations; unused for a single one */
-    api_item op; /* the current item of the list */
+    api_in list; /* cursor at the array of operations; unused for a single operation */
+    api_item op; /* the current operation of the list */
     bool is_list;
     size_t count;
     api_in expected;
     bool has_expected;
     bool dry_run;
-    size_t whole;             /* operations on the whole mesh */
-    uint64_t passes;          /* how many passes over the mesh they take */
-    double growth;            /* the factor by which they enlarge the mesh together */
-    uint64_t elements_beside; /* elements of the other meshes */
-    bool costly, claims;      /* where it runs: see api_edits_cost */
+    size_t whole;             /* number of operations on the whole mesh */
+    uint64_t passes;          /* how many passes over the mesh the `whole` operations take */
+    double growth;            /* the factor by which all operations together enlarge the mesh */
+    uint64_t elements_beside; /* number of elements of the other meshes that operations name */
+    /* Whether the list must leave the worker; whether it must claim the mesh. */
+    bool costly, claims;
     double seconds;
     api_edit_cost cost;
-    uint64_t looked_at; /* elements charged so far: see API_MAX_EDITS_ELEMENTS */
-    uint64_t steps;     /* steps around vertices of high degree so far */
-    uint64_t work;      /* both together, in the unit of API_POOL_EDITS */
-    uint64_t most_work; /* a list with more work runs elsewhere */
+    uint64_t looked_at; /* elements charged so far (API_MAX_EDITS_ELEMENTS) */
+    uint64_t steps;     /* steps charged so far (API_MAX_EDITS_STEPS) */
+    uint64_t work;      /* work charged so far, in the unit of API_POOL_EDITS */
+    uint64_t most_work; /* a list with more work must continue on another thread */
     bool exceeded;      /* `most_work` would be exceeded */
-    size_t most_rows;   /* rows of the delta; a list with more needs a claim */
+    size_t most_rows;   /* a list whose delta has more rows needs a claim */
     bool crowded;       /* `most_rows` was exceeded */
-    uint64_t paid;      /* reports of progress that the current operation has paid for */
-    uint64_t look;      /* work charged for each further poll */
-    bool unlimited;     /* this thread may do any amount of work */
-    he_progress told;   /* the original x->progress, to which the replacement forwards */
+    /* How many more polls of the watch the charge for the current operation includes. */
+    uint64_t paid;
+    uint64_t look;    /* work charged for each further poll */
+    bool unlimited;   /* this thread may do any amount of work */
+    he_progress told; /* the original x->progress, to which tell_and_charge forwards */
     api_hubs hubs;
     api_result_names names;
     api_named_meshes named;
     api_arena scratch; /* arguments of the current operation */
-    api_text results;  /* objects of `results`, comma-separated */
-    api_out out;       /* writes `results` */
+    api_text results;  /* the JSON array "results" of the answer */
+    api_out out;       /* writes to `results` */
     char ops[ST_ENTRY_OPS];
-    uint32_t ran[API_MOST_OPERATIONS]; /* how often each operation ran, by its number */
-    size_t at;                         /* number of the current operation; API_OPERATIONS: none */
-    bool effect;                       /* the operations changed something */
-    size_t revision_at; /* position in the answer of the revision, which is known at the commit */
+    /* How often each operation ran, indexed by the number of the operation. */
+    uint32_t ran[API_MOST_OPERATIONS];
+    size_t at;   /* number (he_op_number) of the operation that is running; API_OPERATIONS: none */
+    bool effect; /* the operations changed something */
+    /* Position of the revision in the answer, where it is filled in after the commit. */
+    size_t revision_at;
 } edits;
 
-/* The progress that a long edit has reached after copying, after the operations, and after finding
- * the changes; the rest is writing the answer. */
+/* The progress that a long edit has reached after copying the mesh, after running the operations,
+ * and after finding the changes; the rest is writing the answer. */
 static const double COPY_SHARE = 0.2, OPS_SHARE = 0.7, CHANGES_SHARE = 0.95;
 
 static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
@@ -72,7 +76,8 @@ static void free_edits(void *state)
     he_mem_free(e);
 }
 
-/* Appends an operation's name to the text in the history, or dots if it does not fit. */
+/* Appends the name of an operation to e->ops, the list in the history entry; appends ",..." if it
+ * does not fit. */
 static void note_name(edits *e, const char *name)
 {
     static const char more[] = ",...";
@@ -154,7 +159,7 @@ static bool read_request(api_exchange *x, edits *e)
         return false;
     }
     e->is_list = api_in_find(root, "ops", &e->list);
-    /* The array in the document is empty, because its items are read from the text one by one. */
+    /* The array "ops" in the parsed document is empty: its items are parsed one by one (x->ops). */
     e->count = e->is_list ? x->ops.count : 1;
     if (e->is_list && (!api_in_only(root, list_members) || !api_in_array(&e->list, 0, 0) ||
                        !check_count(&e->list, e->count))) {
@@ -167,7 +172,8 @@ static bool read_request(api_exchange *x, edits *e)
     return (e->dry_run || api_gate_may_change(x)) && check_ops(x, e);
 }
 
-/* Above this number of elements the exact number does not matter. */
+/* The largest number of elements that is computed exactly; larger numbers are all treated as this
+ * one. */
 static const double MANY = 1e12;
 
 static uint64_t issued(const he_mesh *mesh)
@@ -176,8 +182,8 @@ static uint64_t issued(const he_mesh *mesh)
            he_mesh_issued(mesh, HE_FACE);
 }
 
-/* Returns false if the list exceeds a limit of work. A short list may name the whole mesh in every
- * operation, or one vertex of high degree. */
+/* Refuses a list that exceeds a limit of work. Even a short list can, because each of its
+ * operations may name the whole mesh or a vertex of high degree. */
 static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
 {
     if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
@@ -201,10 +207,11 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     return true;
 }
 
-/* The number of times that even the smallest operation reports progress. */
+/* The number of reports of progress that the charge for any operation includes. */
 enum { PHASES = 24 };
 
-/* Charges the cost of one operation. Returns false if the list must continue on another thread. */
+/* Charges the cost of one operation. Returns false if the list exceeds what it may do on this
+ * thread or without a claim. */
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
 {
     bool whole = he_op_is_whole(call->op, call->args);
@@ -229,7 +236,7 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
 }
 
 typedef struct attribute_count {
-    size_t columns, labels; /* labels of the attribute with the most */
+    size_t columns, labels; /* `labels` is the highest number of labels of an attribute */
 } attribute_count;
 
 static attribute_count count_attributes(const he_mesh *mesh)
@@ -246,8 +253,8 @@ static attribute_count count_attributes(const he_mesh *mesh)
     return count;
 }
 
-/* Applies the limits for attributes of a request to those that an operation has added: they may
- * come from another mesh, a first material, or corners that a weld keeps apart. */
+/* Checks that an operation has not added too many attributes or labels. It may add some from
+ * another mesh, with the first material, or for corners that a weld keeps apart. */
 static bool within_attributes(attribute_count before, const he_mesh *mesh, const api_in *in)
 {
     attribute_count after = count_attributes(mesh);
@@ -264,7 +271,7 @@ static bool within_attributes(attribute_count before, const he_mesh *mesh, const
     return true;
 }
 
-/* Runs one operation and writes its results. The pointer of a refusal is that of the operation. */
+/* Runs one operation and writes its results. A refusal gets the JSON pointer of the operation. */
 static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta,
                    const api_in *in)
 {
@@ -297,8 +304,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return good;
 }
 
-/* The list reports progress once for this many operations, or for a certain amount of work, because
- * a report takes a system call. */
+/* The watch is polled once for this many operations, or earlier after a certain amount of work. It
+ * is not polled for each operation, because a report takes a system call. */
 enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
@@ -328,7 +335,7 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
 }
 
 /* Writes the whole answer before the commit, so that no failure can follow the commit. Only the
- * revision is filled in later. */
+ * revision is filled in after it. */
 static bool write_answer(api_exchange *x, edits *e)
 {
     api_out *out = &x->out;
@@ -375,21 +382,24 @@ static bool edit(api_exchange *x, edits *e)
     if (e->results.failed) {
         return api_fail_memory(x);
     }
-    /* The rest of the work is limited by the rows of the delta, which were charged already. */
+    /* Finding the changes takes time proportional to the rows of the delta, which were charged
+     * already. */
     e->paid = UINT64_MAX;
     he_progress_span(&x->progress, CHANGES_SHARE);
     if (st_write_changes(&x->write, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
-    /* An edit without effect makes no revision, unless its answer names ids that it used up. */
+    /* An edit that changes nothing makes no revision, unless it has used up ids, which its answer
+     * may name. */
     e->effect = !he_changes_none(&x->write.changes) || issued(mesh) != ids;
     return write_answer(x, e) && e->effect && !e->dry_run;
 }
 
-/* --- work that turns out to be long --- */
+/* --- limiting the work of a list --- */
 
-/* The work of some operations is not known in advance: flips spread. An operation reports progress
- * every HE_PROGRESS_STRIDE elements, and reports beyond those it has paid for are charged here. */
+/* Charges work that was not known when the operation was charged, for example because edge flips
+ * cause further flips. An operation reports progress every HE_PROGRESS_STRIDE elements; each poll
+ * beyond those that its charge includes is charged here. */
 static bool tell_and_charge(void *context, const char *phase, double done)
 {
     edits *e = context;
@@ -402,7 +412,7 @@ static bool tell_and_charge(void *context, const char *phase, double done)
     return !e->exceeded && (e->told.tell == NULL || e->told.tell(e->told.context, phase, done));
 }
 
-/* Limits the work to what this thread may do, until unlimit_work. */
+/* Limits the work to what may be done on this thread, until unlimit_work is called. */
 static void limit_work(api_exchange *x, edits *e)
 {
     e->most_work = e->unlimited                 ? UINT64_MAX
@@ -439,10 +449,10 @@ static void run(api_exchange *x);
 static void run_claimed(api_exchange *x);
 static void go_on_elsewhere(api_exchange *x, edits *e);
 
-/* --- long edits --- */
+/* --- running lists of operations --- */
 
-/* Counts operations for the metrics. If one was refused, only that one is counted: the others were
- * rolled back. */
+/* Counts the operations for the metrics. If one was refused, only that one is counted, because the
+ * others were rolled back. */
 static void count_operations(const api_exchange *x, const edits *e)
 {
     api_metrics *metrics = x->service->metrics;
@@ -461,8 +471,8 @@ static void count_operations(const api_exchange *x, const edits *e)
     }
 }
 
-/* Refuses the request early if its first operation is sure to fail, because nothing changes the
- * mesh before that operation. */
+/* Refuses the request early if its first operation is sure to fail. This can be known, because
+ * nothing changes the mesh before the first operation. */
 static bool foresee(api_exchange *x, edits *e)
 {
     const api_in *in = e->is_list ? &e->op.in : &x->root;
@@ -484,14 +494,15 @@ static bool foresee(api_exchange *x, edits *e)
     return false;
 }
 
-/* Claims the mesh (reserves it for an edit that works on a copy) before the client gets 202, so
- * that a conflict is reported at once. */
+/* Claims the mesh (reserves it for an edit that works on a copy). This is done before the client
+ * gets 202, so that a conflict is reported at once. */
 static bool claim(api_exchange *x, edits *e)
 {
     return api_write_claim(x, e->has_expected ? &e->expected : NULL) && foresee(x, e);
 }
 
-/* Ends what limit_work began, and, if `good` is set, commits the write. */
+/* Commits the write and answers if `good` is set. Otherwise rolls it back, and starts the list
+ * again elsewhere if it exceeded the limits of limit_work. */
 static void end_edit(api_exchange *x, edits *e, bool good)
 {
     if (good) {
@@ -516,8 +527,8 @@ static void run_claimed(api_exchange *x)
 {
     edits *e = x->state;
     he_error err = {0};
-    /* In a job, or if the client prefers to wait, there is no other thread to move the work to, so
-     * it is not limited. */
+    /* The work of a job, or of a client that prefers to wait, cannot move to another thread, so it
+     * is not limited. */
     e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
     he_progress_span(&x->progress, COPY_SHARE);
     if (!api_named_meshes_take(x, &e->named)) {
@@ -535,13 +546,14 @@ static void run_claimed(api_exchange *x)
     end_edit(x, e, good);
 }
 
-/* Moves the list from a worker to the pool, or from there to a job; if it changes many rows, to a
- * claim, which works on a copy. */
+/* Starts a list again that was rolled back. If it changes too many rows, it claims the mesh and
+ * works on a copy; else it moves from a worker to the job pool, or from there to a job. */
 static void go_on_elsewhere(api_exchange *x, edits *e)
 {
     bool on_worker = x->phase == API_PHASE_BODY;
     bool crowded = e->crowded;
-    x->problem = (api_problem){.code = HE_OK}; /* the problem of the attempt that was rolled back */
+    /* Drops the problem of the attempt that was rolled back. */
+    x->problem = (api_problem){.code = HE_OK};
     start_over(e);
     if (crowded) {
         if (claim(x, e)) {
@@ -572,9 +584,9 @@ static void run(api_exchange *x)
 }
 
 /* Estimates the cost of a list of operations. A list of many operations, or one that visits the
- * whole mesh or a huge element, belongs on a thread that may block. Work on a very large mesh must
- * not keep it locked. The handler chooses the thread, because a claim must be made before the
- * client is answered. */
+ * whole mesh or a huge element, belongs on a thread that may block. A long list, or work on a very
+ * large mesh, needs a claim, so that the mesh is not locked meanwhile. The handler chooses the
+ * thread, because a claim must be made before the client is answered. */
 bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     edits *e = x->state;

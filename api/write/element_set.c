@@ -48,7 +48,7 @@ bool api_find_set(const api_in *in, const he_mesh *mesh, he_kind kind, api_arena
     }
     size_t found = 0;
     for (size_t i = 0; i < column->rows; i++) {
-        found += column->data[i] != 0; /* dead rows hold the default, false */
+        found += column->data[i] != 0; /* rows of deleted elements have the default value, false */
     }
     uint32_t issued = he_mesh_issued(mesh, kind);
     found = column->fallback[0] ? issued : found;

@@ -5,8 +5,9 @@
 #include <assert.h>
 #include <string.h>
 
-/* Returns the slot of the hash table for this name, or the empty one where it belongs. The table is
- * never full. The key of the hash is secret, so that clients cannot choose colliding names. */
+/* Returns the slot of the hash table that has this name, or the empty slot where the name would be
+ * added. The table is never full. The key of the hash is secret, so that clients cannot choose
+ * colliding names. */
 static size_t find_slot(const api_result_names *names, const char *text, size_t length)
 {
     size_t slot = (size_t)he_siphash_of(names->secret, text, length) & (names->table_size - 1);
@@ -29,7 +30,8 @@ static api_result_name *find_name(const api_result_names *names, const char *tex
     return entry == 0 ? NULL : &names->names[entry - 1];
 }
 
-/* Reads an index such as "0" or "17", without sign or leading zeros. Returns -1 otherwise. */
+/* Reads an index such as "0" or "17", without sign or leading zeros. Returns -1 if the text is no
+ * such index. */
 static int64_t read_index(const char *text)
 {
     int64_t value = 0;
@@ -47,14 +49,14 @@ static int64_t read_index(const char *text)
 
 static const uint32_t unbound = HE_NONE;
 
-/* A result of an earlier operation, or an item of it. */
+/* What a reference names: a result of an earlier operation, or an item of a list result. */
 typedef struct value {
     const api_result_name *name;
-    size_t row;    /* of the results of the name's operation */
-    int64_t index; /* of an item; -1: the whole result */
+    size_t row;    /* number of the result among the results of the operation */
+    int64_t index; /* index of the item; -1: the whole result */
 } value;
 
-/* Finds the ids of a value. `text` is the reference to it, for refusals. */
+/* Finds the ids of a result or item. `text` is the reference, for the message of a refusal. */
 static bool find_value(const api_in *at, const char *text, const value *wanted, api_found *out)
 {
     const api_result_name *name = wanted->name;

@@ -1,4 +1,5 @@
-/* result_names.h - the "as" names of one edit list, and the results that they stand for.
+/* result_names.h - the names that operations of one edit list have ("as"), and the results of these
+ * operations.
  *
  *     api_result_names_init(&names, secret);
  *     for each operation:                          the check
@@ -8,9 +9,10 @@
  *         api_decode_op(...);  he_op_run(..., &results);
  *         api_result_names_bind(&names, &call, &results);  references to it now have values
  *
- * References to an operation that is not bound yet are checked (known name, known result, right
- * kind) and stand for one id, HE_NONE. When the list is run, operation i must be decoded only after
- * those before it were bound. Names are found by a hash with a secret key, so that clients cannot
+ * api_result_names_bind stores the results of an operation. A reference to an operation whose
+ * results are not stored yet is checked (known name, known result, right kind) and stands for one
+ * id, HE_NONE. So when the list is run, an operation must be decoded only after the results of
+ * those before it were stored. Names are found by a hash with a secret key, so that clients cannot
  * construct collisions. */
 #ifndef HE_API_WRITE_RESULT_NAMES_H
 #define HE_API_WRITE_RESULT_NAMES_H
@@ -23,28 +25,29 @@ typedef struct api_result_name {
     const char *name;
     const he_op *op;
     bool bound;
-    he_results results; /* owned, once bound */
+    he_results results; /* the results of the operation, if `bound` */
 } api_result_name;
 
 typedef struct api_result_names {
     api_result_name *names;
     size_t count, capacity;
-    uint32_t *table;    /* hash table of index + 1 into names; 0: empty */
-    size_t table_size;  /* a power of two */
-    uint64_t secret[2]; /* key of the hash */
+    uint32_t *table; /* hash table: each slot has an index of a name plus 1, or 0 if it is empty */
+    size_t table_size;  /* number of slots, a power of two */
+    uint64_t secret[2]; /* secret key of the hash */
     api_arena texts;
-    api_references references; /* for the scope of api_decode_op */
+    api_references references; /* resolves references to these names; passed to api_decode_op */
 } api_result_names;
 
 /* Initializes `names`, which must not move afterwards: references.context points to it. */
 void api_result_names_init(api_result_names *names, const uint64_t secret[2]);
 void api_result_names_clear(api_result_names *names);
 /* Adds the name of an operation, if it has one. `at` is the JSON object of the operation. Returns
- * false if the name exists already. */
+ * false with the problem filled if the name exists already. */
 bool api_result_names_add(api_result_names *names, const api_in *at, const api_call *call);
-/* Takes the results of an operation if it has a name, and leaves {0}; otherwise does nothing. */
+/* Stores the results of an operation if it has a name: moves them out of `results`, which becomes
+ * {0}. Otherwise does nothing. */
 void api_result_names_bind(api_result_names *names, const api_call *call, he_results *results);
-/* Drops all results, before the list is run again. */
+/* Drops all stored results, so that the list can be run again. */
 void api_result_names_unbind(api_result_names *names);
 
 #endif

@@ -8,9 +8,10 @@ typedef struct steps {
     st_action which;
     api_in expected, to;
     bool has_expected;
-    uint64_t revision; /* revision that `to` names; 0: undo by count */
+    uint64_t revision; /* the value of "to_revision"; 0 if it is not given: then `count` is used */
     uint32_t count;
-    size_t revision_at, undo_at, redo_at; /* positions in the answer */
+    /* Positions in the answer of numbers that are filled in after the commit. */
+    size_t revision_at, undo_at, redo_at;
 } steps;
 
 static const char *const members[] = {"expected_revision", "steps", "to_revision", NULL};
@@ -70,9 +71,9 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     }
 }
 
-/* Writes the changes of all steps together, none if there are no steps. It is written before the
- * commit, so that no failure can follow; only numbers that are known at the commit are filled in
- * later. */
+/* Writes the whole answer, with the changes of all steps together, before the commit, so that no
+ * failure can follow the commit. Only the numbers that the commit determines are filled in after
+ * it. */
 static bool write_answer(api_exchange *x, steps *s)
 {
     api_out *out = &x->out;
@@ -91,7 +92,7 @@ static bool write_answer(api_exchange *x, steps *s)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* Makes `count` steps and writes the answer. Returns false with the problem filled. */
+/* Undoes or redoes `count` edits and writes the answer. Returns false with the problem filled. */
 static bool take(api_exchange *x, steps *s, uint32_t count)
 {
     st_status status = count == 0 ? ST_OK : st_write_step(&x->write, s->which, count);
@@ -134,7 +135,8 @@ void api_undo_post(api_exchange *x)
     }
 }
 
-/* Estimates the cost of the steps. Deltas of many rows belong on a thread that may block. */
+/* Estimates the cost of undoing or redoing. Deltas of many rows belong on a thread that may
+ * block. */
 bool api_undo_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const steps *s = x->state;

@@ -5,9 +5,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Continues a checksum: `before` is the checksum of the bytes before these, 0 if there are none. */
+/* Continues a checksum with `size` bytes. `before` is the checksum of all bytes before these, 0 if
+ * there are none. */
 uint32_t st_crc32c(uint32_t before, const void *bytes, size_t size);
-/* Does what st_crc32c does, on processors without an instruction for it. */
+/* Computes what st_crc32c computes, but by a table, for processors without a CRC-32C
+ * instruction. */
 uint32_t st_crc32c_by_table(uint32_t before, const void *bytes, size_t size);
 
 #endif

@@ -4,8 +4,8 @@
 
 #include <stdatomic.h>
 
-/* The newest position. It is shared by all memory journals of the process, because different
- * journals need no order. */
+/* The newest position. All memory journals of the process share it, because the order of positions
+ * matters only within one journal. */
 static _Atomic uint64_t newest;
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)

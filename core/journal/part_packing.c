@@ -4,8 +4,8 @@
 #include "stored/stored.h"
 
 #include <string.h>
-/* zstd contexts allocate by base/mem.h through functions that the header declares for static
- * linking only; the shared library exports them too. */
+/* This makes zstd.h declare the functions that let zstd allocate through base/mem.h. The header
+ * offers them for static linking only, but the shared library exports them, too. */
 #define ZSTD_STATIC_LINKING_ONLY
 #include <zstd.h>
 #include <zstd_errors.h>
@@ -70,7 +70,7 @@ size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigne
     const size_t room = size - size / LEAST_SHARE;
     const size_t packed = ZSTD_compressCCtx(packer->zstd, packer->packed, room, part, size, LEVEL);
     if (ZSTD_isError(packed)) {
-        return size; /* it does not fit, or memory is out */
+        return size; /* the compressed part does not fit, or memory is out */
     }
     memcpy(part, packer->packed, packed);
     *coding |= HE_CODING_PACKED;
@@ -99,8 +99,9 @@ void st_unpacker_free(st_unpacker *unpacker)
     }
 }
 
-/* The frame is decompressed directly into the room of a part, so neither its window nor its claimed
- * size makes zstd allocate; a frame longer than it claims, or than a part, is refused. */
+/* The zstd frame is decompressed directly into a buffer as long as the longest part, so zstd
+ * allocates nothing, whatever window or size the frame claims. A frame that is longer than it
+ * claims, or than the buffer, is refused. */
 st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why)
 {
     const unsigned long long said = ZSTD_getFrameContentSize(packed.bytes, packed.size);

@@ -1,8 +1,8 @@
 /* part_packing.h - compresses the parts of contents by zstd (HE_CODING_PACKED of stored.h).
  *
- * Each part is compressed by itself, after its links were coded, as one zstd frame with its content
- * size, at level 1. So a part can be read without those before it, and none takes more memory than
- * the longest part there is. */
+ * Each part is compressed by itself, after its links were coded as differences, as one zstd frame
+ * that states the size of its content, at level 1. So a part can be read without the parts before
+ * it, and reading one never takes more memory than the longest possible part. */
 #ifndef HE_JOURNAL_PART_PACKING_H
 #define HE_JOURNAL_PART_PACKING_H
 
@@ -15,7 +15,7 @@ typedef struct st_unpacker st_unpacker;
 st_packer *st_packer_new(void);
 void st_packer_free(st_packer *packer); /* takes NULL */
 /* Compresses a part of `size` bytes, at most HE_STORED_PART_ROOM, in place; adds HE_CODING_PACKED
- * to *coding and returns the new size. A part that hardly gets shorter stays as it is, and so does
+ * to *coding and returns the new size. A part that hardly becomes shorter is left as it is. So is
  * every part if `packer` is NULL or memory is out. */
 size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigned *coding);
 

@@ -12,7 +12,7 @@ enum { AT_VERSION = 4, AT_CHAIN = 24 };
 
 enum { BARRIER = 1, TALLY = 2, PARTS = 4, EDIT = 8, ALL_FLAGS = BARRIER | TALLY | PARTS | EDIT };
 
-/* The kinds of element that are counted, in the order in which they are written. */
+/* The kinds of element whose numbers a frame states, in the order in which they are written. */
 static const he_kind counted[] = {HE_VERTEX, HE_EDGE, HE_FACE};
 enum { COUNTED = sizeof counted / sizeof *counted };
 
@@ -147,7 +147,7 @@ static bool take_numbers(he_cursor *c, st_record *r)
            he_take_varint(c, UINT64_MAX, &r->bytes);
 }
 
-/* Reads a frame up to its texts. */
+/* Reads a frame up to its texts (the names of operations and of the mesh). */
 static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_error *err)
 {
     st_record *r = &out->record;

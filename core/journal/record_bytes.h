@@ -15,10 +15,11 @@
  *     the rest   the body; none with the flag PARTS: the content is stored beside, in parts; with
  *                the flag EDIT too (an edit only), those are parts of the body
  *
- * THE CHAIN connects a record to all before it: that of the first is the hash of its mesh's origin
- * (a number that no other mesh has), that of each other the hash of the frame before it from the
- * version on. The hash is the first word of SipHash-2-4-128 with the key 0. A record that is
- * missing, duplicated or from another mesh breaks the chain; equal chains mean equal histories.
+ * THE CHAIN is a hash that connects a record to all before it. The chain of the first record is the
+ * hash of its mesh's origin (a number that no other mesh has). The chain of each later record is
+ * the hash of the frame before it, from the version on. The hash is the first word of
+ * SipHash-2-4-128 with the key 0. A record that is missing, duplicated or from another mesh breaks
+ * the chain; equal chains mean equal histories.
  *
  * A reader trusts no byte: it refuses invalid bytes with HE_CORRUPT and the offset, and bytes of a
  * newer release with HE_UNSUPPORTED and both versions. */
@@ -32,30 +33,31 @@
 enum {
     ST_FRAME_VERSION = 1,
     ST_FRAME_OPS = 255, /* most bytes of `ops`; a longer text is cut */
-    /* The most bytes of a frame, a coded record, without its body. */
+    /* The most bytes of a frame (an encoded record) without its body. */
     ST_FRAME_HEAD = 40 + 4 * 10 + 7 * 5 + (2 + ST_FRAME_OPS) + (2 + ST_MESH_NAME) + 9 * 5
 };
 
 /* A decoded frame. Texts of the record point into this struct, its body into the frame's bytes; id,
  * incarnation, created and key are not part of a frame. */
 typedef struct st_frame {
-    st_record record; /* `stage` is NULL */
+    st_record record; /* its `stage` is NULL */
     bool in_parts;
     uint64_t chain;
     char name[ST_MESH_NAME + 1], ops[ST_FRAME_OPS + 1];
 } st_frame;
 
 /* Writes the record to `to`, which has room for ST_FRAME_HEAD bytes and the body; chain and
- * checksum are left out. With a stage the flag PARTS is set, and EDIT as the record says. Returns
- * the number of bytes written. */
+ * checksum are left out. If the record has a stage, the flag PARTS is set, and the flag EDIT if the
+ * stage is an edit. Returns the number of bytes written. */
 size_t st_frame_write(const st_record *record, unsigned char *to);
 /* Writes the chain (a hash that connects a record to all before it) and the checksum into a frame.
  * Returns the chain of the next record. */
 uint64_t st_frame_seal(unsigned char *frame, size_t size, uint64_t chain);
 
-/* Returns the chain of the first record of a mesh, which begins with the mesh's `origin`. */
+/* Returns the chain (a hash) of the first record of a mesh; `origin` is a number that no other mesh
+ * has. */
 uint64_t st_chain_of_origin(uint64_t origin);
-/* Returns the chain of the record after the one in this frame. */
+/* Returns the chain (a hash) of the record after the one that this frame encodes. */
 uint64_t st_frame_next_chain(const unsigned char *frame, size_t size);
 
 /* Decodes a frame.

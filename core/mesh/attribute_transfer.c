@@ -16,8 +16,8 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
 }
 
 /* Writes the weighted sum of n rows of a column, or their mean without weights, in the column's own
- * type. Integers and booleans are rounded to nearest; the sum stays within the type's range despite
- * rounding errors. */
+ * type. Integers and booleans are rounded to nearest; the sum is kept within the type's range
+ * despite rounding errors. */
 static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
                   unsigned char *out)
 {
@@ -87,15 +87,16 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
     }
 }
 
-/* The rows that a value is made of. */
+/* The rows of which a value is made, and their weights. */
 typedef struct mixture {
     const uint32_t *rows;
-    const double *weights; /* NULL: all rows have one weight */
+    const double *weights; /* NULL: all rows have equal weights */
     size_t n;
-    uint32_t nearest; /* the row that is copied where values are not interpolated */
+    uint32_t nearest; /* the row whose value is copied if the rule is not interpolate */
 } mixture;
 
-/* Sets row `to` of every column in a domain to the value that the column's rule makes of others. */
+/* Sets row `to`, in every column of a kind of element, to the value that the column's rule makes of
+ * the rows in `of`. */
 static void carry(he_mesh *m, he_kind kind, uint32_t to, const mixture *of)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {

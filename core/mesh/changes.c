@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* A record that changed one word, with a key by which all records of a word sort together, in the
+/* A record that changed one word. Sorting by `key` brings all records of a word together, in the
  * order in which they were written. */
 typedef struct word_record {
     uint64_t key; /* column, word and row */
@@ -18,8 +18,8 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->column << 40 | (uint64_t)r->word << 32 | r->row;
 }
 
-/* Sorts records by key and keeps the order of equal keys: by insertion for the few records of a
- * local edit, else by radix, skipping bytes that all keys share. */
+/* Sorts records by key and keeps the order of equal keys: a few records, as of a local edit, by
+ * insertion; many by radix sort, without the bytes that all keys share. */
 static void sort_few(word_record *records, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
@@ -121,13 +121,13 @@ static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_c
     return he_ids_add(&out->modified[column->domain], row, err);
 }
 
-/* How one word changed over all deltas. */
+/* The net change of one word over all deltas. */
 typedef struct word_change {
     uint32_t column, row, before, after;
 } word_change;
 
-/* Records the change of a word; `attribute` is NULL unless
- * it is a word of an attribute. Elements that were created or deleted are recorded as modified,
+/* Adds the element of a changed word to the lists of changes; `attribute` is the column of the
+ * word, NULL if it is no attribute. Elements that were created or deleted are recorded as modified,
  * too; keep_modified drops them at the end. */
 static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
                            const word_change *change, he_error *err)
@@ -176,15 +176,16 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* The column that a slot of attributes had before the first change. */
+/* What a slot of attribute columns had before the first change. */
 typedef struct attribute_slot {
-    const he_column *before; /* the column at first; NULL if there was none */
+    const he_column *before; /* the first column in the slot; NULL if the slot was free */
     bool has_changed;        /* a column was added or dropped */
-    bool is_unknown;         /* the first column is the one that is there again now */
+    /* The first column was taken out and put back, so it is the one in the mesh now. */
+    bool is_unknown;
 } attribute_slot;
 
-/* Returns the label of a row; "" if the index is beyond the labels, as in a damaged store, which
- * he_check reports. */
+/* Returns the label of a row; "" if the value is no index of a label, which can happen in a damaged
+ * store and is reported by he_check. */
 static const char *label_of(const he_column *column, const unsigned char *row, uint32_t i)
 {
     uint32_t index;
@@ -192,7 +193,7 @@ static const char *label_of(const he_column *column, const unsigned char *row, u
     return index < he_labels_count(column->labels) ? he_labels_get(column->labels, index) : "";
 }
 
-/* Returns true if row `row` of two columns has equal labels. If one column is NULL, all its rows
+/* Returns true if two columns have equal labels in row `row`. If one column is NULL, all its rows
  * have the default of the other. */
 static bool same_labels(const he_column *a, const he_column *b, size_t row)
 {
@@ -206,17 +207,18 @@ static bool same_labels(const he_column *a, const he_column *b, size_t row)
     return same;
 }
 
-/* The records that changed words, of all parts. They are sorted by key and, for one key, in the
- * order in which they took effect. */
+/* The records of all parts that changed words. They are sorted by key, and records with one key are
+ * in the order in which they took effect. */
 typedef struct words {
     word_record *records;
     size_t count;
-    attribute_slot *slots; /* slots of attribute columns */
+    attribute_slot *slots; /* one for each slot of attribute columns */
     size_t slot_count;
 } words;
 
-/* Registers a record that added or dropped a column. The delta owns the column that is not in the
- * mesh now. A slot beyond those of the mesh belongs to a content that was replaced. */
+/* Notes what a record that added or dropped a column says about the column's slot. The delta owns
+ * the column if it is not in the mesh now. A slot beyond those of the mesh belongs to a content
+ * that was replaced. */
 static void note_slot(words *w, const he_change_part *part, const he_record *r)
 {
     if (r->row >= w->slot_count) {
@@ -231,8 +233,9 @@ static void note_slot(words *w, const he_change_part *part, const he_record *r)
     slot->has_changed = true;
 }
 
-/* Returns true if the slot's column was changed already. Words written to it afterwards need no
- * record: the column now in the mesh has them, and is compared with the first column as a whole. */
+/* Returns true if the column in the slot was added or dropped by an earlier record. Words written
+ * to it afterwards need not be noted, because the first column and the present one are compared as
+ * a whole. */
 static bool is_written_later(const words *w, uint32_t slot)
 {
     return slot < w->slot_count && w->slots[slot].has_changed;
@@ -296,8 +299,9 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
     return status == HE_OK ? sort_records(&w->records, w->count, mesh->progress, err) : status;
 }
 
-/* Returns the attribute that the words of this column belong to; NULL for words of the structure,
- * and for a column without labels that was dropped, which is reported as a whole. */
+/* Returns the attribute column to which words with this column number belong. Returns NULL for
+ * links and positions, and for a column without labels that was dropped, which is reported as a
+ * whole. */
 static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32_t column)
 {
     if (column < HE_COL_ATTRIBUTE) {
@@ -310,8 +314,8 @@ static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32
     return slot->before != NULL && slot->before->labels != NULL ? slot->before : NULL;
 }
 
-/* Records the rows whose label differs when a column was added, dropped or replaced by one of its
- * name. */
+/* Lists as modified the elements whose label differs after a column was added, dropped or replaced
+ * by another with its name. */
 static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_column *before,
                              const he_column *after, he_error *err)
 {
@@ -386,7 +390,7 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
     return status;
 }
 
-/* Keeps in `modified` only elements that live both before and after the changes. */
+/* Keeps in `modified` only elements that exist both before and after the changes. */
 static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
 {
     he_ids *list = &out->modified[kind];

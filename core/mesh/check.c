@@ -12,9 +12,10 @@ typedef struct checker {
     const he_mesh *m;
     he_problem *problems;
     size_t capacity, total;
-    uint64_t *in_face; /* one bit a half-edge: reached from its face */
-    uint64_t *in_ring; /* one bit a half-edge: reached by turning about its origin */
-    uint32_t *stamp;   /* one word a vertex: one more than the last face or vertex that met it */
+    uint64_t *in_face; /* a bit for each half-edge: it was reached from its face */
+    uint64_t *in_ring; /* a bit for each half-edge: it was reached by turning around its origin */
+    /* A word for each vertex: one more than the last face or vertex that met it. */
+    uint32_t *stamp;
 } checker;
 
 /* The element at which an invariant is broken. */
@@ -81,8 +82,8 @@ static void check_edge_links(checker *c, uint32_t e)
     }
 }
 
-/* Checks invariant I1, and the stored half-edges of vertices and faces. Later passes cannot follow
- * a link that fails here. */
+/* Checks invariant I1, and the stored half-edges of vertices and faces. If this pass finds a bad
+ * link, the later passes are skipped, because they follow links. */
 static void check_links(checker *c)
 {
     const he_content *k = &c->m->c;
@@ -313,8 +314,8 @@ he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, s
 he_status he_check_with_progress(const he_mesh *mesh, he_progress *progress, he_problem *problems,
                                  size_t capacity, size_t *total, he_error *err)
 {
-    /* The passes run in this order. The later passes follow links, so they run only if the first
-     * finds all links valid. */
+    /* The passes run in this order. If the first one finds a bad link, the others are skipped,
+     * because they follow links. */
     static void (*const passes[])(checker * c) = {check_links,    check_halfedges, check_faces,
                                                   check_vertices, check_rows,      check_materials};
     enum { PASSES = sizeof passes / sizeof *passes };

@@ -1,4 +1,4 @@
-/* column.h - attribute columns: one typed value of 1 to 16 components a row.
+/* column.h - attribute columns: each row holds one value of 1 to 16 components of one type.
  *
  * A column belongs to a domain: vertices, half-edges (a corner's values belong to the half-edge
  * that leaves it inside its face), edges, faces, or the mesh (one row). Values are stored in the
@@ -42,12 +42,13 @@ struct he_column {
     he_type type;
     he_rule rule;
     uint32_t components;
-    uint32_t row_bytes;                          /* components * size of type */
-    unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default row */
-    he_labels *labels;                           /* NULL unless categorical */
+    uint32_t row_bytes;                          /* bytes of a row: components * size of the type */
+    unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default value of a row */
+    /* The strings that values index; NULL if the column is not categorical. */
+    he_labels *labels;
     unsigned char *data;
     size_t rows;     /* rows in memory; every row beyond has the default value */
-    size_t capacity; /* rows that fit */
+    size_t capacity; /* number of rows that fit into the memory allocated */
 };
 
 const char *he_type_name(he_type type); /* "bool", "int32", "uint32", "float", "double" */
@@ -64,15 +65,15 @@ void he_column_free(he_column *column);
 HE_NODISCARD he_status he_column_like(const he_column *column, size_t rows, he_column **out,
                                       he_error *err);
 HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, he_error *err);
-/* Returns the capacity to grow to so that `rows` fit: half as much again for small tables, an
- * eighth more for large ones, because a mesh keeps its spare capacity and the system moves large
- * blocks by their page tables instead of copying them. */
+/* Returns the capacity to which a table should grow so that `rows` fit: small tables grow by half,
+ * large ones by an eighth, because a mesh keeps its spare capacity, and the system moves large
+ * blocks by changing page tables rather than copying them. */
 size_t he_rows_grown(size_t capacity, size_t rows);
-/* Makes room for `rows` rows in all. */
+/* Allocates memory for `rows` rows in all. */
 HE_NODISCARD he_status he_column_reserve(he_column *column, size_t rows, he_error *err);
-/* Appends default rows. */
+/* Appends rows with the default value until the column has `rows` rows more. */
 HE_NODISCARD he_status he_column_extend(he_column *column, size_t rows, he_error *err);
-/* Returns the value of any row, whether it is in memory or not. */
+/* Returns the value of any row; for a row that is not in memory, the default. */
 static inline const unsigned char *he_column_value(const he_column *column, size_t row)
 {
     return row < column->rows ? column->data + row * column->row_bytes : column->fallback;
@@ -87,7 +88,7 @@ size_t he_column_bytes(const he_column *column);
 size_t he_column_rows_bytes(const he_column *column);
 bool he_column_same_kind(
     const he_column *a,
-    const he_column *b); /* equal name, domain, type, rule, default and labels? */
+    const he_column *b); /* compares name, domain, type, rule, default and labels */
 /* Returns true if a row of one column can be copied to the other as it is: they have equal types,
  * components and labels. */
 bool he_column_same_values(const he_column *a, const he_column *b);
@@ -105,15 +106,17 @@ HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char
  * is cut. */
 void he_column_number_name(const char *name, unsigned number, char out[HE_COLUMN_NAME]);
 
-he_labels *he_labels_new(void); /* one reference; NULL if memory is out */
+/* Returns labels without strings and with one reference; NULL if memory is out. */
+he_labels *he_labels_new(void);
 he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
 size_t he_labels_count(const he_labels *labels);
-/* Returns the bytes that freeing this reference to labels would free: 0 while others share the
- * labels, and 0 for NULL. */
+/* Returns the bytes that would be freed if this reference to labels were freed: 0 while others
+ * share the labels, and 0 for NULL. */
 size_t he_labels_own_bytes(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
-/* Returns true if both have equal strings in the same order. NULL equals only NULL. */
+/* Returns true if two lists of labels have equal strings in the same order. NULL equals only
+ * NULL. */
 bool he_labels_equal(const he_labels *a, const he_labels *b);
 /* Finds the index of a string. Returns false if the labels do not contain it. */
 bool he_labels_find(const he_labels *labels, const char *text, size_t length, uint32_t *out);

@@ -11,9 +11,10 @@ void he_maps_clear(he_maps *maps)
     *maps = (he_maps){0};
 }
 
-/* Sixty-four rows of a table: a bit for each row that is live, and the number of live rows before
- * them, so that the new id of a row is a count of bits. Tables of new ids would be read from memory
- * at random; these blocks take an eighth of the space and stay in the cache. */
+/* A block of 64 rows of a table: `rows` has a set bit for each live row, and `before` is the number
+ * of live rows before the block. The new id of a row is `before` plus a number of set bits.
+ * Compared with an array of new ids, blocks take an eighth of the space, so they stay in the
+ * cache. */
 typedef struct block {
     uint64_t rows;
     uint32_t before;
@@ -30,7 +31,7 @@ static size_t block_count(uint32_t issued)
     return (size_t)issued / BLOCK_ROWS + 1;
 }
 
-/* Finds the live rows of a table: those whose `stride`-th link is not dead. */
+/* Makes the blocks of a table. A row is live if its link is not dead: links[row * stride]. */
 static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
 {
     block *blocks = he_mem_array(NULL, block_count(issued), sizeof *blocks);
@@ -48,8 +49,8 @@ static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
     return blocks;
 }
 
-/* Counts the bits that are set: in parallel in fields of 2, 4 and 8 bits; a multiplication adds up
- * the fields. */
+/* Returns the number of set bits. They are counted in parallel in fields of 2, 4 and 8 bits; a
+ * multiplication adds up the fields. */
 static uint32_t count_bits(uint64_t bits)
 {
     bits -= bits >> 1 & 0x5555555555555555u;
@@ -70,8 +71,8 @@ static uint32_t rank_halfedge(const block *edges, uint32_t h)
     return h == HE_NONE ? HE_NONE : 2 * rank(edges, h >> 1) + (h & 1);
 }
 
-/* Iterates over live rows: `row` is the old id and `fresh` the new one. It takes bits from the
- * lowest up, so that no branch depends on which rows live. */
+/* An iteration over live rows: `row` is the old id and `fresh` the new one. It visits the set bits
+ * of a block from the lowest up, so that no branch depends on which rows are live. */
 typedef struct walk {
     const block *blocks;
     uint64_t left; /* bits of the present block that are not visited */
@@ -176,8 +177,8 @@ static void move_row(const he_column *from, size_t row, he_column *to, size_t fr
     }
 }
 
-/* Moves the values of live rows to a new column. The column has `per` rows for each row of the
- * table. */
+/* Copies the values of live rows to a new column. The column has `per` rows for each row of the
+ * table (2 for half-edges, which have the table of edges). */
 static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
                       he_column *to)
 {
@@ -267,7 +268,7 @@ static he_status make_room(const he_content *from, he_content *to, he_error *err
     return status;
 }
 
-/* Lists the new id of each row. Returns NULL if memory is out. */
+/* Lists the new id of each row, HE_NONE for deleted ones. Returns NULL if memory is out. */
 static uint32_t *map_rows(const block *blocks, uint32_t issued)
 {
     uint32_t *map = he_mem_array(NULL, issued, sizeof *map);

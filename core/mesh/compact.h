@@ -1,21 +1,21 @@
-/* compact.h - the operation that renumbers elements, which no other operation does. */
+/* compact.h - the operation that renumbers elements; no other operation does. */
 #ifndef HE_MESH_COMPACT_H
 #define HE_MESH_COMPACT_H
 
 #include "mesh/mesh.h"
 
-/* Maps every id issued before to its new id, or to HE_NONE if it was dead. Half-edge 2e + s becomes
- * 2 * edge[e] + s. {0} is empty. */
+/* Maps every id that was ever issued to its new id, or to HE_NONE if its element was deleted.
+ * Half-edge 2e + s becomes 2 * edge[e] + s. {0} is empty. */
 typedef struct he_maps {
     uint32_t *vertex, *edge, *face;
-    uint32_t vertices, edges, faces; /* entries of each array */
+    uint32_t vertices, edges, faces; /* number of entries of each array */
 } he_maps;
 
 void he_maps_clear(he_maps *maps);
 
-/* Drops the dead rows: live elements keep their order and get the ids 0, 1, 2... Counts, links and
- * attributes are otherwise unchanged; memory shrinks to fit. The delta records one replacement.
- * `maps` may be NULL; otherwise the caller clears it.
+/* Removes the rows of deleted elements: live elements keep their order and get the ids 0, 1, 2...
+ * Counts, links and attributes are otherwise unchanged; memory shrinks to fit. The delta records
+ * one replacement. `maps` may be NULL; otherwise the caller clears it.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_compact(he_mesh *mesh, he_maps *maps, he_error *err);

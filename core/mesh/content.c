@@ -8,7 +8,7 @@ static he_status no_memory(const char *what, size_t rows, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", rows, what);
 }
 
-/* Resizes one column; on failure the old block remains with its capacity. */
+/* Resizes the memory of one column. If memory is out, the old block stays. */
 static bool resize(void *column, size_t rows, size_t size)
 {
     void *block;
@@ -21,8 +21,8 @@ static bool resize(void *column, size_t rows, size_t size)
     return true;
 }
 
-/* Returns the capacity to which a table grows. The first allocation is exact, later ones grow by
- * he_rows_grown, so a mesh that was just built has no spare memory. */
+/* Returns the capacity to which a table grows. The first allocation is exact, so a mesh that was
+ * just built has no spare memory; later ones grow by he_rows_grown. */
 static size_t grown(const he_rows *table, size_t rows)
 {
     size_t capacity = table->issued == 0 ? rows : he_rows_grown(table->capacity, rows);
@@ -93,7 +93,7 @@ void he_content_clear(he_content *c)
  * can be cancelled quickly. */
 enum { COPY_BLOCK = 1 << 20 };
 
-/* The progress of copying columns one after another. */
+/* The progress of copying the columns of a mesh one after another. */
 typedef struct copying {
     he_progress *progress;
     size_t done, bytes; /* bytes of all columns together */

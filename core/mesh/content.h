@@ -4,43 +4,45 @@
 
 #include "mesh/layout.h"
 
-void he_content_clear(he_content *content); /* frees everything in it */
+void he_content_clear(he_content *content); /* frees everything in a content */
 /* Makes a copy of a content. Fills *out on success only. `progress` may be NULL. */
 HE_NODISCARD he_status he_content_copy(const he_content *content, he_progress *progress,
                                        he_content *out, he_error *err);
 size_t he_content_bytes(const he_content *content);
-/* Returns the bytes of the issued rows of a content alone, without spare capacity. */
+/* Returns the bytes of the rows of a content that were issued, without spare capacity. */
 size_t he_content_rows_bytes(const he_content *content);
 
-/* Makes room in the link and position columns (not in the attributes) for this many rows in all. */
+/* Allocates memory in the link and position columns (not in the attributes) for this many rows in
+ * all. */
 HE_NODISCARD he_status he_content_reserve_vertices(he_content *c, size_t rows, he_error *err);
 HE_NODISCARD he_status he_content_reserve_edges(he_content *c, size_t rows, he_error *err);
 HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_error *err);
 
-/* Returns the table of a domain's rows, NULL for the mesh. Half-edges have no table of their own:
- * they have two rows for each row of the edges. */
+/* Returns the table of rows of a kind of element; NULL for the mesh. Half-edges have no table of
+ * their own: they have two rows for each row of the edges. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
 /* Applies the records of a delta between the positions `from` and `to` to a content: forwards, or
- * backwards, from the last one to the first, if `from` is after `to`. Columns and contents that the
- * records replace are exchanged with `objects`, which is indexed like the delta's own list; NULL if
- * the delta has none. */
+ * backwards, from the last one to the first, if `from` is after `to`. Whole columns, materials and
+ * contents that the records name are exchanged with those in `objects`, an array in the order of
+ * delta->objects; NULL if the delta names none. */
 void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t to, void **objects);
-/* Applies a whole delta forwards to a content that may not have issued the delta's rows yet;
- * afterwards its high-water marks are `issued`, indexed by kind. On failure the content is as it
- * was.
+/* Applies a whole delta forwards to a content that may not have issued the delta's rows yet.
+ * Afterwards the content has issued as many rows as `issued` says for each kind. On failure the
+ * content is as it was.
  * Returns HE_CORRUPT if a record's `before` is not what the content holds; *refused (which may be
  * NULL) is then the index of that record.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_content_forward(he_content *c, const he_delta *delta, void **objects,
                                           const uint32_t issued[HE_KIND_COUNT], size_t *refused,
                                           he_error *err);
-/* Issues dead rows up to the high-water marks, indexed by kind.
+/* Issues rows, as those of deleted elements, until the content has issued as many as `issued` says
+ * for each kind.
  * Returns HE_NO_MEMORY if memory is out; some of the rows may then be issued. */
 HE_NODISCARD he_status he_content_issue(he_content *c, const uint32_t issued[HE_KIND_COUNT],
                                         he_error *err);
-/* Takes back the rows above the high-water marks. These rows must be dead, or belong to an edit
- * that is rolled back. */
+/* Takes back all rows above those that `issued` counts for each kind. These rows must be dead, or
+ * belong to an edit that is rolled back. */
 void he_content_withdraw(he_content *c, const uint32_t issued[HE_KIND_COUNT]);
 
 #endif

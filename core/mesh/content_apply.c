@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Updates the number of live rows when a word turns from dead to alive or back. */
+/* Updates the number of live rows when a link of a row changes from dead to live or back. */
 static void put_liveness(he_rows *table, uint32_t before, uint32_t after)
 {
     table->live += (uint32_t)(before == HE_DEAD) - (uint32_t)(after == HE_DEAD);
@@ -49,7 +49,7 @@ static void swap_content(void **objects, he_content *c, const he_record *r)
     *other = here;
 }
 
-/* Changes the word or slot of one record from `before` to `after`. */
+/* Applies one record to the content: changes a word, or a slot, from `before` to `after`. */
 static void apply(void **objects, he_content *c, const he_record *r, uint32_t before,
                   uint32_t after)
 {

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-/* The records from..to of a delta, which were all written to one content. A replacement of the
- * whole content separates two spans. */
+/* A part of a delta's records, from..to, that were all written to one content. A record that
+ * replaces the whole content ends such a span. */
 typedef struct span {
     size_t from, to;
 } span;
@@ -25,8 +25,8 @@ static void raise(uint32_t *mark, uint32_t row)
     *mark = *mark <= row ? row + 1 : *mark;
 }
 
-/* Computes the high-water marks at the end of a span: an edit writes the links of every row it
- * issues. */
+/* Computes how many rows of each kind are issued at the end of a span: an edit writes links to
+ * every row it issues, so the highest row number counts. */
 static void marks_after(const he_content *c, const he_delta *delta, span s,
                         uint32_t marks[HE_KIND_COUNT])
 {
@@ -69,8 +69,8 @@ static he_status add_slot(he_content *c, he_error *err)
     return HE_OK;
 }
 
-/* Makes a slot for the column that record i adds, and extends that column to all rows that are
- * issued. */
+/* Makes a slot for the column that record i adds, and extends that column to as many rows as its
+ * domain has issued. */
 static he_status ready_column(he_content *c, const he_delta *delta, size_t i, void **objects,
                               size_t *refused, he_error *err)
 {
@@ -123,7 +123,7 @@ static he_status ready_slots(he_content *c, const he_delta *delta, span s, void 
     return status;
 }
 
-/* Allocates all memory that applying the delta will take. */
+/* Allocates all memory that is needed to apply the delta. */
 static he_status ready(he_content *c, const he_delta *delta, void **objects,
                        const uint32_t issued[HE_KIND_COUNT], size_t *refused, he_error *err)
 {
@@ -171,8 +171,7 @@ static bool attribute_is(const he_content *c, const he_record *r)
            word_is(he_column_value(column, r->row), column->row_bytes, r);
 }
 
-/* Returns true if the slot is free, and no column of the domain has the name of the one to be
- * added. */
+/* Returns true if the slot is free, and no column of the same domain has the name of `column`. */
 static bool is_free(const he_content *c, size_t slot, const he_column *column)
 {
     for (size_t i = 0; i < c->column_count; i++) {
@@ -185,8 +184,8 @@ static bool is_free(const he_content *c, size_t slot, const he_column *column)
     return c->columns[slot] == NULL;
 }
 
-/* Returns true if the slot holds the material that record r replaces, and no other row has the new
- * material's name. */
+/* Returns true if the slot has the material that record r replaces, and no other slot has a
+ * material with the new material's name. */
 static bool material_is(const he_content *c, const he_record *r, const he_material *comes)
 {
     const he_material *row = c->materials.rows[r->row];
@@ -195,7 +194,7 @@ static bool material_is(const he_content *c, const he_record *r, const he_materi
     return (row == NULL ? 0 : row->mark) == r->after && (slot == SIZE_MAX || slot == r->row);
 }
 
-/* Returns true if the content holds the value that the record changed, its `before`. */
+/* Returns true if the content has the value that the record expects (its `before`). */
 static bool holds(const he_content *c, void **objects, const he_record *r)
 {
     size_t halfedges = 2 * (size_t)c->edges.issued;

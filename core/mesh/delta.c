@@ -36,13 +36,13 @@ size_t he_object_bytes(uint32_t column, const void *object)
     if (column == HE_COL_MATERIAL) {
         return he_material_bytes(object);
     }
-    /* The labels count, too, because an edit that adds or renames a label leaves the old labels to
-     * its delta. */
+    /* The labels count, too, because after an edit that adds or renames a label only the delta has
+     * the old labels. */
     return he_column_bytes(object) + he_labels_own_bytes(((const he_column *)object)->labels);
 }
 
-/* Frees the objects of a delta from index `from` on, which the mesh does not hold at this
- * moment. */
+/* Frees the objects of a delta from index `from` on. The delta owns them, because the mesh does not
+ * hold them now. */
 static void free_objects(he_delta *d, size_t from)
 {
     for (size_t i = 0; i < d->count; i++) {
@@ -104,12 +104,12 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
-/* The number of records that are folded between two reports of progress; each takes a few cache
- * misses. */
+/* The number of records that are folded between two reports of progress; each fold takes a few
+ * cache misses. */
 enum { FOLD_STRIDE = 16 * HE_PROGRESS_STRIDE };
 
-/* Folds records by a hash table with open addressing. A slot holds one more than the index of a
- * record; it is 0 if it is free. */
+/* Combines all records of one word (he_delta_fold in delta.h). A hash table with open addressing
+ * finds the first record of a word; a slot has the index of a record plus 1, or 0 if it is free. */
 he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_error *err)
 {
     uint32_t bits = 4;
@@ -150,7 +150,8 @@ he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_erro
             table[at] = kept;
         }
     }
-    /* After a cancellation the records that were not folded follow those that were. */
+    /* If the work was cancelled, the records that were not folded are moved behind those that
+     * were. */
     memmove(d->records + kept, d->records + i, (d->count - i) * sizeof *d->records);
     d->count -= i - kept;
     he_mem_free(table);

@@ -5,8 +5,9 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* The text is one block of NUL-ended strings; the hash table holds indices + 1, with open
- * addressing. A file may name a million groups, so adding must take constant time. */
+/* The text is one block of NUL-ended strings. The hash table, with open addressing, has the index
+ * of each string plus 1. A file may name a million groups, so adding a string must take constant
+ * time. */
 struct he_labels {
     atomic_uint references;
     char *text;
@@ -14,7 +15,7 @@ struct he_labels {
     size_t *starts;
     size_t count, capacity;
     uint32_t *slots;
-    size_t slot_count; /* a power of two, or 0 */
+    size_t slot_count; /* size of the hash table: a power of two, or 0 */
 };
 
 he_labels *he_labels_new(void)

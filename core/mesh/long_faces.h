@@ -1,10 +1,10 @@
 /* long_faces.h - a cache of the triangulations of long faces.
  *
  * Triangulating a face of very many corners takes long, and several readers of one revision need
- * it: the arrays for a renderer, each format of triangles and the tree of boxes. A mesh that many
- * threads read and none writes, such as a snapshot (replay.h), CACHES the triangulations of its
- * faces of more than HE_EXACT_CORNERS corners the first time that a caller wants all of them.
- * he_triangulation_make reads the cache.
+ * the result: the arrays for a renderer, each file format of triangles and the tree of boxes. A
+ * mesh that many threads read and none writes, such as a snapshot (replay.h), caches the
+ * triangulations of its faces of more than HE_EXACT_CORNERS corners the first time that a caller
+ * wants all of them. he_triangulation_make reads the cache.
  *
  * The cache belongs to the mesh. Its memory comes from he_mem, so it is counted. */
 #ifndef HE_MESH_LONG_FACES_H
@@ -16,32 +16,32 @@
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_long_faces_allow(he_mesh *mesh, he_error *err);
 /* Empties the cache. The caller must do this before the mesh changes, while no other thread reads
- * the mesh. It may be filled again afterwards. */
+ * the mesh. The cache may be filled again afterwards. */
 void he_long_faces_forget(he_mesh *mesh);
 /* Frees the cache; called by he_mesh_free. */
 void he_long_faces_clear(he_mesh *mesh);
 /* Returns the bytes of the cache. */
 size_t he_long_faces_bytes(const he_mesh *mesh);
 
-/* A cached triangulation, made with HE_ANY_DIAGONALS; borrowed. */
+/* A cached triangulation of one face, made with HE_ANY_DIAGONALS. Callers borrow it. */
 typedef struct he_long_face {
-    uint32_t face, n; /* the face, and how many corners it has */
+    uint32_t face, n; /* the face, and the number of its corners */
     bool degenerate;
-    uint32_t *corners; /* three for each triangle, as in triangulation.h */
+    uint32_t *corners; /* three corners for each triangle, as in triangulation.h */
 } he_long_face;
 
-/* All cached triangulations, in the order of faces. long_faces_keep.c makes them. */
+/* All cached triangulations of a mesh, in the order of faces. long_faces_keep.c makes them. */
 typedef struct he_long_faces {
     size_t count;
     he_long_face face[];
 } he_long_faces;
 
-/* Accepts NULL. */
+/* Frees the triangulations. Takes NULL. */
 void he_long_faces_free(he_long_faces *all);
 /* Returns true if the cache is allowed and still empty. */
 bool he_long_faces_are_wanted(const he_mesh *mesh);
-/* Fills the cache with `all`, which it takes. If another thread was first, that one's cache stays
- * and `all` is freed. The cache must be allowed. */
+/* Fills the cache with `all`, which it takes. If another thread has filled the cache already, `all`
+ * is freed. The cache must be allowed. */
 void he_long_faces_put(const he_mesh *mesh, he_long_faces *all);
 
 /* Finds the triangulation of the face whose stored half-edge is `first`. Returns NULL if `first` is

@@ -9,17 +9,17 @@
  *
  * LOCKED. An edit is refused with HE_LOCKED_ELEMENT, naming the element, if it would delete a
  * locked element, move a locked vertex, give a locked edge another end, or add a corner to a locked
- * face or remove one. A vertex that moves takes its edges and faces along: lock the corners to hold
- * those in place. Cutting is allowed (edge_bisect, edge_split, edge_cut, face_split, face_poke,
- * face_triangulate, plane_split, vertex_split, vertex_split_corners): one part keeps the id and its
- * mark; the other part has the mark too if the column's rule is copy. A new vertex between others
- * (on an edge that is cut, inside a face) has the column's default under any rule, so a lock never
- * spreads to midpoints. When elements of one kind are merged and one is locked, the attributes of
- * the locked one stay unchanged.
+ * face or remove one. Edges and faces move with their vertices: to keep them in place, the vertices
+ * at their corners must be locked. Cutting is allowed (edge_bisect, edge_split, edge_cut,
+ * face_split, face_poke, face_triangulate, plane_split, vertex_split, vertex_split_corners): one
+ * part of a cut element keeps the id and the mark; the other part is marked, too, if the column's
+ * rule is copy. A new vertex on an edge that is cut, or inside a face, has the column's default
+ * whatever the rule, so a lock never spreads to it. When two elements of one kind are merged and
+ * one of them is locked, the attributes of the locked one stay unchanged.
  *
  * FEATURE. edge_flip of a feature edge is refused with HE_FEATURE_EDGE. A vertex with exactly two
- * feature edges is inside a feature line; one with any other number above zero is an end or a
- * corner of lines. edge_collapse is refused, naming an edge, where
+ * feature edges is inside a feature line; a vertex with one, three or more is an end or a corner of
+ * feature lines. edge_collapse is refused, naming an edge, where
  *
  *     F1   the edge is no feature and the origin, which is deleted, has a feature edge;
  *     F2   the edge is a feature and the origin is an end or a corner;
@@ -30,16 +30,16 @@
  * it. A vertex moves if its position changes: a new point that rounds to the old position is no
  * move.
  *
- * delaunay skips the edges that edge_flip would refuse. Edits that exist to delete something
- * (face_join, face_delete), and welds, ignore `feature`: when edges are merged, the mark of the one
- * that stays decides. */
+ * delaunay skips the edges that edge_flip would refuse. Edits that delete elements (face_join,
+ * face_delete) and welds ignore `feature`: when two edges are merged, the one that stays keeps its
+ * own mark. */
 #ifndef HE_MESH_MARKS_H
 #define HE_MESH_MARKS_H
 
 #include "mesh/layout.h"
 
-/* The columns of a mesh that are marks; NULL for each that it has not. Valid until a column is
- * added or removed. */
+/* The columns of a mesh that are marks; NULL for each mark that the mesh does not have. Valid until
+ * a column is added or removed. */
 typedef struct he_marks {
     const he_column *feature;
     const he_column *locked[HE_KIND_COUNT]; /* indexed by HE_VERTEX, HE_EDGE, HE_FACE */
@@ -47,12 +47,12 @@ typedef struct he_marks {
 
 /* Returns true if the column is a bool column of one component with that name. */
 bool he_is_mark(const he_column *column, const char *name);
-/* Finds the mark of that domain and name. Returns NULL if the mesh has none. */
+/* Finds the mark with this domain and name. Returns NULL if the mesh has no such mark. */
 const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name);
 
 bool he_marks_search(const he_mesh *m, he_marks *out);
-/* Finds the marks that edits respect. Returns false if there are none, which costs one test in a
- * mesh without attributes. */
+/* Finds the marks that edits respect. Returns false if the mesh has none; in a mesh without
+ * attributes this costs one test. */
 static inline bool he_marks_find(const he_mesh *m, he_marks *out)
 {
     return m->c.column_count > 0 && he_marks_search(m, out);
@@ -73,8 +73,8 @@ static inline bool he_is_locked(const he_marks *marks, he_kind kind, uint32_t id
 /* Returns HE_LOCKED_ELEMENT if the element is locked. An id of HE_NONE is never locked. */
 HE_NODISCARD he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id,
                                            he_error *err);
-/* Does what he_require_unlocked does, for each edge and face around the origin of a half-edge,
- * counter-clockwise from it. */
+/* Returns HE_LOCKED_ELEMENT if an edge or face around the origin of a half-edge is locked; looks
+ * counter-clockwise, beginning at the half-edge. */
 HE_NODISCARD he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks,
                                                  he_halfedge first, he_error *err);
 

@@ -10,7 +10,7 @@
 const he_look he_plain_look = {
     .base_color = {1, 1, 1, 1}, .metallic = 0, .roughness = 1, .emission = {0, 0, 0}};
 
-/* The number of values of a material's look, which are compared and checked in a fixed order. */
+/* The number of values of a material's look, which list_numbers lists in a fixed order. */
 enum { NUMBERS = 9 };
 
 typedef struct number {
@@ -185,7 +185,7 @@ void he_material_number_name(const char *name, unsigned which, char out[HE_MATER
     he_name_number(name, which, out, HE_MATERIAL_NAME + 1);
 }
 
-/* --- tables --- */
+/* --- tables of materials --- */
 
 void he_materials_clear(he_materials *materials)
 {

@@ -1,17 +1,16 @@
 /* material.h - materials, and the table of them that a mesh has beside its columns.
  *
- * A material is a name and how a surface of it looks, in the terms of glTF 2.0: the base colour
+ * A material has a name and says how a surface looks, in the terms of glTF 2.0: the base colour
  * (red, green, blue, opacity), how metallic and how rough it is, the light it emits, and whether
  * faces show on both sides. Numbers are linear and from 0 to 1, except emission, which has no upper
  * limit.
  *
  * The face attribute `material` names the material of each face: it is an attribute with labels,
- * and the label "" means no material. A label without a row in the table is a material of which
- * only the name is known, as in an OBJ file without its library; a row may also be named by no
- * face.
+ * and the label "" means no material. If a label has no row in the table, only the name of that
+ * material is known, as in an OBJ file without its library. A row need not be named by any face.
  *
- * Rows never change: an edit replaces a row by another. They are shared by reference count between
- * copies of a mesh. Names are unique in a table. */
+ * A row never changes: an edit replaces it by another one. Copies of a mesh share rows by reference
+ * count. Names are unique in a table. */
 #ifndef HE_MESH_MATERIAL_H
 #define HE_MESH_MATERIAL_H
 
@@ -37,10 +36,11 @@ typedef struct he_look {
 /* The default look: white, neither metallic nor shiny, no emission, one-sided. */
 extern const he_look he_plain_look;
 
-/* A material. All code may read the fields, which never change. */
+/* A material. All code may read the members, which never change. */
 typedef struct he_material {
     atomic_uint references; /* private */
-    uint32_t mark;          /* FNV-1a of the name and the numbers, little-endian: never 0 */
+    /* Hash (FNV-1a) of the name and the numbers, as little-endian bytes; never 0. */
+    uint32_t mark;
     he_look look;
     size_t length;
     char name[]; /* UTF-8, ends in NUL */
@@ -53,47 +53,50 @@ typedef struct he_material {
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_material_new(const char *name, size_t length, const he_look *look,
                                        he_material **out, he_error *err);
-he_material *he_material_retain(he_material *material); /* NULL gives NULL */
+/* Adds a reference and returns `material`; takes NULL. */
+he_material *he_material_retain(he_material *material);
 void he_material_release(he_material *material);
-size_t he_material_bytes(const he_material *material); /* 0 for NULL */
+size_t he_material_bytes(const he_material *material); /* returns 0 for NULL */
 /* Returns true if the names and numbers of two materials are equal. NULL equals only NULL. */
 bool he_material_equal(const he_material *a, const he_material *b);
 bool he_look_equal(const he_look *a, const he_look *b);
 /* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on; a name that is too long
  * is cut. */
 void he_material_number_name(const char *name, unsigned number, char out[HE_MATERIAL_NAME + 1]);
-/* Brings every number of the look into its range: one that is not finite becomes that of
- * he_plain_look, one out of range the nearer end of the range. Returns whether a number changed. */
+/* Brings every number of the look into its range: a number that is not finite becomes the default
+ * (he_plain_look), a number out of range the nearer end of its range. Returns true if a number has
+ * changed. */
 bool he_look_clamp(he_look *look);
 
-/* A table of materials: slots, NULL where a row was removed. {0} is empty. */
+/* A table of materials: an array of slots, each NULL if its material was removed. {0} is empty. */
 typedef struct he_materials {
     he_material **rows;
     size_t count, capacity;
 } he_materials;
 
 void he_materials_clear(he_materials *materials);
-/* Copies the rows of a table with their slots. Fills *out on success only.
+/* Copies the materials of a table, each to the slot it has.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_materials *out,
                                          he_error *err);
-/* Copies the rows of a table without the free slots between them. */
+/* Copies the materials of a table, without the free slots between them. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
-size_t he_materials_count(const he_materials *materials); /* rows, without free slots */
+/* Returns the number of materials, without free slots. */
+size_t he_materials_count(const he_materials *materials);
 size_t he_materials_bytes(const he_materials *materials);
 bool he_materials_equal(const he_materials *a,
                         const he_materials *b); /* ignores free slots at the end */
-/* Returns the slot of the row with this name, SIZE_MAX if there is none. */
+/* Returns the slot of the material with this name, SIZE_MAX if there is none. */
 size_t he_materials_find(const he_materials *materials, const char *name, size_t length);
 /* Returns the first free slot, or the slot after the last. */
 size_t he_materials_free_slot(const he_materials *materials);
-/* Makes room in a table for this many slots.
+/* Allocates memory in a table for this many slots.
  * Returns HE_LIMIT if that is more than HE_MATERIALS.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_reserve(he_materials *materials, size_t slots, he_error *err);
-/* Adds a material to a table, in the first free slot; no row of the table may have its name. On
- * success the table owns it. Returns the errors of he_materials_reserve, too. */
+/* Adds a material to a table, in the first free slot; no material of the table may have its name.
+ * On success the table owns the material. Fails as he_materials_reserve does. */
 HE_NODISCARD he_status he_materials_add(he_materials *materials, he_material *takes, he_error *err);
 
 #endif

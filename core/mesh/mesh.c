@@ -181,8 +181,8 @@ const he_materials *he_mesh_materials(const he_mesh *mesh)
     return &mesh->c.materials;
 }
 
-/* Returns true if two columns are equal in every row, including default rows that only one of them
- * stores. */
+/* Returns true if two columns are equal in every row; a row that only one of them stores must have
+ * the default value. */
 static bool columns_equal(const he_column *a, const he_column *b)
 {
     if (a == NULL || b == NULL) {
@@ -234,7 +234,8 @@ bool he_mesh_equal_live(const he_mesh *first, const he_mesh *second)
         !same(a->face_halfedge, b->face_halfedge, f, sizeof(uint32_t))) {
         return false;
     }
-    /* The live counts and all common rows are equal, so the rows that only one has are dead. */
+    /* The live counts and all common rows are equal, so rows that only one mesh has issued are
+     * dead. */
     size_t columns = a->column_count > b->column_count ? a->column_count : b->column_count;
     for (size_t i = 0; i < columns; i++) {
         if (!columns_equal(slot(a, i), slot(b, i))) {

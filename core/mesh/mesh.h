@@ -14,11 +14,11 @@
  *
  *     twin(h)  = h ^ 1          edge(h) = h >> 1          halfedges of edge e = 2e and 2e + 1
  *
- * Turning about a vertex counter-clockwise is h -> twin(prev(h)), clockwise is
- * h -> next(twin(h)). A maximal run of faces about a vertex that touch along edges is a fan. A
- * vertex has one closed fan (interior), or any number of open fans (boundary; a bow-tie when there
- * are two or more), or none (isolated). At a bow-tie the links of the boundary half-edges chain the
- * open fans, so turning about the vertex visits every fan.
+ * Turning about a vertex counter-clockwise is h -> twin(prev(h)), clockwise is h -> next(twin(h)).
+ * A fan is a maximal sequence of faces around a vertex in which each face shares an edge with the
+ * next one. A vertex has one closed fan (interior), or any number of open fans (boundary; a bow-tie
+ * when there are two or more), or none (isolated). At a bow-tie the links of the boundary
+ * half-edges chain the open fans, so turning about the vertex visits every fan.
  *
  * INVARIANTS. he_check names them by these numbers.
  *   I1   next, prev, origin of a live half-edge name live elements; its face is live or HE_NONE.
@@ -41,15 +41,17 @@
  * and is never issued again; deleting an element leaves a dead row. Only he_compact renumbers.
  * An id below `issued` is live or deleted; one at or above it was never issued.
  *
- * ATTRIBUTES. Columns of values, one row an element (see column.h). Positions are the built-in
- * one: three doubles a vertex.
+ * ATTRIBUTES. Attributes are columns of values with one row for each element (see column.h).
+ * Positions are built in: three doubles for each vertex.
  *
- * MATERIALS. A table of what surfaces look like, which faces name (material.h).
+ * MATERIALS. A mesh has a table of materials, which say how surfaces look; faces name them
+ * (material.h).
  *
- * EDITS check everything, reserve everything, then write and cannot fail. Every write goes through
- * write.h, where the recording delta sees it (delta.h).
+ * EDITS first check everything, then reserve all memory, then write, which cannot fail. Every write
+ * goes through write.h, which records it in a delta (delta.h).
  *
- * A mesh has no lock: one writer, or any number of readers. */
+ * A mesh has no lock: at any time one thread may write to it, or any number of threads may read
+ * it. */
 #ifndef HE_MESH_MESH_H
 #define HE_MESH_MESH_H
 
@@ -61,8 +63,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Ids of elements as types of their own: the compiler refuses one kind of element where another is
- * expected. */
+/* Each kind of element has its own type of id, so that the compiler refuses one kind of element
+ * where another is expected. */
 typedef struct he_vertex {
     uint32_t i;
 } he_vertex;
@@ -76,9 +78,12 @@ typedef struct he_face {
     uint32_t i;
 } he_face;
 
-#define HE_NONE     UINT32_MAX             /* absent: the face of a boundary half-edge */
-#define HE_DEAD     (UINT32_MAX - 1u)      /* what every link of a dead row holds */
-#define HE_MAX_ROWS (UINT32_MAX / 2u - 1u) /* most rows of a table: 2e + 1 must fit */
+/* No element, such as the face of a boundary half-edge. */
+#define HE_NONE UINT32_MAX
+/* The value of every link in the row of a deleted element. */
+#define HE_DEAD (UINT32_MAX - 1u)
+/* Most rows of a table; half-edge 2e + 1 must be below HE_DEAD. */
+#define HE_MAX_ROWS (UINT32_MAX / 2u - 1u)
 
 typedef struct he_vec3 {
     double x, y, z;
@@ -92,31 +97,34 @@ typedef struct he_delta he_delta;
 /* Returns an empty mesh, or NULL if memory is out. */
 he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
-/* Makes an independent copy with equal ids, dead rows and attributes; it records nothing. */
+/* Makes an independent copy with equal ids, dead rows and attributes; no delta records the writes
+ * to the copy. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
-/* Copies a mesh like he_mesh_copy, with `progress` (which may be NULL), which afterwards belongs to
- * the copy. */
+/* Copies a mesh like he_mesh_copy, with `progress` (which may be NULL), which afterwards is the
+ * watch of the copy (he_mesh_set_progress). */
 HE_NODISCARD he_status he_mesh_copy_with_progress(const he_mesh *mesh, he_progress *progress,
                                                   he_mesh **out, he_error *err);
-/* Returns true if two meshes are equal in every issued row of every column and in their high-water
- * marks. */
+/* Returns true if two meshes are equal in every issued row of every column and have issued equally
+ * many ids of each kind. */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
 /* Compares like he_mesh_equal, but ignores rows that only one of the meshes has issued, if they are
  * dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
-/* Reports to `progress` during all long work with this mesh, which may then fail with HE_CANCELLED;
- * NULL removes it. No other thread may use the mesh, and `progress` must outlive its use. */
+/* Makes all long work with this mesh report its progress to `progress`, which may cancel the work:
+ * it then fails with HE_CANCELLED. NULL removes it. No other thread may use the mesh, and the
+ * watch must exist until it is removed. */
 void he_mesh_set_progress(he_mesh *mesh, he_progress *progress);
-/* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. A
- * cancelled edit then leaves it half edited, because a rollback takes about as long as the edit
- * did. Any other failure leaves it as it was. */
+/* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. An
+ * edit that is cancelled then leaves the mesh half edited, because a rollback would take about as
+ * long as the edit did. Any other failure leaves the mesh as it was. */
 void he_mesh_expend(he_mesh *mesh);
 
-/* Returns the memory of a mesh, counted from the capacities of its columns. */
+/* Returns the bytes of memory of a mesh, counted from the capacities of its columns. */
 size_t he_mesh_bytes(const he_mesh *mesh);
 
-/* Return the numbers of live elements. There are twice as many half-edges as edges. */
+/* These functions return the numbers of live elements. There are twice as many half-edges as
+ * edges. */
 uint32_t he_mesh_vertices(const he_mesh *mesh);
 uint32_t he_mesh_edges(const he_mesh *mesh);
 uint32_t he_mesh_faces(const he_mesh *mesh);

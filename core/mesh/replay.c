@@ -5,7 +5,8 @@
 
 #include <assert.h>
 
-/* The objects that crossing one delta took out of the copy, in the order of the delta's objects. */
+/* The objects (columns, materials, contents) that crossing one delta took out of the copy, in the
+ * order of the delta's objects. */
 typedef struct other_side {
     uint64_t key;
     void **objects;
@@ -101,7 +102,7 @@ static he_status copy_object(void *object, uint32_t of, void **out, he_error *er
     return he_content_copy(object, NULL, copy, err);
 }
 
-/* Makes a list with room for copies of `count` objects. Returns NULL if memory is out. */
+/* Makes a list for copies of `count` objects. Returns NULL if memory is out. */
 static other_side *side_new(uint64_t key, size_t count)
 {
     other_side *side = he_mem_alloc(sizeof *side);
@@ -151,7 +152,8 @@ static other_side *find_side(const he_replay *replay, uint64_t key)
     return side;
 }
 
-/* Finds the objects that the crossing will exchange with the copy; NULL if the delta has none. */
+/* Finds the objects that crossing a delta will exchange with those of the copy; *objects is NULL if
+ * the delta names none. */
 static he_status require_side(he_replay *replay, const he_crossing *crossing, void ***objects,
                               he_error *err)
 {
@@ -176,9 +178,9 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     return HE_OK;
 }
 
-/* Moves a content backwards across a delta. A content that comes back has the high-water marks of
- * the moment when it was taken out, so rows are issued or taken back until they are those of the
- * crossing. */
+/* Moves a content backwards across a delta. If this puts back a whole content, that content has
+ * issued as many ids as when it was taken out, so rows are issued or taken back until the numbers
+ * are those of crossing->issued. */
 static he_status back(he_content *c, const he_crossing *crossing, void **objects, he_error *err)
 {
     he_content_apply(c, crossing->delta, crossing->delta->count, 0, objects);
@@ -201,6 +203,6 @@ he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_err
     status = crossing->undo
                  ? back(c, crossing, objects, err)
                  : he_content_forward(c, crossing->delta, objects, crossing->issued, NULL, err);
-    assert(status != HE_CORRUPT); /* the copy is always at the point that the log expects */
+    assert(status != HE_CORRUPT); /* the copy is always at the point where the delta begins */
     return status;
 }

@@ -44,9 +44,9 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     return fans == 0 ? 1 : fans;
 }
 
-/* Walks around a vertex in both directions at once, half of the way each: when links come from
- * memory one after another, that halves the waiting time. Returns true if the whole ring has been
- * visited. */
+/* Makes a step of a walk around a vertex in both directions at once: `up` and `down` each go half
+ * of the way. Waiting for links in memory then takes half the time. Returns true if all half-edges
+ * around the vertex have been visited. */
 static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
 {
     if (up->i == down->i) {
@@ -60,8 +60,8 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     return false;
 }
 
-/* The number of steps around the first vertex that are made before the ring of the second vertex is
- * searched, too. Most rings are shorter than that, so the second ring is seldom read, which would
+/* The number of steps around the first vertex after which the half-edges around the second vertex
+ * are searched, too. Most vertices have fewer edges, so the second one is seldom read, which would
  * cost another cache miss. */
 enum { ALONE = 8 };
 

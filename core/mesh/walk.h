@@ -1,5 +1,6 @@
-/* walk.h - inline functions that read a mesh. The caller passes live elements of this mesh: these
- * functions check nothing. Ids from outside go through he_mesh_require first. */
+/* walk.h - inline functions that read a mesh. The caller must pass live elements of this mesh,
+ * because these functions check nothing. An id that a client has sent must first pass
+ * he_mesh_require. */
 #ifndef HE_MESH_WALK_H
 #define HE_MESH_WALK_H
 
@@ -66,8 +67,8 @@ static inline he_halfedge he_swing_cw(const he_mesh *m, he_halfedge h)
 }
 
 /* An edit at a random place of a large mesh spends most of its time waiting for memory. The
- * prefetch functions request all the rows it will read at once, so that it waits once and not for
- * each row. They accept any id, and dead links. */
+ * prefetch functions request all rows that the edit will read together, so that it waits once and
+ * not for each row. They accept any id, also of deleted elements. */
 static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
 {
     if (h.i < 2u * m->c.edges.issued) {
@@ -77,8 +78,8 @@ static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
         __builtin_prefetch(&m->c.face[h.i], 1);
     }
 }
-/* Prefetches the half-edges before and after the two of an edge, its faces, and the stored
- * half-edges of its ends. */
+/* Prefetches what an edit of edge e reads: the half-edges before and after its two half-edges, its
+ * faces, and the stored half-edges of its ends. */
 static inline void he_prefetch_about(const he_mesh *m, he_edge e)
 {
     for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
@@ -103,8 +104,8 @@ static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
     }
 }
 
-/* Prefetches for a loop over edges that knows which edges come next: `next` is edited directly
- * after the present edge, `soon` after that. Memory is then read during the edits before. */
+/* Prefetches for a loop that edits edges and knows which ones come next: `next` directly after the
+ * present edge, `soon` later. Their memory is then read while the present edge is edited. */
 static inline void he_prefetch_coming(const he_mesh *m, he_edge next, he_edge soon)
 {
     he_prefetch_links(m, he_edge_halfedge(soon, 0));
@@ -128,7 +129,7 @@ static inline bool he_is_isolated(const he_mesh *m, he_vertex v)
 {
     return m->c.vertex_halfedge[v.i] == HE_NONE;
 }
-/* Returns true if a vertex is on the boundary; an isolated vertex counts as such, too. */
+/* Returns true if a vertex is on the boundary; an isolated vertex counts as on the boundary. */
 static inline bool he_is_boundary_vertex(const he_mesh *m, he_vertex v)
 {
     uint32_t h = m->c.vertex_halfedge[v.i];
@@ -162,10 +163,12 @@ uint32_t he_face_degree(const he_mesh *m, he_face f);
 uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
 /* Returns the number of fans at a vertex: 0 if isolated, 1 if manifold, more at a bow-tie. */
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
-/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. Searches around a and, if
- * a has many edges, around b in turn with it, so it takes time linear in the smaller degree. */
+/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. Searches around a; if a
+ * has many edges, it searches around a and b alternately, so the time is linear in the smaller
+ * degree. */
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
-/* Finds a half-edge like he_find_halfedge, from the origin of the half-edge `leaving`. */
+/* Finds the half-edge to vertex `to` from the origin of the half-edge `leaving`, like
+ * he_find_halfedge. */
 he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to);
 /* Finds a half-edge like he_find_halfedge and adds the cost of the search to `*steps`, for callers
  * with a budget. */

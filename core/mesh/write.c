@@ -118,7 +118,7 @@ he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err)
     return status;
 }
 
-/* Records the words in which a row differs from its new value. */
+/* Records the words of a row that differ from its new value. */
 static void record_row(he_mesh *m, uint32_t column, uint32_t row, const void *stored,
                        const void *value, size_t row_bytes)
 {
@@ -218,7 +218,8 @@ static he_status slot_for_column(he_mesh *m, he_error *err)
     return m->delta == NULL ? HE_OK : he_delta_reserve(m->delta, 1, 1, err);
 }
 
-/* Records a change of an object; the record owns the object that the mesh does not hold. */
+/* Records that an object (column, material or content) was exchanged; the delta owns the one that
+ * the mesh does not hold. */
 static void record_object(he_mesh *m, uint32_t column, uint32_t row, uint32_t after, void *object)
 {
     he_delta *d = m->delta;

@@ -1,4 +1,4 @@
-/* write.h - the one place through which a mesh is written. For core/ only.
+/* write.h - the functions through which all writes to a mesh go. Only core/ may use them.
  *
  * An edit runs in three parts:
  *     CHECK    every precondition; a refusal leaves through he_fail.
@@ -6,8 +6,8 @@
  *     COMMIT   the functions below. They cannot fail.
  * Between he_new_* and the end of COMMIT every link of a new row must be set.
  *
- * An edit composed of others that may be refused half-way brackets them with he_edit_begin and
- * he_edit_end, which roll back. */
+ * If an edit consists of several edits of which a later one may be refused, he_edit_begin and
+ * he_edit_end must enclose them, which then roll back all of them. */
 #ifndef HE_MESH_WRITE_H
 #define HE_MESH_WRITE_H
 
@@ -17,19 +17,21 @@
 #include <assert.h>
 #include <string.h>
 
-/* The most memory that the COMMIT part of an edit will use. he_reserve adds the records of new rows
- * itself: the links, position and attributes of each. */
+/* The most rows and records that the COMMIT part of an edit will need. he_reserve adds the records
+ * for the links, positions and attributes of new rows itself. */
 typedef struct he_reservation {
     uint32_t vertices, edges, faces;
-    size_t deleted_vertices, deleted_edges, deleted_faces; /* rows that will die */
-    size_t links;      /* link words written on rows that stay */
-    size_t positions;  /* positions written on rows that stay */
-    size_t attributes; /* attribute rows written on rows that stay (of every column) */
-    size_t lineage;    /* records of parents and merges */
+    /* Rows of elements that the edit deletes. */
+    size_t deleted_vertices, deleted_edges, deleted_faces;
+    size_t links;     /* links written to rows that stay */
+    size_t positions; /* positions written to rows that stay */
+    /* Rows that stay and whose attributes are written; each row counts for all columns. */
+    size_t attributes;
+    size_t lineage; /* records of parents and of merges */
 } he_reservation;
 
-/* The most records that COMMIT makes of a new or dying row, without its attributes: one more for
- * each link than it has links, since an edit may write a link twice. */
+/* The most records that COMMIT makes for a row that it issues or deletes, without attributes. More
+ * are counted than a row has links, because an edit may write a link twice. */
 enum {
     HE_POSITION_RECORDS = sizeof(he_vec3) / 4,
     HE_VERTEX_RECORDS = 2 + HE_POSITION_RECORDS,
@@ -37,12 +39,12 @@ enum {
     HE_FACE_RECORDS = 2
 };
 
-/* The slow part of he_reserve: most edits find enough room without a call. On failure the mesh is
- * as it was.
+/* The slow part of he_reserve, which allocates. Most edits find enough memory without it. On
+ * failure the mesh is as it was.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_reservation *need, he_error *err);
-/* Returns true if the mesh has no attributes and has enough room already. */
+/* Returns true if the mesh has no attributes and has enough memory for the edit already. */
 static inline bool he_has_room(const he_mesh *m, const he_reservation *need)
 {
     const he_content *c = &m->c;
@@ -62,9 +64,9 @@ static inline he_status he_reserve(he_mesh *m, he_reservation need, he_error *er
     return he_has_room(m, &need) ? HE_OK : he_reserve_more(m, &need, err);
 }
 
-/* Takes `count` records of the delta, which the caller fills. Returns NULL while nothing is
- * recorded. Writes that belong together take their records in one call, because separate calls
- * would each wait for the count that the call before has written. */
+/* Adds `count` records to the delta, which the caller fills in. Returns NULL if no delta is
+ * recording. It is faster to take the records of several writes in one call: each further call
+ * would wait for the processor to finish writing the count of the call before. */
 static inline he_record *he_record_take(he_mesh *m, size_t count)
 {
     he_delta *d = m->delta;
@@ -123,7 +125,7 @@ static inline void he_set_face(he_mesh *m, he_halfedge h, he_face f)
     m->c.boundary_halfedges += (uint32_t)(f.i == HE_NONE) - (uint32_t)(before == HE_NONE);
     m->c.face[h.i] = f.i;
 }
-/* Writes all links of a half-edge, either of a new one or of one that dies. */
+/* Writes all links of a half-edge, whether it is new or is being deleted. */
 static inline void he_set_halfedge(he_mesh *m, he_halfedge h, he_halfedge next, he_halfedge prev,
                                    he_vertex origin, he_face f)
 {
@@ -160,10 +162,11 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
     }
     m->c.position[v.i] = position;
 }
-/* Writes a value (row_bytes bytes) to a row of the attribute in a slot. */
+/* Writes a value of row_bytes bytes to a row of the attribute column in this slot. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
-/* Writes the dead value to a row of a link table; a row has it when it is issued. */
+/* Writes dead links to a row. A row has them when it is issued, until the caller writes its
+ * links. */
 static inline void he_clear_vertex(he_content *c, uint32_t v)
 {
     c->position[v] = (he_vec3){0, 0, 0};
@@ -180,8 +183,8 @@ static inline void he_clear_face(he_content *c, uint32_t f)
     c->face_halfedge[f] = HE_DEAD;
 }
 
-/* Issues rows with default values in every attribute, as many as its domain has; he_reserve must
- * have made room. */
+/* Issues rows with the default value in every attribute column, until it has as many as its domain;
+ * he_reserve must have allocated memory for them. */
 void he_issue_values(he_mesh *m);
 static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
 {
@@ -194,8 +197,8 @@ static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
     return row;
 }
 
-/* Issues a vertex: its row is dead in every link column until the caller writes the links, and its
- * attributes have their defaults. he_reserve must have made room. */
+/* Issues a vertex. Its links are dead until the caller writes them, and its attributes have their
+ * defaults. he_reserve must have allocated memory for it. */
 static inline he_vertex he_new_vertex(he_mesh *m)
 {
     uint32_t v = he_issue(m, &m->c.vertices);
@@ -214,14 +217,14 @@ static inline he_face he_new_face(he_mesh *m)
     he_clear_face(&m->c, f);
     return (he_face){f};
 }
-/* Deletes a vertex: writes the dead value everywhere in its row. No live element may still link to
- * it. */
+/* Deletes a vertex: writes dead or default values to all columns of its row. No live element may
+ * still link to it. */
 void he_delete_vertex(he_mesh *m, he_vertex v);
 void he_delete_edge(he_mesh *m, he_edge e);
 void he_delete_face(he_mesh *m, he_face f);
 
-/* Record in the delta which element a new one came from, and which element a deleted one was merged
- * into. Without a recording they do nothing. */
+/* These functions record in the delta which element a new one came from, and which element a
+ * deleted one was merged into. They do nothing if no delta is recording. */
 static inline void he_note_parent(he_mesh *m, he_kind kind, uint32_t child, uint32_t parent)
 {
     he_record_word(m, HE_COL_PARENT, (uint32_t)kind, child, parent, 0);
@@ -231,10 +234,11 @@ static inline void he_note_merged(he_mesh *m, he_kind kind, uint32_t gone, uint3
     he_record_word(m, HE_COL_MERGED, (uint32_t)kind, gone, into, 0);
 }
 
-/* Set the attributes of an element's row in every column of its domain by the column's rule. Kinds:
- * HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE. `between` interpolates, copies a (t < 1) or b, or
- * leaves the default; `copy` copies unless the rule is default. Without such columns these do
- * nothing, and in a mesh without attributes they cost one test. */
+/* These functions set the attributes of row `to`, in every column of the kind of element, by the
+ * column's rule. The functions named `between` interpolate from row a (t = 0) to row b (t = 1), or
+ * copy a (t < 1) or b, or leave the default; those named `copy` copy unless the rule is default.
+ * The kind may be HE_VERTEX, HE_HALFEDGE, HE_EDGE or HE_FACE. In a mesh without attributes each
+ * call costs one test. */
 void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
 static inline void he_attributes_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a,
                                          uint32_t b, double t)
@@ -250,11 +254,11 @@ static inline void he_attributes_copy(he_mesh *m, he_kind kind, uint32_t to, uin
         he_values_copy(m, kind, to, from);
     }
 }
-/* Sets the attributes of row `to` to the mean of n rows; copies the first row if the rule is
- * copy. */
+/* Sets the attributes of row `to` to the mean of n rows, or copies the first row if the column's
+ * rule is copy. */
 void he_attributes_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
-/* Mixes attributes of two rows: interpolated columns become linear from `other` (t = 0) to the
- * value of `row` (t = 1); all other columns keep the value of `row`. */
+/* Mixes the attributes of `row` with those of `other`: columns with the rule interpolate get the
+ * value between `other` (t = 0) and `row` (t = 1); all other columns keep the value of `row`. */
 void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
 static inline void he_attributes_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other,
                                      double t)
@@ -272,7 +276,8 @@ static inline void he_attributes_merge(he_mesh *m, he_kind kind, uint32_t into, 
         he_values_merge(m, kind, into, gone, t);
     }
 }
-/* Copies the values whatever the rule, for a corner that changes its half-edge. */
+/* Copies the attributes of row `from` to row `to` whatever the rule. A corner that moves to another
+ * half-edge needs this. */
 void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
 static inline void he_attributes_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
@@ -280,36 +285,39 @@ static inline void he_attributes_move(he_mesh *m, he_kind kind, uint32_t to, uin
         he_values_move(m, kind, to, from);
     }
 }
-/* Returns true if there are columns in this domain. It lets a frequent edit skip the calls. */
+/* Returns true if the mesh has columns for this kind of element. A frequent edit can then skip the
+ * calls above. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 
-/* Makes room for he_set_attribute on `rows` rows of one column.
+/* Allocates the records that he_set_attribute needs for `rows` rows of one column.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err);
 
-/* Add or drop a column, and record that. On success the mesh owns `takes`, which must have as many
- * rows as the domain has issued. It gets the first free slot: history is linear, so a record that
- * names a slot is only applied while its column is there. */
+/* These functions add or drop an attribute column, and record that. On success the mesh owns
+ * `takes`, which must have as many rows as its domain has issued. The column gets the first free
+ * slot. A slot may be used again, because the history is linear: a record that names a slot is only
+ * applied while its column is there. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
-/* Puts a material into a slot of the mesh's table, replacing the one that is there; NULL only
- * removes that. The slot may be the first one after the last, which is then made. No other row may
- * have the name. On success the mesh owns `takes`.
+/* Puts a material into a slot of the mesh's table, in place of the one that is there; with NULL the
+ * slot becomes free. The slot may be the one after the last, which is then added. No other material
+ * may have the name. On success the mesh owns `takes`.
  * Returns HE_LIMIT if there would be more than HE_MATERIALS slots.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,
                                             he_error *err);
-/* Swaps the whole content with `takes` (emptied and freed on success), recorded as one replacement
- * that keeps the old arrays; without recording they are freed. HE_KEEPS_IDS promises that every id
- * issued before is issued in `takes` and means the same element or a dead one, and that columns
- * keep their slots: such a replacement can be undone and redone among other edits, after
- * he_delta_ready. */
+/* Says how he_mesh_replace changes ids. It replaces the whole content of a mesh by that of `takes`,
+ * which is freed on success. The delta keeps the old content; if no delta is recording, it is
+ * freed. HE_KEEPS_IDS promises that every id issued before is issued in `takes` and names the same
+ * element or a deleted one, and that columns keep their slots. Such a replacement can be undone and
+ * redone among other edits, after he_delta_ready. */
 typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
 HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 
-/* A bracket around several edits that succeed or fail as one. If no delta is attached it attaches
- * one of its own, so that it can roll back. he_edit_end returns `status` unchanged. A cancelled
- * edit of an expendable mesh (he_mesh_expend) is not rolled back. */
+/* The state between he_edit_begin and he_edit_end, which enclose several edits that succeed or fail
+ * together. If no delta is recording, `own` records, so that the edits can be rolled back.
+ * he_edit_end returns `status` unchanged. A cancelled edit of an expendable mesh (he_mesh_expend)
+ * is not rolled back. */
 typedef struct he_bracket {
     he_delta *own;
     he_savepoint mark;

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* The most references to meshes that are held at once. */
+/* Meshes in memory are listed in batches: at most this many references are held at once. */
 enum { BATCH = 64 };
 
 /* Copies the card of a mesh in memory. Returns false if it was removed. */
@@ -47,9 +47,9 @@ static size_t cards_in_memory(st_store *store, const char *after, st_card *out, 
     return count;
 }
 
-/* Chooses one of two cards with one id. If both are of one mesh, the one with more records is
- * newer, or the disk's if the mesh is damaged. If they are of different meshes, the one on the disk
- * has been removed, which the disk does not know yet. */
+/* Chooses one of two cards with one id. If both describe one mesh, the card on the disk is chosen
+ * if it counts more records or the mesh is damaged. If they describe different meshes, the mesh on
+ * the disk was removed, which the disk does not know yet. */
 static const st_card *newer(const st_card *memory, const st_card *disk)
 {
     bool same = memory->incarnation == disk->incarnation;
@@ -57,7 +57,7 @@ static const st_card *newer(const st_card *memory, const st_card *disk)
     return same && ahead ? disk : memory;
 }
 
-/* A run of cards in the order of their ids. */
+/* A part of an array of cards, in the order of their ids. */
 typedef struct card_run {
     const st_card *at, *end;
 } card_run;
@@ -76,8 +76,8 @@ static size_t merge(card_run memory, card_run disk, st_card *out, size_t limit)
     return count;
 }
 
-/* Lists cards. Memory is listed first, then the disk, so that a mesh that is evicted in between is
- * in both lists, not in none. */
+/* Lists cards. The meshes in memory are listed first, then those on the disk, so that a mesh that
+ * is evicted in between is in both lists rather than in none. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count)
 {
     const st_journal *journal = &store->journal;

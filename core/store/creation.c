@@ -21,8 +21,8 @@ static st_status book(const st_store *store, const he_mesh *content, size_t reco
     return status;
 }
 
-/* Returns true if the store may have no more meshes. The caller holds the table's exclusive
- * lock. */
+/* Returns true if the store may have no more meshes. The caller holds the exclusive lock of the
+ * table of meshes. */
 static bool is_full(const st_store *store)
 {
     const st_journal *journal = &store->journal;
@@ -30,7 +30,8 @@ static bool is_full(const st_store *store)
     return count >= store->max_meshes;
 }
 
-/* Adds the mesh and counts it for its holder. The caller holds the table's exclusive lock. */
+/* Adds the mesh to the store's table and counts it for its holder. The caller holds the exclusive
+ * lock of the table. */
 static st_status insert(st_store *store, st_mesh *mesh)
 {
     const st_holding none = {NULL, 0};
@@ -48,8 +49,8 @@ static st_status insert(st_store *store, st_mesh *mesh)
 }
 
 /* Appends the first record of a new mesh and puts the mesh into the table. The record is appended
- * under the lock: a thread that finds the mesh, or its id taken, knows that the record is in the
- * journal. */
+ * under the table's lock, so that a thread which finds the mesh, or finds its id taken, knows that
+ * the record is in the journal. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     st_lock_write(&store->lock);
@@ -68,7 +69,8 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, 
     return status;
 }
 
-/* Makes a mesh of the content, which no other thread knows yet, and room for its records. */
+/* Makes a mesh of the content, not yet in the store's table, and reserves space in the journal for
+ * `records` records. */
 static st_status prepare(st_store *store, const st_new_mesh *made, he_mesh *content, size_t records,
                          st_booking *booking, st_mesh **out)
 {
@@ -85,7 +87,7 @@ static st_status prepare(st_store *store, const st_new_mesh *made, he_mesh *cont
     return ST_OK;
 }
 
-/* Frees a mesh that was not added; the caller still owns the content. */
+/* Frees a mesh that was not added to the store. The caller of st_create still owns the content. */
 static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
 {
     mesh->content = NULL;
@@ -99,11 +101,11 @@ static st_status make(st_store *store, const st_new_mesh *made, he_mesh *content
     st_mesh *mesh;
     st_status status = prepare(store, made, content, 1, &booking, &mesh);
     if (status == ST_OK) {
-        /* The use is recorded before the mesh is in the table, because a mesh that was never used
-         * would be evicted first. */
+        /* The time of use is set before the mesh is in the table, because a mesh that was never
+         * used would be evicted first. */
         st_mesh_use(mesh);
-        /* Room in the journal is already reserved, so if a later loss takes `made->from`, this
-         * record is lost with it. */
+        /* If the records of `made->from` are lost after this check, so is the new record: its
+         * space in the journal was reserved before. */
         const bool lost =
             made->from != NULL && st_waits_is_lost(store->followers.waits, made->from);
         status = lost ? ST_LOST : publish(store, mesh, made->cause, &booking);
@@ -128,9 +130,8 @@ static st_status create_as(st_store *store, const st_new_mesh *made, he_mesh *co
     return status;
 }
 
-/* Returns true if there is memory for another mesh. It asks for more than is needed: if only a few
- * bytes were free for a moment, the memory would seem full again when other threads take them
- * back. */
+/* Returns true if there is memory for another mesh. It makes much more memory free than the mesh
+ * needs: a few free bytes would be taken by other threads at once. */
 static bool has_room(st_store *store)
 {
     st_make_room(store, st_memory_budget() / ST_MEMORY_SHORT_SHARE);
@@ -165,8 +166,8 @@ st_status st_create(st_store *store, const char *id, const char *name, he_mesh *
 
 /* --- replacing a damaged mesh --- */
 
-/* Publishes the removal of the old mesh and the first record of the new one, as one group. The
- * caller holds the exclusive lock of the old mesh. */
+/* Publishes the removal of the old mesh and the first record of the new one, as one group of
+ * records. The caller holds the exclusive lock of the old mesh. */
 static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_cause *cause,
                          st_booking *booking)
 {
@@ -192,7 +193,7 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     pthread_rwlock_unlock(&store->lock);
 }
 
-/* Moves the holder's count from the old mesh to the new one, or leaves it if the new one would
+/* Subtracts the old mesh from what its holder has and adds the new one, unless the new mesh would
  * exceed the limit. The caller holds the exclusive lock of the old mesh. */
 static st_status count_over(st_store *store, const st_mesh *old, st_mesh *fresh)
 {
@@ -222,7 +223,7 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
         discard(store, fresh, &booking);
         return status;
     }
-    st_release(damaged); /* the use that the table had */
+    st_release(damaged); /* the reference that the store's table had */
     *out = fresh;
     return ST_OK;
 }

@@ -7,18 +7,19 @@
 
 #include <time.h>
 
-/* Times of last use are sorted into this many classes, from the most to the least recent. */
+/* To choose which meshes to evict, their times of last use are sorted into this many classes. */
 enum { AGES = 256 };
 
-/* Meshes are freed in batches, so that the table is not locked for long. */
+/* Meshes are evicted in batches of this many, so that the store's table of meshes is not locked for
+ * long. */
 enum { BATCH = 64 };
 
 /* A mesh that was not used for COLD_MICROS may be evicted before a request needs its memory; after
- * an eviction found nothing, none is tried for BARREN_MICROS. */
+ * an attempt that found nothing to evict, no other is made for BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
-/* How long a thread waits for the lock of the table, and for the disk if what could be evicted is
- * not durable yet. */
+/* How long a thread waits for the lock of the store's table of meshes, and for the disk if meshes
+ * can be evicted as soon as their changes are durable. */
 enum {
     LOCK_NANOS = 100 * 1000 * 1000,
     SECOND_NANOS = 1000 * 1000 * 1000,
@@ -30,9 +31,9 @@ void st_mesh_use(st_mesh *mesh)
     atomic_store_explicit(&mesh->used, st_clock_micros(), memory_order_relaxed);
 }
 
-/* Takes the lock of the table, if that succeeds in a limited time. A thread that asks for memory
- * may hold locks that the owner of the table's lock waits for, or may own the table's lock itself,
- * so it must not wait for ever. */
+/* Takes the lock of the store's table of meshes. Returns false if that takes longer than
+ * LOCK_NANOS. A thread that asks for memory may hold locks that the owner of the table's lock waits
+ * for, or may own the table's lock itself, so it must not wait for ever. */
 static bool lock_table(st_store *store)
 {
     struct timespec until;
@@ -45,9 +46,9 @@ static bool lock_table(st_store *store)
     return pthread_rwlock_timedwrlock(&store->lock, &until) == 0;
 }
 
-/* Returns true if only the table uses a mesh and the disk has all of it. Under the table's
- * exclusive lock no thread can begin to use the mesh. A message that waits for listeners holds a
- * use. */
+/* Returns true if the mesh can be evicted: only the table of meshes has a reference to it and the
+ * disk has all its changes. Under the table's exclusive lock no thread can begin to use the mesh. A
+ * message that waits for listeners holds a reference. */
 static bool is_cold(st_store *store, st_mesh *mesh)
 {
     if (atomic_load_explicit(&mesh->uses, memory_order_acquire) > 1) {
@@ -62,10 +63,10 @@ static uint64_t bytes_of(const st_mesh *mesh)
     return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
-/* The bytes of meshes by classes of their time of last use, from which the age is found before
- * which meshes are evicted. */
+/* Bytes of meshes, summed by classes of their time of last use. From these sums follows how
+ * recently used a mesh may be to be evicted. */
 typedef struct ages {
-    uint64_t first, span; /* range of the times of last use */
+    uint64_t first, span; /* earliest time of last use, and length of the range of these times */
     uint64_t bytes[AGES];
 } ages;
 
@@ -75,7 +76,7 @@ static size_t age_of(const ages *a, uint64_t used)
 }
 
 /* Returns the time of last use before which meshes are evicted to free about `bytes` bytes. The
- * caller holds the table's lock. */
+ * caller holds the lock of the table of meshes. */
 static uint64_t find_limit(st_store *store, uint64_t bytes)
 {
     ages a = {.first = UINT64_MAX};
@@ -100,8 +101,8 @@ static uint64_t find_limit(st_store *store, uint64_t bytes)
     return a.first + age * (a.span / AGES + 1);
 }
 
-/* Takes meshes that were last used before `limit` out of the table, at most a batch, from index
- * *place on. */
+/* Takes up to BATCH meshes that were last used before `limit` out of the table of meshes, beginning
+ * at index *place. */
 static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *batch[BATCH])
 {
     size_t count = 0, to = *place, from = *place;
@@ -127,7 +128,7 @@ static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *
 }
 
 /* Evicts meshes that were last used before `newest`, as many as it takes to free the bytes. Returns
- * their number. *locked says whether the table's lock could be taken. */
+ * their number. *locked says whether the lock of the table of meshes could be taken. */
 static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *locked)
 {
     st_mesh *batch[BATCH];
@@ -150,7 +151,8 @@ static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *lock
     return all;
 }
 
-/* Returns how many bytes must be freed so that `bytes`, and `share` beside them, are free. */
+/* Returns how many bytes must be freed so that `bytes + share` bytes of the memory budget are
+ * free. */
 static uint64_t missing(uint64_t bytes, uint64_t share)
 {
     const uint64_t held = st_memory_used() + st_resident_beside();
@@ -163,12 +165,13 @@ static void make_room(st_store *store, uint64_t bytes)
     const uint64_t budget = st_memory_budget();
     uint64_t share = budget / 16;
     bool locked;
-    /* A thread that waited for this lock may find that another one has made room. */
+    /* While this thread waited for the lock, another one may have freed memory. */
     pthread_mutex_lock(&store->room);
     if (missing(bytes, share) > 0) {
         st_resident_measure();
     }
-    /* After an eviction that found room, some more is required before the next measuring. */
+    /* If something must be evicted, more than `share` is made free, so that the next requests need
+     * not measure and evict again. */
     share += share / 4;
     if (missing(bytes, share) > 0) {
         st_store_shed(store);
@@ -180,15 +183,15 @@ static void make_room(st_store *store, uint64_t bytes)
     pthread_mutex_unlock(&store->room);
 }
 
-/* Returns the newest position if records are on their way to the disk, else 0. Their meshes cannot
- * be evicted before they are durable. */
+/* Returns the position of the newest record if records are being written to the disk, else 0.
+ * Meshes whose records are not durable cannot be evicted. */
 static uint64_t on_its_way(const st_store *store)
 {
     const uint64_t newest = st_waits_newest(store->followers.waits);
     return newest > st_waits_durable(store->followers.waits) ? newest : 0;
 }
 
-/* Waits until the records that were on their way before an eviction are durable. Returns true if
+/* Waits until the record at position `newest` and all before it are durable. Returns true if
  * another eviction may find more. */
 static bool await_disk(st_store *store, uint64_t newest, uint64_t until)
 {
@@ -207,13 +210,13 @@ void st_make_room(st_store *store, uint64_t bytes)
     do {
         newest = on_its_way(store);
         make_room(store, bytes);
-        /* An edit asks for no bytes and does not wait, because what is free may be enough for
-         * it. */
+        /* With 0 bytes the caller is an edit, which does not wait for the disk: the free memory may
+         * suffice for it. */
     } while (bytes > 0 && !st_memory_has(bytes + share) && await_disk(store, newest, until));
 }
 
-/* Frees memory for a thread that needs it (a memory giver): the thread may hold any lock but the
- * table's and those that st_store_shed takes. */
+/* Frees memory for a thread whose allocation would be refused (a memory giver, see memory.h). That
+ * thread may hold any lock but that of the table of meshes and those that st_store_shed takes. */
 static bool give_room(void *context, uint64_t bytes)
 {
     st_store *store = context;

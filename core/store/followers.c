@@ -9,9 +9,9 @@
 static void is_known(st_wait *wait);
 static bool end_wait(st_mesh *mesh);
 
-/* Allows listeners to read what is durable. Only one wait is with the journal at a time: a thread
- * that finds it waiting leaves its message to is_known, which looks for newer ones when the wait
- * has ended. */
+/* Allows listeners to read the messages whose records are durable, and begins to wait for the
+ * others. A mesh waits only once at a time: if the wait has begun already, is_known looks for newer
+ * messages when it ends. */
 static void allow(st_mesh *mesh)
 {
     st_waits *waits = mesh->followers->waits;
@@ -33,7 +33,8 @@ static void allow(st_mesh *mesh)
     }
 }
 
-/* Ends a wait of the queue for the journal. Returns true if there may be more messages to allow. */
+/* Ends the queue's wait for durable records. Returns true if there may be more messages to
+ * allow. */
 static bool end_wait(st_mesh *mesh)
 {
     const st_wait wait = mesh->wait;
@@ -66,8 +67,8 @@ void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_chan
     }
 }
 
-/* Informs the listeners of a group of records. The records become durable together, so their events
- * have one place. */
+/* Informs the listeners of a group of records. The records become durable together, so their
+ * messages have the same place in the queue. */
 void st_mesh_tell(st_mesh *mesh, const st_group *group)
 {
     bool followed = st_queue_is_followed(&mesh->queue);
@@ -103,7 +104,8 @@ void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length)
     allow(mesh);
 }
 
-/* Begins to listen from a position. The caller holds the mesh's lock. */
+/* Makes a listener begin after `since`, if it is given, else at the present. The caller holds the
+ * mesh's lock. */
 static st_missed begin(st_listener *listener, const st_since *since, const st_mesh_info *info)
 {
     if (!since->given) {

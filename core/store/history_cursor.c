@@ -5,15 +5,15 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* After replaying this many bytes of deltas, some milliseconds, the lock is released so that
- * writers get their turn. */
+/* After replaying this many bytes of deltas, which takes some milliseconds, the mesh's lock is
+ * released so that writers can take it. */
 enum { TURN_BYTES = 8 << 20 };
 
 struct st_cursor {
     st_mesh *mesh;
     he_replay *replay;
     uint64_t at;
-    st_step *held; /* the step that the last call lent */
+    st_step *held; /* the step that the last call returned; the cursor holds a reference */
 };
 
 static st_status no_memory(void)
@@ -29,8 +29,8 @@ static st_status bounds(const st_revision_log *log, uint64_t revision)
     return revision < log->oldest ? ST_GONE : ST_OK;
 }
 
-/* Moves the copy towards the revision for one turn; it starts from the newest revision if there is
- * no copy yet. The caller holds the shared lock. */
+/* Moves the copy towards the revision by at most `most` bytes of deltas. If there is no copy yet,
+ * it first copies the newest revision. The caller holds the mesh's shared lock. */
 static he_status one_turn(const st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision,
                           uint64_t most)
 {
@@ -59,8 +59,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
         if (walked == HE_NO_MEMORY) {
             status = no_memory();
         } else if (walked != HE_OK) {
-            /* The mesh was undone and redone meanwhile, so the copy cannot go on. A new copy of the
-             * newest revision can, unless the mesh changes again. */
+            /* The mesh was undone and redone meanwhile, so this copy cannot be moved to the
+             * revision. A new copy of the newest revision can, unless the mesh changes again. */
             he_replay_free(*replay);
             *replay = NULL;
             most = UINT64_MAX;
@@ -73,8 +73,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
     return status;
 }
 
-/* Begins a cursor on the disk: if memory has dropped the revision, the records on the disk may
- * still have it, and a second copy of the mesh is loaded with all of its history. */
+/* Begins a cursor on the disk, if the history in memory has dropped the revision: the records on
+ * the disk may still lead to it, so a second copy of the mesh is loaded with all of its history. */
 static st_status begin_on_disk(st_cursor *cursor, st_mesh *mesh, uint64_t revision)
 {
     st_status status = st_mesh_load_apart(mesh, 0, &cursor->mesh);
@@ -113,7 +113,7 @@ uint64_t st_cursor_revision(const st_cursor *cursor)
     return cursor->at;
 }
 
-/* Moves the cursor one revision further. The caller holds the shared lock. */
+/* Moves the cursor one revision further. The caller holds the mesh's shared lock. */
 static st_status advance(st_cursor *cursor, st_action *action)
 {
     const st_revision_log *log = &cursor->mesh->log;

@@ -2,7 +2,7 @@
  *
  * A cursor owns a copy of the mesh at a revision that the history still reaches, in memory or on
  * the disk, and brings it forward step by step: after each step the copy equals the mesh at that
- * revision, links, attributes and high-water marks included, however the mesh has changed since.
+ * revision, links, attributes and issued ids included, even if the mesh has changed since.
  *
  *     st_cursor *cursor;
  *     st_cursor_begin(mesh, 41, &cursor);
@@ -11,9 +11,9 @@
  *     }
  *     st_cursor_end(cursor);
  *
- * The functions take the mesh's shared lock for no longer than a copy or a replay takes, and hold
- * none between calls. One thread at a time may use a cursor, and no worker: a call may copy the
- * mesh. */
+ * The functions take the mesh's shared lock only while they copy or replay, and hold no lock
+ * between calls. One thread at a time may use a cursor; a worker must not, because a call may copy
+ * the mesh. */
 #ifndef HE_STORE_HISTORY_CURSOR_H
 #define HE_STORE_HISTORY_CURSOR_H
 
@@ -33,7 +33,8 @@ typedef struct st_cursor_step {
     const he_mesh *content;
 } st_cursor_step;
 
-/* Makes a cursor, which keeps the mesh in use and may load it once more from the disk.
+/* Makes a cursor at a revision. The cursor holds a reference to the mesh and may load a second copy
+ * of it from the disk.
  * Returns ST_AHEAD if there is no such revision yet.
  * Returns ST_GONE if the history does not reach back to it.
  * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if the copy cannot be made. */
@@ -44,13 +45,14 @@ uint64_t st_cursor_revision(const st_cursor *cursor);
 /* Moves the cursor one revision further; `out` is valid until the next call. After any failure but
  * ST_NOTHING and ST_GONE the caller can only end the cursor.
  * Returns ST_NOTHING at the newest revision.
- * Returns ST_GONE if the history was cut off between (a replace, an edit beyond the budget, or so
- * many edits that the next one was dropped): the caller must begin a new cursor. */
+ * Returns ST_GONE if the next revision is not in the history any more (after a replace, an edit
+ * beyond the budget, or so many edits that it was dropped). The caller must begin a new cursor. */
 st_status st_cursor_next(st_cursor *cursor, st_cursor_step *out);
 void st_cursor_end(st_cursor *cursor); /* takes NULL */
 
-/* Brings a copy of `mesh` that is at *at to `revision`, or makes one if *replay is NULL. Cursors
- * and snapshots of earlier revisions are made with it. On failure *replay is NULL. */
+/* Brings *replay, a copy of `mesh` at the revision *at, to `revision`; makes the copy first if
+ * *replay is NULL. Cursors and snapshots of earlier revisions are made with it. On failure *replay
+ * is freed and set to NULL. */
 st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision);
 
 #endif

@@ -166,7 +166,8 @@ void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
     if (body != NULL) {
         memcpy(body, answer->body, answer->length);
     } else if (answer->length > 0 && !answer->changed) {
-        return; /* the request changed nothing, so it may be tried again */
+        /* The request changed nothing and is repeated if it comes again, so no answer is kept. */
+        return;
     }
     pthread_mutex_lock(&keys->lock);
     assert(keyed->listed && !keyed->is_kept);

@@ -1,8 +1,9 @@
 /* idempotency.h - the first answers to requests that carried an Idempotency-Key.
  *
- * After draft-ietf-httpapi-idempotency-key-header. A table belongs to a mesh, or to the store for
- * requests that make a mesh, and is freed with it. An entry is begun before its request is tried,
- * which allocates all the memory that remembering the answer needs:
+ * After draft-ietf-httpapi-idempotency-key-header. A table of keys belongs to a mesh, or to the
+ * store for requests that make a mesh, and is freed with its owner. The entry of a key is made
+ * before its request is executed, with all the memory that remembering the answer needs, the body
+ * excepted:
  *
  *     keyed ----> under way ----> kept, with the answer        forgotten after ST_KEPT_SECONDS, or
  *                     |             |                          when newer ones need the room
@@ -21,36 +22,38 @@
 #include <pthread.h>
 
 enum {
-    ST_KEPT_BYTES = 16 << 20, /* most bytes of one table, entries and bodies */
+    ST_KEPT_BYTES = 16 << 20, /* most bytes of one table, its entries and bodies together */
     ST_KEPT_BODY = 4 << 20    /* most bytes of one answer's body */
 };
 
 typedef struct st_keys {
     pthread_mutex_t lock;
-    struct st_keyed **buckets;        /* a power of two, NULL before the first */
-    size_t bucket_count, count;       /* buckets; entries in all */
+    /* The hash table, its size a power of two; NULL before the first entry. */
+    struct st_keyed **buckets;
+    size_t bucket_count, count;       /* number of buckets; number of all entries */
     struct st_keyed *oldest, *newest; /* list of the entries with a kept answer */
     size_t kept;
     uint64_t bytes; /* bytes of the entries with a kept answer */
     uint64_t secret[2];
 } st_keys;
 
-/* An entry of the table of keys. It has two references: from its table and from the request that
- * began it. */
+/* An entry of the table of keys. It has two references: one from its table and one from the request
+ * that began it. */
 struct st_keyed {
     st_keys *keys;
     unsigned uses;
-    bool is_kept, listed; /* listed: the table holds it */
-    bool is_damaged;      /* it is not known any more to which request it belongs */
-    st_record_key key;    /* as a record carries it */
+    bool is_kept, listed; /* is_kept: the answer is kept; listed: the entry is in the table */
+    /* The stored row is damaged, so it is not known to which request the key belongs. */
+    bool is_damaged;
+    st_record_key key; /* the key in the form in which a record stores it */
     uint64_t hash;
     st_kept answer; /* owns `body` */
     struct st_keyed *next, *older, *newer;
-    char text[]; /* the key, and after its NUL the holder */
+    char text[]; /* the key, and after its NUL the name of the client that sent it */
 };
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);
-void st_keys_clear(st_keys *keys); /* no request may be under way */
+void st_keys_clear(st_keys *keys); /* frees the table's memory; no request may be under way */
 /* Begins a request with a key. `now` is in seconds since 1970. */
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
 /* Removes a kept answer that a request got with ST_KEYED_KEPT. The caller calls it instead of

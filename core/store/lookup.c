@@ -12,9 +12,10 @@ enum { LOOKUP_MICROS = 30 * 1000 * 1000 };
 
 struct st_lookup {
     char id[ST_MESH_ID + 1];
-    size_t uses; /* the thread that does it and those that wait */
+    /* Number of threads that use it: the one that owns the lookup and those that wait. */
+    size_t uses;
     bool ended;
-    st_status status; /* why there is no mesh; ST_OK: the table has it */
+    st_status status; /* why there is no mesh; ST_OK if the mesh is in memory now */
     st_lookup *next;
 };
 
@@ -63,8 +64,8 @@ static st_status add(st_lookups *lookups, const char *id, st_lookup **out)
     return ST_OK;
 }
 
-/* Waits until another thread's lookup has ended. With ST_OK the caller must search the table
- * again. */
+/* Waits until another thread's lookup has ended. If the result is ST_OK, the caller must search the
+ * table of meshes again. */
 static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
 {
     const uint64_t since = st_clock_micros();
@@ -130,8 +131,7 @@ st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
     st_status status;
     do {
         status = st_lookup_begin(store, id, &mesh, out);
-    } while (status ==
-             ST_ABSENT); /* another thread found no such mesh: now this one looks for a free id */
+    } while (status == ST_ABSENT); /* the other thread found no such mesh: the id may be free */
     if (status != ST_OK) {
         return status;
     }
@@ -157,7 +157,7 @@ void st_lookup_end(st_store *store, st_lookup *lookup)
 
 /* --- a mesh that is on the disk --- */
 
-/* Makes a mesh in place of one that cannot be loaded: it has the facts of the card, but no
+/* Makes a mesh that stands in for one that cannot be loaded: it has the facts of the card, but no
  * content. */
 static st_status stand_in(const st_mesh_options *options, const st_card *card, st_status why,
                           st_mesh **out)
@@ -299,8 +299,8 @@ st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold
     return ST_OK;
 }
 
-/* Makes a mesh without content, which is never in the table, to append the last record of a mesh
- * that is not in memory. */
+/* Makes a mesh without content, which is never in the store's table. By it the record of a removal
+ * is appended for a mesh that is not in memory. */
 static st_mesh *new_stand_in(const st_cold *cold)
 {
     const st_mesh_options options = st_store_mesh_options(cold->store);

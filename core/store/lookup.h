@@ -1,10 +1,10 @@
-/* lookup.h - lookups of ids on the disk, by which a thread loads a mesh or makes one.
+/* lookup.h - lookups of ids on the disk, after which a thread loads the mesh or creates one.
  *
- * A mesh that is not in memory may be on the disk, and it takes long to find out. Until that is
- * known, one thread has the lookup of the id, and other threads that need the id wait for it to
- * end; so a mesh is loaded once, and an id is not given twice.
+ * A mesh that is not in memory may be on the disk, and finding out takes long. Meanwhile one thread
+ * owns the lookup of the id, and other threads that need the id wait until that lookup ends; so a
+ * mesh is loaded only once, and an id is not given to two meshes.
  *
- * The lock is taken before that of the table. */
+ * The lock of the lookups is taken before that of the store's table of meshes. */
 #ifndef HE_STORE_LOOKUP_H
 #define HE_STORE_LOOKUP_H
 
@@ -21,23 +21,24 @@ typedef struct st_lookups {
 } st_lookups;
 
 void st_lookups_init(st_lookups *lookups);
-void st_lookups_clear(st_lookups *lookups); /* none may be under way */
+void st_lookups_clear(st_lookups *lookups); /* no lookup may be under way */
 
-/* Finds a mesh in memory and adds a reference. If it is not in memory, *mesh is NULL and the caller
- * has the lookup of the id: other threads wait for it. Waits, so only threads that may wait can
- * call it.
+/* Finds a mesh in memory and adds a reference. If it is not in memory, *mesh is NULL and *out is
+ * the lookup of the id, which the caller owns until st_lookup_end: other threads that need the id
+ * wait. The function waits, so only threads that may wait can call it.
  * Returns ST_ABSENT if there is no such mesh.
  * Returns ST_LOADING if another thread's lookup takes too long.
  * Returns ST_NO_MEMORY or ST_FAILED if the lookup cannot be made. */
 st_status st_lookup_begin(st_store *store, const char *id, st_mesh **mesh, st_lookup **out);
-/* Gives the caller the lookup of an id that names no mesh, neither in memory nor on the disk; *out
- * is NULL if the journal keeps nothing, because the table then knows all meshes. Waits, so only
+/* Gives the caller the lookup of an id that names no mesh, neither in memory nor on the disk. *out
+ * is NULL if the journal keeps nothing, because all meshes are then in memory. Waits, so only
  * threads that may wait can call it.
  * Returns ST_TAKEN if a mesh has the id.
  * Returns ST_LOADING if another thread's lookup takes too long.
  * Returns ST_NO_MEMORY or ST_FAILED if the lookup cannot be made. */
 st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out);
-/* Ends a lookup, which may be NULL: from now on the table decides what the id names. */
+/* Ends a lookup, which may be NULL. From now on the store's table of meshes says what the id
+ * names. */
 void st_lookup_end(st_store *store, st_lookup *lookup);
 
 #endif

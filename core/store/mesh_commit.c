@@ -1,6 +1,6 @@
-/* mesh_commit.c - the kinds of commit: an edit (perhaps of a claim's copy), undo and redo steps,
- * replace, rename, removal. Each is first put into the history, then sent to the journal and the
- * listeners. */
+/* mesh_commit.c - the kinds of commit: an edit (of the mesh, or of the copy that a claim works on),
+ * undo and redo, replace, rename, removal. Each change is first put into the history, then appended
+ * to the journal and sent to the listeners. */
 #include "store/mesh_commit.h"
 
 #include "system/clock.h"
@@ -22,8 +22,8 @@ static double revise(st_mesh *mesh)
     return mesh->info.modified;
 }
 
-/* Counts the elements that were created, deleted and modified. The tally is not known if the whole
- * content was replaced. */
+/* Counts the elements that were created, deleted and modified. If the whole content was replaced,
+ * the numbers are not known. */
 static st_tally tally_of(const he_changes *changes)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -36,7 +36,8 @@ static st_tally tally_of(const he_changes *changes)
     return tally;
 }
 
-/* Commits an edit. Its delta is held until it was published, even if the history drops it. */
+/* Commits an edit. A reference keeps its delta until the change was published, even if the history
+ * drops the delta. */
 static void commit_edit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
@@ -94,8 +95,8 @@ static void rename_mesh(st_mesh *mesh, const char *name)
     mesh->info.modified = st_clock_utc();
 }
 
-/* Commits a replacement, a rename, or both. A replacement with a new name is two records of one
- * group. */
+/* Commits a replacement, a rename, or both. A replacement with a new name makes two records, which
+ * are appended as one group. */
 static void commit_facts(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -140,14 +141,15 @@ static he_mesh *exchange_content(st_write *w)
     }
     he_mesh *before = mesh->content;
     if (before == w->content) {
-        return NULL; /* not changed at all: a mesh may be removed beside a claim, which reads it */
+        /* The content is not exchanged: a mesh may be removed while a claim reads it. */
+        return NULL;
     }
     mesh->content = w->content;
     return before;
 }
 
-/* Reserves room in the journal for the record. A claim does so without the lock, because no other
- * thread has its copy. */
+/* Reserves space in the journal for the records of the write. For a claim the caller does not hold
+ * the lock, because no other thread has the copy. */
 static st_status book(st_write *w)
 {
     const st_journal *journal = w->mesh->journal;
@@ -172,8 +174,9 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
-/* Returns true if the change was made from records that are lost. It is called after the room is
- * reserved, so that a later loss takes this record, too. */
+/* Returns true if the change was made from records that are lost. It must be called after space in
+ * the journal was reserved: a loss that comes later then includes the record of this change,
+ * too. */
 static bool is_from_lost(const st_write *w)
 {
     st_waits *waits = w->mesh->followers->waits;
@@ -184,7 +187,7 @@ static bool is_from_lost(const st_write *w)
     return lost;
 }
 
-/* Refuses the commit if the journal has no room, a claimed mesh was removed or lost meanwhile, or
+/* Refuses the commit if the journal has no space, a claimed mesh was removed or lost meanwhile, or
  * the holder may not have more. */
 static st_status get_ready(st_write *w)
 {
@@ -237,11 +240,13 @@ st_status st_write_commit(st_write *w, const char *ops)
     }
     st_mesh_facts(mesh, &w->info);
     if (removed) {
-        /* The id may be given to another mesh only after the last record of this one. */
+        /* The mesh leaves the store's table after its last record is in the journal, because
+         * another mesh may then get its id. */
         st_store_take_out(mesh->store, mesh);
     }
     st_write_end(w, discard);
-    /* A copy of the mesh cannot follow it across a replacement, so cached copies are freed. */
+    /* Cached copies of the mesh cannot be brought forward across a replacement, so they are
+     * freed. */
     if (cut_off) {
         st_mesh_shed(mesh);
     }

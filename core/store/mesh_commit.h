@@ -5,13 +5,13 @@
 #include "store/stored_mesh.h"
 #include "store/write.h"
 
-/* Ends the claim of a mesh (its reservation for an edit that works on a copy). The caller holds the
- * lock. */
+/* Ends the claim of a mesh, which reserved it for an edit that works on a copy. The caller holds
+ * the mesh's exclusive lock. */
 void st_mesh_unclaim(st_mesh *mesh);
-/* Does the work of st_write_abort, which ends a write without a change. The caller holds the
- * lock. */
+/* Does the work of st_write_abort, which ends a write without a change. The caller holds the mesh's
+ * exclusive lock. */
 void st_write_give_up(st_write *write);
-/* Releases the lock, and frees `discard` and everything the write holds. */
+/* Releases the mesh's lock, and frees `discard` and everything that the write owns. */
 void st_write_end(st_write *write, he_mesh *discard);
 
 #endif

@@ -10,21 +10,24 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A load under way. */
+/* The state of a load. */
 typedef struct load {
     const st_mesh_options *options;
-    uint64_t until;    /* the revision that is wanted, 0: the last */
-    st_mesh *mesh;     /* before the base its content is NULL and its log empty */
-    uint64_t bytes;    /* bytes that the content takes, by the card */
+    uint64_t until; /* the revision at which to stop; 0: the last */
+    /* The mesh that is loaded; its content is NULL and its log empty until the base was read. */
+    st_mesh *mesh;
+    uint64_t bytes;    /* bytes that the content takes in memory, according to the card */
     uint64_t record;   /* number of the last record applied, 0: none */
-    uint64_t metadata; /* after that record */
-    uint64_t reach;    /* after that record */
-    st_record pending; /* a base or record whose parts are being read; its texts are here */
-    bool is_base;      /* `pending` is a base */
+    uint64_t metadata; /* number of metadata changes after that record */
+    uint64_t reach;    /* the oldest revision that can be read after that record */
+    /* The base or record whose parts are being read, with its own copies of texts. */
+    st_record pending;
+    bool is_base; /* `pending` is a base */
     char ops[ST_ENTRY_OPS];
-    he_stored_reader *content; /* the reader of the parts of a content */
-    unsigned char *edit;       /* or the coded edit */
-    uint64_t missing;          /* parts not read yet; 0: nothing is pending */
+    he_stored_reader *content; /* reads the parts of a content, if `pending` has one */
+    unsigned char *edit;       /* the encoded edit, if `pending` has an edit in parts */
+    /* Number of parts of `pending` not read yet; 0: nothing is pending. */
+    uint64_t missing;
     char *damage;
 } load;
 
@@ -43,7 +46,8 @@ static st_status no_memory(void)
     return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
 }
 
-/* Turns an error of the kernel, while reading record `number`, into a status and a sentence. */
+/* Turns an error of the kernel, found while reading record `number`, into a status and a
+ * sentence. */
 static st_status status_of(load *l, he_status status, uint64_t number, const he_error *err)
 {
     if (status == HE_OK) {
@@ -75,7 +79,7 @@ static st_status wrong_marks(load *l, const st_record *record)
 
 /* --- contents --- */
 
-/* Begins the history of a mesh with this content, which it takes. */
+/* Begins the history of a mesh with this content, which becomes the mesh's content. */
 static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -106,7 +110,7 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* Adds the reserved delta to the history, as the entry of the record that it led to. */
+/* Adds the reserved delta to the history, as the entry of the record that made it. */
 static st_status add_edit(load *l, const st_record *record)
 {
     st_mesh *mesh = l->mesh;
@@ -144,7 +148,8 @@ static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
     return add_edit(l, record);
 }
 
-/* Takes a content that has been read completely: that of a base or of a record. */
+/* Puts a content that has been read completely into the mesh. The content belongs to the base or to
+ * a record. */
 static st_status take_content(load *l, const st_record *record, bool is_base, he_mesh *takes)
 {
     if (!has_marks(takes, record->issued)) {
@@ -170,7 +175,8 @@ static void free_parts(load *l)
     l->missing = 0;
 }
 
-/* Allocates memory for an edit in parts; its exact size is known when all parts are read. */
+/* Allocates memory for an edit that was stored in parts; its exact size is known when all parts are
+ * read. */
 static st_status begin_edit(load *l, const st_piece *piece)
 {
     if (piece->parts > ST_MOST_BODY / HE_STORED_PART + 1) {
@@ -294,7 +300,8 @@ static st_status take_step(load *l, const st_record *record)
     } else {
         he_delta_redo(delta, mesh->content);
     }
-    /* Ids that a replacement within an edit issued are only in the record's high-water marks. */
+    /* Ids that an edit issued by replacing the content are only in the record's high-water
+     * marks. */
     he_status status = he_mesh_issue(mesh->content, record->issued, &err);
     if (status == HE_OK && !has_marks(mesh->content, record->issued)) {
         return wrong_marks(l, record);
@@ -305,7 +312,7 @@ static st_status take_step(load *l, const st_record *record)
     return status_of(l, status, record->number, &err);
 }
 
-/* Checks that a record is the one that must come next, and belongs to this mesh. */
+/* Checks that a record is the next one of this mesh. */
 static st_status check_record(load *l, const st_record *record)
 {
     const st_mesh *mesh = l->mesh;
@@ -342,7 +349,7 @@ static st_status take_record(load *l, const st_piece *piece)
     case ST_RECORD_CONTENT:
         return record->stage != NULL ? begin_parts(l, piece) : take_whole(l, record);
     case ST_RECORD_RENAME:
-        return ST_OK; /* the card has the last name */
+        return ST_OK; /* the name is taken from the card */
     case ST_RECORD_REMOVE:
         break;
     }
@@ -360,8 +367,8 @@ static st_status take_base(load *l, const st_piece *piece)
     if (l->until != 0 && record->revision > l->until) {
         return ST_GONE;
     }
-    /* The factor accounts for spare capacity of columns, and for the copy that is made of an
-     * earlier revision. */
+    /* More is asked for than the content takes: columns have spare capacity, and an earlier
+     * revision is copied once more. */
     st_make_room(l->options->store, l->until == 0 ? l->bytes + l->bytes / 2 : 2 * l->bytes);
     l->record = record->number;
     l->metadata = record->metadata;
@@ -420,14 +427,15 @@ static st_status check_content(load *l)
     return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
 }
 
-/* Ends the loading of the history. It is as it was, unless the undo budget is much smaller now. */
+/* Ends the loading of the history. The history is then as it was, unless the undo budget is much
+ * smaller now. */
 static void end_history(load *l)
 {
     st_log_drop(&l->mesh->log, l->reach);
     st_log_limit(&l->mesh->log, l->options->undo_budget);
 }
 
-/* Returns true if this piece is the first one after the revision that is wanted. */
+/* Returns true if this piece comes after everything that leads to the revision at which to stop. */
 static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||

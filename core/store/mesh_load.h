@@ -11,27 +11,27 @@
 
 #include "store/stored_mesh.h"
 
-/* Makes room in memory and loads a mesh from the pieces of `reader`. `until` is a revision at which
- * the load stops, with the history of that time; 0 loads everything. With ST_DAMAGED and ST_NEWER,
- * the damage of `card` says what is wrong.
- * Returns ST_GONE if the base is of a later revision, which is found at once, or if no record leads
- * to exactly that revision, which is found at the end.
- * Returns ST_DAMAGED if the pieces make no mesh, or not the one of the card; the card is then
- * marked.
+/* Makes room in memory and loads a mesh from the pieces of `reader`. `until` is the revision at
+ * which the load stops, with the history as it was then; 0 loads the newest revision. With
+ * ST_DAMAGED and ST_NEWER, the damage of `card` says what is wrong.
+ * Returns ST_GONE if the first content on the disk is of a later revision than `until`, or if no
+ * record leads to exactly `until`.
+ * Returns ST_DAMAGED if the pieces make no mesh, or not the one that the card describes; the card
+ * is then marked as damaged.
  * Returns ST_NEWER if a newer release wrote a piece.
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_load(const st_mesh_options *options, st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out);
 /* Loads as much of a mesh as is intact: up to the last revision that can be read. `damage` says
- * what is wrong after that, "" if nothing is.
+ * what prevents reading more, "" if nothing does.
  * Returns ST_DAMAGED with `damage` if no revision can be read.
  * Returns ST_NEWER with `damage` if a newer release wrote the first piece.
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, st_reader *reader,
                           st_mesh **out, char damage[ST_DAMAGE]);
 /* Loads a second copy of a mesh, up to a revision (0: the newest), with all of the history on the
- * disk and no undo budget. The copy is in no table; st_release frees it. Waits, without a lock. On
- * failure *out is NULL.
+ * disk and no undo budget. The copy is not in the store's table of meshes; st_release frees it.
+ * Waits for the disk; the caller must hold no lock. On failure *out is NULL.
  * Returns ST_GONE if the records do not reach back to the revision.
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_load_apart(st_mesh *mesh, uint64_t until, st_mesh **out);

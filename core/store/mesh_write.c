@@ -19,7 +19,7 @@ static void begin_recording(st_write *w)
     }
 }
 
-/* Checks that a write may begin. The caller holds the lock. */
+/* Checks that a write may begin. The caller holds the mesh's exclusive lock. */
 static st_status begin(st_write *w)
 {
     const st_mesh *mesh = w->mesh;
@@ -45,7 +45,7 @@ static st_cause cause_of(const st_cause *cause)
 
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
-    /* Free caches before refusing memory to a request. */
+    /* Caches are freed before a request is refused memory. */
     st_make_room(mesh->store, 0);
     *out = (st_write){.mesh = mesh, .cause = cause_of(cause)};
     st_lock_write(&mesh->lock);
@@ -101,8 +101,8 @@ he_status st_write_copy(st_write *w, he_progress *progress, he_error *err)
     return status;
 }
 
-/* Frees the copy of a claim and empties its delta, because the objects of the delta are from the
- * copy. */
+/* Frees the copy of a claim and empties its delta, because the delta holds columns and contents of
+ * the copy. */
 void st_write_discard_copy(st_write *w)
 {
     assert(w->claimed);
@@ -145,7 +145,7 @@ static void roll_back(st_write *w)
     }
 }
 
-/* --- steps --- */
+/* --- undo and redo --- */
 
 st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,
                       uint64_t *bytes)
@@ -200,8 +200,9 @@ static bool reserve_steps(st_write *w)
     return true;
 }
 
-/* Renders the event of step i. It shows values as they are after this step, so it is rendered now.
- * For a single step, the net changes found for the answer are used. */
+/* Renders the message for listeners of the i-th undo or redo. It shows the values after this step,
+ * so it must be rendered before the next step is applied. If there is only one step, the net
+ * changes were found for the answer already. */
 static void write_event(st_write *w, uint32_t i)
 {
     const st_mesh *mesh = w->mesh;
@@ -249,7 +250,8 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     if (steps > (which == ST_UNDO ? log->undo_count : log->redo_count)) {
         return ST_NOTHING;
     }
-    /* A step is a revision of its own, so the reserved delta must not record it. */
+    /* Each step is a revision of its own, so the reserved delta, which would record all of them, is
+     * emptied. */
     roll_back(w);
     w->which = which;
     w->steps = steps;

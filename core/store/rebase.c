@@ -1,5 +1,5 @@
-/* rebase.c - makes a newer base, from which a mesh is loaded, for a mesh with many records, so that
- * its loading time and disk space stay bounded.
+/* rebase.c - makes a newer base for a mesh with many records. A base is the content from which a
+ * mesh is loaded, so loading time and disk space stay bounded.
  *
  *     base ... records ... | ... records ...
  *                          +-- snapshot, staged while edits go on; when nothing before it can be
@@ -7,10 +7,11 @@
  *                              records before it are purged
  *
  * A snapshot is due when the records since the last one take more than the content, and
- * ST_BASE_BYTES at least. An undo of a change before the snapshot makes it useless, because the
- * records after the undo need those before the snapshot. So does a record that holds the whole
- * content and ends the history, such as a PUT: that record is a base itself. A snapshot that waits
- * to become the base is dropped when its mesh is evicted. */
+ * ST_BASE_BYTES at least. It is staged: written to the disk before it is published. If a change
+ * before the snapshot is undone, the snapshot becomes useless, because the records after the undo
+ * need those before the snapshot. It also becomes useless if a record holds the whole content and
+ * ends the history, as that of a PUT does: that record is a base itself. A snapshot that waits to
+ * become the base is dropped when its mesh is evicted. */
 #include "store/table.h"
 #include "system/lock.h"
 
@@ -23,17 +24,18 @@ static bool is_base(const st_record *record)
            (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
 }
 
-/* The bytes of a record without its body, and the factor by which a content is smaller on the disk
- * than in memory. */
+/* Estimates: bytes of a record without its body, and by which factor a content is smaller on the
+ * disk than in memory. */
 enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
 
 /* A snapshot of a mesh that may become its base. */
 struct st_next_base {
-    bool taking; /* it is being staged: only the thread that stages it may change it */
+    /* The snapshot is being staged: only the thread that stages it may change this struct. */
+    bool taking;
     bool spoiled;
     st_stage *stage;
-    uint64_t before; /* bytes of records before it */
-    st_record facts; /* facts of the mesh at that point */
+    uint64_t before; /* value of st_mesh.appended when the snapshot was taken */
+    st_record facts; /* facts of the mesh when the snapshot was taken */
     char name[ST_MESH_NAME + 1];
 };
 
@@ -53,8 +55,9 @@ void st_rebase_drop(st_mesh *mesh)
     mesh->next_base = NULL;
 }
 
-/* Makes the snapshot the base if that is possible by now; entries that a load could not restore are
- * then dropped here too. The caller holds the exclusive lock, and the snapshot is on the disk. */
+/* Makes the snapshot the base if nothing before it is needed any more. Entries of the history that
+ * cannot be loaded from the new base are then dropped in memory, too. The caller holds the mesh's
+ * exclusive lock, and the snapshot is on the disk. */
 static void settle(st_mesh *mesh)
 {
     st_next_base *next = mesh->next_base;
@@ -71,7 +74,7 @@ static void settle(st_mesh *mesh)
     }
 }
 
-/* Takes an immutable copy of the mesh, and its facts. The caller holds the shared lock. */
+/* Takes an immutable copy of the mesh, and its facts. The caller holds the mesh's shared lock. */
 static st_status begin(st_mesh *mesh, st_snapshot **out)
 {
     st_next_base *next = mesh->next_base;
@@ -89,7 +92,7 @@ static st_status begin(st_mesh *mesh, st_snapshot **out)
     return st_snapshot_held(mesh, out);
 }
 
-/* Takes a snapshot and stages it. It runs on a thread of the pool. */
+/* Takes a snapshot of the mesh and writes it to the disk. It runs on a thread of the pool. */
 static void take(void *context)
 {
     st_mesh *mesh = context;
@@ -111,7 +114,8 @@ static void take(void *context)
         mesh->appended -= next->before;
         settle(mesh);
     } else {
-        mesh->appended = 0; /* if memory or disk space is out, the next try comes later */
+        /* If memory or disk space is out, a snapshot is tried again only after as many records. */
+        mesh->appended = 0;
         st_rebase_drop(mesh);
     }
     pthread_rwlock_unlock(&mesh->lock);

@@ -12,11 +12,12 @@ typedef enum st_stack { ST_ON_NEITHER, ST_ON_UNDO, ST_ON_REDO } st_stack;
 struct st_step {
     he_delta *delta;
     size_t bytes;      /* bytes of the step with its delta */
-    size_t charged;    /* bytes that it counts against the budget */
+    size_t charged;    /* bytes by which the step counts against the budget */
     uint64_t revision; /* revision of the edit */
-    uint64_t applied;  /* revision of the entry that applied it last */
-    st_revision *kept; /* that entry, if only the redo stack still needs it */
-    uint32_t uses;     /* how many entries and stacks use it */
+    uint64_t applied;  /* revision of the entry (edit, undo or redo) that applied the step last */
+    /* The entry of `applied`, if it has left the ring and only the redo stack still needs it. */
+    st_revision *kept;
+    uint32_t uses; /* number of entries and stacks that use the step */
     /* The number of references: one from the log while `uses` is not 0, and one from each
      * st_log_hold. */
     _Atomic uint32_t holders;
@@ -25,14 +26,14 @@ struct st_step {
 };
 
 struct st_revision {
-    st_point point; /* the mesh after the entry */
+    st_point point; /* facts of the mesh after the revision */
     uint64_t inverts;
     st_action action;
-    bool forward; /* the delta was applied forwards */
+    bool forward; /* the delta was applied forwards: not an undo */
     size_t delta_bytes;
-    size_t size;       /* bytes of this block and of its slot in the ring */
-    st_step *step;     /* NULL if the delta is not kept */
-    st_revision *next; /* the next reserved entry */
+    size_t size;       /* bytes that the entry and its slot in the ring take */
+    st_step *step;     /* the delta that was applied; NULL if it is not kept */
+    st_revision *next; /* the next entry in the list of reserved entries */
     st_tally tally;
     char ops[];
 };
@@ -42,7 +43,7 @@ static inline st_revision *st_entry_at(const st_revision_log *log, size_t i)
     return log->ring[(log->first + i) & (log->capacity - 1)];
 }
 
-/* Returns the log's entry of a revision, which the log must have. */
+/* Returns the log's entry of a revision; the log must have it. */
 static inline st_revision *st_entry_of(const st_revision_log *log, uint64_t revision)
 {
     return st_entry_at(log, (size_t)(revision - log->before.revision - 1));

@@ -8,7 +8,7 @@
 /* A reserved delta larger than this is freed rather than reused for the next edit. */
 enum { SPARE_BYTES = 64 * 1024 };
 
-/* The ring of entries is at least a quarter full, unless it has only this many places. */
+/* A ring with more than this many places is at least a quarter full. */
 enum { FEWEST_PLACES = 8 };
 
 static void note_marks(st_point *point, const he_mesh *content)
@@ -129,7 +129,8 @@ static void forget_delta(st_revision_log *log, st_revision *entry)
     }
 }
 
-/* Empties the redo stack. Copies that cross the log still use the steps of its entries. */
+/* Empties the redo stack. The entries still use the steps that were on it, so copies of the mesh
+ * can still be moved across them. */
 static void clear_redo(st_revision_log *log)
 {
     while (log->redo_top != NULL) {
@@ -147,8 +148,8 @@ static void clear_stacks(st_revision_log *log)
     }
 }
 
-/* Frees the deltas of all entries, which stay as history; only the newest revision can be read
- * then. */
+/* Frees the deltas of all entries, which stay in the history without them; only the newest revision
+ * can be read then. */
 static void forget_deltas(st_revision_log *log)
 {
     clear_stacks(log);
@@ -177,9 +178,8 @@ static void drop_undo_bottom(st_revision_log *log)
     release_step(log, step);
 }
 
-/* Drops the oldest entry. The steps of the undo stack were last applied in the order in which they
- * lie there, so the step that the oldest entry applied last, if it is on the undo stack, is at its
- * bottom. */
+/* Drops the oldest entry. Steps lie on the undo stack in the order in which they were last applied.
+ * So if the step that the oldest entry applied last is on the undo stack, it is at the bottom. */
 static void drop_oldest(st_revision_log *log)
 {
     st_revision *entry = st_entry_at(log, 0);
@@ -206,7 +206,7 @@ static void drop_oldest(st_revision_log *log)
     log->dropped++;
 }
 
-/* Shrinks a ring that has become mostly empty, if there is memory to move its entries. */
+/* Shrinks a ring that has become mostly empty, if there is memory for a smaller one. */
 static void shrink_ring(st_revision_log *log)
 {
     if (log->capacity > FEWEST_PLACES && log->count < log->capacity / 4) {
@@ -224,7 +224,7 @@ void st_log_drop(st_revision_log *log, uint64_t reach)
 
 void st_log_settle(st_revision_log *log)
 {
-    /* The newest entry stays whatever the budget is, because it has the facts of the present
+    /* The newest entry stays even if it exceeds the budget, because it has the facts of the present
      * revision. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
@@ -240,7 +240,8 @@ void st_log_limit(st_revision_log *log, uint64_t budget)
     }
     st_log_settle(log);
     if (log->bytes > budget) {
-        forget_deltas(log); /* the redo steps come from a larger budget */
+        /* Only the newest entry is left, and redo steps never leave the stack to save memory. */
+        forget_deltas(log);
     }
 }
 
@@ -319,7 +320,7 @@ void st_log_unreserve(st_revision_log *log)
     }
 }
 
-/* Returns the bytes of the step that the reserved delta would become. */
+/* Returns the bytes that the step of the reserved delta would take. */
 static size_t spare_bytes(const st_revision_log *log)
 {
     const he_delta *delta = log->spare_step->delta;
@@ -329,7 +330,7 @@ static size_t spare_bytes(const st_revision_log *log)
 
 static size_t entry_size(size_t ops)
 {
-    /* A ring that has just grown is half empty, so an entry counts two slots. */
+    /* A ring that has just grown is half empty, so an entry counts for two slots. */
     return sizeof(st_revision) + ops + 1 + 2 * sizeof(st_revision *);
 }
 
@@ -338,8 +339,7 @@ bool st_log_fits(const st_revision_log *log)
     return spare_bytes(log) + entry_size(ST_ENTRY_OPS) <= log->budget;
 }
 
-/* Copies the names of operations and cuts them at the end of a name, so that a reader sees whole
- * names and then "...". */
+/* Copies the names of operations. A list that is too long ends with a whole name and "...". */
 static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
 {
     size_t length = strlen(ops);
@@ -355,7 +355,7 @@ static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
     memcpy(out + end, end == 0 ? "..." : ",...", end == 0 ? sizeof "..." : sizeof ",...");
 }
 
-/* Makes the entry the newest one. */
+/* Adds the entry to the ring as the newest one. */
 static void add_entry(st_revision_log *log, st_revision *entry)
 {
     assert(log->count < log->capacity && entry->point.revision == st_log_head(log) + 1);
@@ -364,7 +364,7 @@ static void add_entry(st_revision_log *log, st_revision *entry)
     log->bytes += entry->size;
 }
 
-/* Adds the reserved entry, for a content that differs from all contents before. */
+/* Adds the reserved entry, for a change that is no undo or redo, so that its state is a new one. */
 static st_revision *add_spare(st_revision_log *log, const st_logged *change, const he_mesh *content)
 {
     st_revision *entry = log->spare;
@@ -414,7 +414,8 @@ void st_log_add_edit(st_revision_log *log, const st_logged *edit, const he_mesh 
         log->bytes += step->charged;
     }
     st_log_settle(log);
-    /* If there was no memory to trim the delta, the step can be larger than expected. */
+    /* If there was no memory to trim the delta, the step can exceed the budget although st_log_fits
+     * has counted less for it. */
     if (log->bytes > log->budget) {
         forget_deltas(log);
     }
@@ -441,8 +442,8 @@ void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, 
     }
 }
 
-/* Swaps the numbers of created and deleted elements, because an undo creates what the edit
- * deleted. */
+/* Swaps the numbers of created and deleted elements, because an undo creates the elements that the
+ * edit deleted. */
 static void turn_tally(st_tally *tally)
 {
     st_tally before = *tally;
@@ -450,8 +451,8 @@ static void turn_tally(st_tally *tally)
     memcpy(tally->deleted, before.created, sizeof tally->deleted);
 }
 
-/* Makes an entry that undoes or redoes a step: it applies the step in the other direction than the
- * entry that applied it last. A step on a stack always has that entry. */
+/* Makes an entry that undoes or redoes a step. It copies the texts of the entry that applied the
+ * step last, and applies the step in the other direction. Every step on a stack has that entry. */
 static st_revision *step_entry(const st_revision_log *log, const st_step *step)
 {
     const st_revision *last = step->kept != NULL ? step->kept : st_entry_of(log, step->applied);
@@ -493,8 +494,8 @@ void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, d
     log->steps = entry->next;
     st_step *step = which == ST_UNDO ? pop_undo(log) : pop_redo(log);
     assert(step->revision == entry->inverts);
-    /* The columns and contents of the delta were exchanged with those of the mesh, so the step
-     * holds other bytes now. */
+    /* Applying the delta exchanged its columns and contents with those of the mesh, so the step
+     * holds a different number of bytes now. */
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
     entry->action = which;
     entry->forward = which == ST_REDO;

@@ -1,7 +1,8 @@
 /* revision_log.h - the linear log of a mesh's revisions, and the undo and redo stacks over it.
  *
- * Each published change is one entry, in the order of revisions without a gap. An undo and a redo
- * are entries too: they name the revision they undid or redid and share its delta.
+ * Each published change of the content is one entry; the entries are in the order of revisions,
+ * without a gap. An undo and a redo are entries too: they name the revision they undid or redid and
+ * share its delta.
  *
  *     entries   [2 edit] [3 edit] [4 undo of 3] [5 edit] [6 undo of 5]
  *     steps        A        B          B           C          C
@@ -9,9 +10,9 @@
  *     undo stack   A        (B was dropped from the redo stack by revision 5)
  *     redo stack                                   C
  *
- * A step is one delta, counted by the entries and the stack that use it. The state of an entry is
- * the revision whose edit was the last to be done and not undone: entries of equal state have equal
- * contents.
+ * A step is one delta, with a count of the entries and the stack that use it. The state of an entry
+ * is the revision of the newest edit that is not undone after it: the mesh has equal contents after
+ * entries of equal state.
  *
  * Bytes of entries and deltas stay within a budget: the oldest entries are dropped first. A step on
  * the undo stack is dropped with the entry that applied it last; those entries are in the order of
@@ -40,41 +41,42 @@ typedef struct st_revision st_revision;
 /* The facts of a mesh at one revision that the log keeps. */
 typedef struct st_point {
     uint64_t revision, state;
-    uint32_t issued[HE_KIND_COUNT]; /* high-water marks */
+    uint32_t issued[HE_KIND_COUNT]; /* high-water marks: how many ids of each kind were issued */
     double time;
 } st_point;
 
 typedef struct st_revision_log {
     uint64_t budget;    /* bytes */
-    uint64_t bytes;     /* charged bytes of entries and steps */
+    uint64_t bytes;     /* bytes that entries and steps count against the budget */
     st_revision **ring; /* size: a power of two */
     size_t capacity, first, count;
     uint64_t dropped; /* entries dropped to stay within the budget */
     st_point before;  /* facts of the revision before the oldest entry */
     uint64_t oldest;  /* the oldest revision that can be read */
-    uint64_t bottom;  /* state below the undo stack */
+    uint64_t bottom;  /* state of the mesh once everything on the undo stack is undone */
     st_step *undo_top, *undo_bottom, *redo_top;
     uint32_t undo_count, redo_count;
     /* The entry that st_log_reserve reserved for the next change. */
     st_revision *spare;
-    st_step *spare_step; /* with an empty delta */
-    st_revision *steps;  /* entries that st_log_reserve_steps reserved, in the order of their use */
+    st_step *spare_step; /* the step of `spare`, with an empty delta */
+    /* Entries that st_log_reserve_steps reserved for undo or redo, in the order of their use. */
+    st_revision *steps;
 } st_revision_log;
 
-/* Begins a history with this revision and content; the high-water marks are taken from the
- * content. */
+/* Begins a history with the revision `begin`, whose content is `content`; the high-water marks of
+ * ids are taken from the content. */
 void st_log_init(st_revision_log *log, uint64_t budget, const st_point *begin,
                  const he_mesh *content);
 void st_log_clear(st_revision_log *log);
 
-/* Makes sure that one entry can be added without allocating, and lends the empty delta that the
- * entry would have. Returns NULL if memory is out. The functions below that add an entry require
- * this. */
+/* Makes sure that one entry can be added without allocating, and returns the empty delta of that
+ * entry, which the caller may fill. Returns NULL if memory is out. The functions below that add an
+ * entry require this. */
 he_delta *st_log_reserve(st_revision_log *log);
-/* Replaces the reserved delta by one that was made elsewhere. */
+/* Replaces the reserved delta by one that the caller has made. */
 void st_log_lend(st_revision_log *log, he_delta *takes);
-/* Empties the reserved delta that was used but not added to the log: a small one is kept, a large
- * one freed. */
+/* Empties the reserved delta, which was filled but not added to the log. A small delta is kept for
+ * the next edit, a large one freed. */
 void st_log_unreserve(st_revision_log *log);
 /* Returns true if the reserved delta fits into the budget, so that its edit can be undone. */
 bool st_log_fits(const st_revision_log *log);
@@ -89,43 +91,45 @@ typedef struct st_logged {
 } st_logged;
 
 /* Adds the reserved delta as an edit, with one step on the undo stack. `content` is the mesh after
- * it. */
+ * the edit. */
 void st_log_add_edit(st_revision_log *log, const st_logged *edit, const he_mesh *content);
-/* Returns the step that the reserved delta will become, with a reference: it may outlive the log
- * until it is released. */
+/* Returns the step that the reserved delta will become, and adds a reference: the step may outlive
+ * the log until st_step_release. */
 st_step *st_log_hold_reserved(const st_revision_log *log);
 /* Adds an edit that cannot be undone (a barrier) or a replace: no delta is kept before or with it,
  * and both stacks are cleared. */
 void st_log_add_barrier(st_revision_log *log, const st_logged *change, const he_mesh *content);
 
-/* Finds how many steps undo (redo) takes to the content of `revision`; 0 if the mesh has it now.
+/* Finds how many undos (redos) lead to the content of `revision`; 0 if the mesh has that content
+ * now.
  * Returns ST_AHEAD if there is no such revision yet.
  * Returns ST_GONE if the log has dropped it.
- * Returns ST_ELSEWHERE if the stack does not lead to it. */
+ * Returns ST_ELSEWHERE if no number of undos (redos) leads to it. */
 st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t revision,
                           uint32_t *steps);
 /* Returns the bytes of the deltas of that many steps, as a measure of the work to apply them. */
 uint64_t st_log_steps_bytes(const st_revision_log *log, st_action which, uint32_t steps);
-/* Makes sure that this many steps, which the stack must have, can be added without allocating.
- * Returns false if memory is out; nothing is reserved then. `content` is the mesh before the
- * steps. */
+/* Makes sure that this many undos (redos) can be added without allocating; so many must be
+ * possible. Returns false if memory is out; nothing is reserved then. `content` is the mesh before
+ * the steps. */
 bool st_log_reserve_steps(st_revision_log *log, st_action which, uint32_t steps,
                           const he_mesh *content);
 void st_log_unreserve_steps(st_revision_log *log);
 /* Returns the revision whose edit the next undo or redo would apply, 0 if there is none. */
 uint64_t st_log_top(const st_revision_log *log, st_action which);
-/* Lists the deltas that so many steps, which the stack must have, apply, in order. */
+/* Lists the deltas that so many undos (redos) apply, in this order. So many must be possible. */
 void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out);
-/* Moves the next of these steps to the other stack and adds its entry. It must be called after the
- * step's delta was applied. */
+/* Moves the step that is undone (redone) next to the other stack and adds the entry of that undo
+ * (redo). It must be called after the step's delta was applied. */
 void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, double time,
                      const he_mesh *content);
 /* Brings the log back within its budget after steps were added. Their deltas stay valid until the
  * next change. */
 void st_log_settle(st_revision_log *log);
-/* Sets a budget after the log was filled without one. A delta that was loaded can take slightly
- * more than when it was made, so the log is cut here only if it takes more than twice the budget,
- * which means that the budget was reduced; any other excess is cut by the next entries. */
+/* Sets a budget after the log was filled without one. A delta that was loaded from the disk can
+ * take slightly more memory than when it was made. So entries are dropped here only if the log
+ * takes more than twice the budget, which means that the budget was reduced; a smaller excess ends
+ * when the next entries are added. */
 void st_log_limit(st_revision_log *log, uint64_t budget);
 /* Returns true if nothing before a revision is needed any more, neither for undo and redo nor for
  * reading. */
@@ -133,32 +137,34 @@ bool st_log_stands_on(const st_revision_log *log, uint64_t revision);
 /* Drops the entries of revisions up to `reach`. */
 void st_log_drop(st_revision_log *log, uint64_t reach);
 
-/* Copies the i-th newest entry of the log. Returns false past the end. */
+/* Copies the entry of the i-th newest revision. Returns false if the log has fewer. */
 bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out);
-/* Fills the record of a revision from the newest entry: its facts, and whether the history ends
- * with it; the texts are borrowed while the entry lives. A record of another kind gets only the
- * high-water marks and the reach. */
+/* Fills in the record of the newest revision from its entry: facts, and whether the history is
+ * cleared by it. The record borrows the texts of the entry. A record that is of no revision, such
+ * as a rename, gets only the high-water marks of ids and the oldest revision that can be read. */
 void st_log_fill_record(const st_revision_log *log, st_record *record);
 /* Returns the newest revision of the log. */
 uint64_t st_log_head(const st_revision_log *log);
-/* Copies the facts of a revision that the log has. */
+/* Copies the facts of a revision; the log must have it. */
 void st_log_point(const st_revision_log *log, uint64_t revision, st_point *out);
 
 /* Returns the bytes of the deltas between two revisions, as a measure of the work to bring a copy
  * from one to the other; UINT64_MAX if the log does not reach back to the older one. */
 uint64_t st_log_distance(const st_revision_log *log, uint64_t from, uint64_t to);
-/* Brings `copy` from revision *at towards `to`, until the steps have cost more than `most` bytes;
- * *at is where it arrived.
- * Returns HE_UNSUPPORTED if the log does not reach back that far, or a step holds columns or
- * contents of another side; then a fresh copy can get there from the head.
+/* Brings `copy` from revision *at towards `to`, until it has applied more than `most` bytes of
+ * deltas; *at is the revision where it arrived.
+ * Returns HE_UNSUPPORTED if the log does not reach back that far, or a delta holds columns or
+ * contents from the wrong side of its change; a new copy of the newest revision can then be walked
+ * there.
  * Returns HE_NO_MEMORY if memory is out, see he_replay_cross. */
 HE_NODISCARD he_status st_log_walk(const st_revision_log *log, he_replay *copy, uint64_t *at,
                                    uint64_t to, uint64_t most);
 
-/* Returns the step that led to a revision after log->oldest, with a reference: it may outlive the
- * log until it is released. */
+/* Returns the step that led to a revision after log->oldest, and adds a reference: the step may
+ * outlive the log until st_step_release. */
 st_step *st_log_hold(const st_revision_log *log, uint64_t revision, st_action *action);
-/* Returns the delta of a step. Without the mesh's lock only the delta's words may be read. */
+/* Returns the delta of a step. Without the mesh's lock only the ids and numbers in the delta may be
+ * read, not what its pointers point to. */
 const he_delta *st_step_delta(const st_step *step);
 void st_step_release(st_step *step); /* takes NULL */
 /* Returns the delta that led to a revision, forwards or backwards; NULL if it is not kept. */

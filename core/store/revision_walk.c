@@ -67,8 +67,8 @@ st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t 
     if (revision > st_log_head(log)) {
         return ST_AHEAD;
     }
-    /* A step on a stack still leads to the revision of its edit after the entry of that edit was
-     * dropped. */
+    /* If the entry of an edit was dropped, its step may still be on a stack, so undo or redo can
+     * lead to its revision. */
     bool has_entry = revision >= log->before.revision;
     uint64_t wanted = has_entry ? point_of(log, revision)->state : revision;
     bool undo = which == ST_UNDO;
@@ -76,7 +76,8 @@ st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t 
         *steps = 0;
         return ST_OK;
     }
-    /* Undo has arrived when the wanted edit is on top of the stack, redo when it has passed it. */
+    /* Undo has arrived when the step of the wanted edit is on top of its stack, redo when that step
+     * was redone. */
     uint32_t count = undo ? 0 : 1;
     const st_step *step = undo ? log->undo_top : log->redo_top;
     for (; step != NULL && step->revision != wanted; step = step->below) {
@@ -127,8 +128,8 @@ he_status st_log_walk(const st_revision_log *log, he_replay *copy, uint64_t *at,
             .key = step->revision,
             .delta = step->delta,
             .undo = entry->forward == back,
-            /* The delta holds the objects from before the change of the entry that applied it
-             * last. */
+            /* The delta holds the columns and contents from before the change of the entry that
+             * applied it last. */
             .held = back && step->applied == entry->point.revision,
             .issued = point_of(log, next)->issued,
         };

@@ -22,7 +22,7 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Counts the memory of a cached copy as the bytes of the mesh's content now. Edits that bring the
+/* Sets how much memory a cached copy counts for: the bytes of its content now. Edits that bring the
  * copy forward later add little, so the count is not updated. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
@@ -31,16 +31,16 @@ static void count_copy(st_copy *copy, const st_mesh *mesh)
     st_count(&copy->counts->copies, copy->bytes);
 }
 
-/* Returns true if only the cache uses a copy. Under the snapshot lock no other thread can begin to
- * use the cached copy. */
+/* Returns true if only the cache has a reference to a copy. While the caller holds the snapshot
+ * lock, no other thread can get one. */
 static bool is_cached_alone(const st_copy *copy)
 {
     return atomic_load_explicit(&copy->uses, memory_order_acquire) == 1;
 }
 
 /* Decides whether a copy is brought forward rather than made anew. Replaying costs about one random
- * access for each record, copying is sequential: above half the mesh's bytes a new copy is
- * cheaper. */
+ * access for each record, copying is sequential: if the deltas take more than half the mesh's
+ * bytes, a new copy is cheaper. */
 static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
 {
     return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
@@ -68,7 +68,8 @@ static st_copy *copy_new(const st_mesh *mesh)
     return copy;
 }
 
-/* Returns the cached copy at the present revision, or NULL. The caller holds both locks. */
+/* Returns the cached copy at the present revision, or NULL. The caller holds the mesh's shared lock
+ * and the snapshot lock. */
 static st_copy *present_copy(st_mesh *mesh)
 {
     st_copy *copy = mesh->copy;
@@ -117,8 +118,8 @@ st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
     return status;
 }
 
-/* Makes the replay, which is at the revision, the cached copy of an earlier revision; takes it. The
- * caller holds the past lock. */
+/* Makes a replay, which is at the revision, the mesh's cached copy of an earlier revision. Takes
+ * the replay. The caller holds the past lock. */
 static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision, double time)
 {
     st_copy *copy = he_mem_zero(1, sizeof *copy);
@@ -178,8 +179,9 @@ static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
     return status == ST_OK ? cache_past(mesh, replay, revision, time) : status;
 }
 
-/* Makes the copy from the disk if the records still reach back to a revision that the history has
- * dropped: loads a second mesh, which becomes the cached copy. The caller holds the past lock. */
+/* Makes the copy of an earlier revision that the history in memory has dropped: loads a second mesh
+ * from the records on the disk, and that becomes the cached copy. The caller holds the past
+ * lock. */
 static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
 {
     st_mesh *loaded;
@@ -199,7 +201,8 @@ static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
     return status;
 }
 
-/* Brings the cached copy to the revision. The caller holds the past lock. */
+/* Moves the cached copy of an earlier revision to this revision, or makes a new one. The caller
+ * holds the past lock. */
 static st_status seek_past(st_mesh *mesh, uint64_t revision)
 {
     if (mesh->past != NULL && mesh->past->revision == revision) {
@@ -265,7 +268,7 @@ void st_copy_shed(st_mesh *mesh)
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
     st_queue_shed(&mesh->queue);
-    /* If the lock is held, a copy is being made and is wanted, so it is not freed. */
+    /* A thread that holds the lock is making a copy, which is then not freed. */
     if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);

@@ -19,8 +19,8 @@ static void copy_name(char *out, size_t size, const char *name)
     out[length] = '\0';
 }
 
-/* Initialises a lock that prefers writers, because a steady stream of readers must not starve
- * one. */
+/* Initialises a lock that prefers writers, so that a steady stream of readers does not starve a
+ * writer. */
 static int init_lock(pthread_rwlock_t *lock)
 {
     pthread_rwlockattr_t attributes;
@@ -221,7 +221,8 @@ st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cau
     return record;
 }
 
-/* Handles a record that is a base by itself: a barrier that has a content. */
+/* Notes that the mesh can be loaded from this record on, if the record has a whole content and
+ * clears the history. */
 static void note_base(st_mesh *mesh, const st_record *record)
 {
     if (record->barrier && (record->kind == ST_RECORD_CONTENT || record->stage != NULL)) {
@@ -239,8 +240,8 @@ st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes)
     return status;
 }
 
-/* Counts the bytes that the newest record states for the mesh's holder, as the journal does when it
- * is asked. */
+/* Sets the bytes by which the mesh counts for its holder to those that its newest record states.
+ * The journal counts in this way when st_holders_count reads it. */
 static void count_held(st_mesh *mesh, const st_record *record)
 {
     const bool removed = record->kind == ST_RECORD_REMOVE;
@@ -297,8 +298,8 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
     pthread_rwlock_unlock(&mesh->lock);
     if (found) {
         st_lock_write(&mesh->lock);
-        /* This is checked again under the lock: the mesh may have been removed meanwhile, and the
-         * removal is lost, too. */
+        /* The loss is checked again under the lock: the mesh may have been removed meanwhile, and
+         * the removal is lost, too. */
         if (is_lost(&mesh->info, loss)) {
             mesh->info.lost = true;
             st_queue_lose(&mesh->queue);

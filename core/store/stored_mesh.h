@@ -12,14 +12,14 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* A copy of a mesh at a revision, with references from the cache and from each snapshot: while a
- * snapshot of it exists, it does not change. */
+/* A copy of a mesh at one revision. The cache and each snapshot of that revision hold a reference
+ * to it; while a snapshot exists, the copy does not change. */
 typedef struct st_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
-    double time; /* when the earlier revision that it is a copy of was made */
+    double time; /* when the revision was made, if it is an earlier one */
     he_replay *replay;
-    st_store_counts *counts; /* to which `bytes` were added */
+    st_store_counts *counts; /* the counters to which `bytes` were added */
     uint64_t bytes;
 } st_copy;
 
@@ -27,30 +27,36 @@ typedef struct st_next_base st_next_base;
 
 struct st_mesh {
     _Atomic uint32_t uses;
-    _Atomic uint64_t used; /* when it was last found, by st_clock_micros; 0 if nothing is evicted */
-    char *damage;          /* for a mesh that cannot be loaded: what is wrong; else NULL */
+    /* When the mesh was last found or created, by st_clock_micros; matters only if meshes can be
+     * evicted. */
+    _Atomic uint64_t used;
+    char *damage; /* why the mesh cannot be loaded; NULL if it can */
     st_store *store;
     const st_journal *journal;
     struct st_followers *followers;
     st_holders *holders;
 
     pthread_rwlock_t lock; /* guards the fields down to `next_base` */
-    st_mesh_info info;     /* except undo and redo, which the log knows */
+    st_mesh_info info;     /* undo and redo are not set, because `log` has them */
     he_mesh *content;
     st_revision_log log;
-    st_holding holding; /* its holder, and the bytes that count for it */
-    bool claimed;       /* the log's reserve is lent to a long edit */
+    st_holding holding; /* its holder, and the bytes by which it counts for the holder */
+    bool claimed;       /* the delta that the log has reserved is lent to a long edit */
 
-    uint64_t weights[ST_WEIGHT_COUNT]; /* what was counted last; written also before other threads
-                                          know the mesh */
+    /* The sizes that were last added to the counters of the store; also written while the mesh is
+     * made, before other threads know it. */
+    uint64_t weights[ST_WEIGHT_COUNT];
 
-    uint64_t base;     /* revision of the base on the disk: revisions from there on can be loaded */
-    uint64_t appended; /* bytes of records since the last snapshot, see rebase.c */
-    st_next_base *next_base; /* see rebase.c; NULL: there is none */
+    /* The revision from which the mesh is loaded from the disk: later ones can be loaded, too. */
+    uint64_t base;
+    uint64_t appended; /* bytes of records since the last snapshot that was made for rebase.c */
+    /* A snapshot that may become the new base, see rebase.c; NULL: there is none. */
+    st_next_base *next_base;
 
-    /* See followers.h. */
+    /* Messages for listeners, see followers.h. */
     st_queue queue;
-    st_wait wait; /* waits until the newest change is durable */
+    /* The wait for the newest change to be durable; `waiting` says whether it is under way. */
+    st_wait wait;
     _Atomic bool waiting;
 
     pthread_mutex_t snapshot_lock;
@@ -67,7 +73,7 @@ struct st_mesh {
     st_keys keys;
     struct {
         pthread_mutex_t lock;
-        pthread_cond_t ended; /* signalled when a thread ends its use */
+        pthread_cond_t ended; /* signalled when a thread ends its use of `place` */
         st_derived place;
     } derived[ST_DERIVED_COUNT];
 };
@@ -81,7 +87,7 @@ typedef struct st_followers {
     st_store_counts counts;
 } st_followers;
 
-/* The store's settings that a mesh needs. */
+/* The settings of the store that a mesh needs. */
 typedef struct st_mesh_options {
     st_store *store;
     const st_journal *journal;
@@ -103,56 +109,57 @@ void st_mesh_use(st_mesh *mesh);
 st_counts st_counts_of(const he_mesh *content);
 /* Copies the facts of a mesh. The caller holds the mesh's lock. */
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
-/* Frees memory of a mesh that can be made again: the cached copies and the bodies of kept answers,
- * unless a thread reads them, and the derived objects. */
+/* Frees the caches of a mesh: copies and bodies of remembered answers, unless a thread is reading
+ * them, and derived objects. */
 void st_mesh_shed(st_mesh *mesh);
-/* Updates the count of the mesh's memory. The caller holds the exclusive lock, or is the only
- * thread that knows the mesh. */
+/* Updates the counters of the store after the mesh's memory has changed. The caller holds the
+ * exclusive lock, or is the only thread that knows the mesh. */
 void st_mesh_weigh(st_mesh *mesh);
-/* A change, rendered for listeners. */
+/* A change, rendered as a message for listeners. */
 typedef struct st_event {
-    char *bytes; /* NULL: there are no listeners, or memory is out */
+    char *bytes; /* NULL: there are no listeners, or memory was out */
     size_t length;
 } st_event;
 
-/* Records that become durable together, each with its event: either a change, which is rendered if
- * there are listeners, or an event that was rendered before, whose bytes are taken. */
+/* Records that become durable together, each with a message for listeners: either `changes`, which
+ * are rendered if there are listeners, or `events`, which are rendered already and whose bytes are
+ * taken. */
 typedef struct st_group {
-    st_booking *booking; /* room for the records, which is used up and cleared */
+    st_booking *booking; /* space in the journal for the records; it is used up and cleared */
     st_record *records;
     size_t count;
     const st_change *changes; /* one for each record, or NULL */
     st_event *events;         /* one for each record, or NULL */
 } st_group;
 
-/* Returns the next record of the mesh, with its present facts; if it is of a revision, that must be
- * in the log already. The caller holds the exclusive lock. */
+/* Returns the next record of the mesh, with its present facts. If the record is of a revision, that
+ * revision must be in the log already. The caller holds the exclusive lock. */
 st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause);
-/* Returns the facts of the mesh's newest record, as a record of this kind. The caller holds either
- * lock. */
+/* Returns the facts of the mesh's newest record, as a record of this kind. The caller holds the
+ * shared or the exclusive lock. */
 st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind);
-/* Sets the bytes that the mesh counts for its holder. The caller holds the exclusive lock.
+/* Sets the bytes by which the mesh counts for its holder. The caller holds the exclusive lock.
  * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */
 st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes);
 /* Appends a group of records to the journal and informs the listeners. The caller holds the
  * exclusive lock. */
 void st_mesh_publish(st_mesh *mesh, const st_group *group);
-/* Informs the listeners of a group of records: the last part of st_mesh_publish, after the position
- * is known. */
+/* Sends the messages of a group of records to the listeners, after the records have their
+ * positions: the last part of st_mesh_publish. */
 void st_mesh_tell(st_mesh *mesh, const st_group *group);
 void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_change *change,
                     st_event *out);
 /* Removes the mesh from the store and marks it as lost, if its newest change is lost. */
 void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
-/* Removes the mesh from the table. The caller holds the mesh's exclusive lock. */
+/* Removes the mesh from the store's table of meshes. The caller holds the mesh's exclusive lock. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
 
-/* Counts a group of records that was appended, after which a new base may be due (rebase.c). The
- * caller holds the exclusive lock. */
+/* Adds a group of records that was appended to `appended`, and makes a new base if one is due
+ * (rebase.c). The caller holds the exclusive lock. */
 void st_rebase_note(st_mesh *mesh, const st_group *group);
-/* Returns about how many bytes a record takes on the disk. */
+/* Returns about how many bytes a record takes on the disk, for deciding when a new base is due. */
 uint64_t st_rebase_bytes(const st_record *record);
-/* Drops a snapshot of the mesh that has not become its base yet. */
+/* Drops the snapshot of the mesh that was to become its new base. */
 void st_rebase_drop(st_mesh *mesh);
 
 void st_copy_release(st_copy *copy);

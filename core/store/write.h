@@ -1,4 +1,4 @@
-/* write.h - changes a stored mesh: every change is one write.
+/* write.h - changes a stored mesh: every change is one st_write.
  *
  *     st_write_begin --+-- the content is changed, st_write_changes ---+
  *     (the lock)       +-- st_write_step: undo, redo                   +-- st_write_commit
@@ -7,15 +7,15 @@
  *     st_write_claim --- st_write_copy, st_write_changes --------------+
  *     (no lock)
  *
- * A write that fails changes nothing. The commit reserves room in the journal, which can be
- * refused; then it numbers the change, puts it into the history, gives it to the journal as one
+ * A write that fails changes nothing. The commit reserves space in the journal, which can be
+ * refused; then it numbers the change, puts it into the history, appends it to the journal as one
  * group of records, which become durable together or not at all, and informs the listeners. The net
  * changes are found once, by st_write_changes or st_write_step, for the answer, the history and the
  * listeners.
  *
- * A claim is for a long edit, which works without a lock on a copy of its own. Until the claim ends
- * no other write can change the mesh, so its content can be read and copied without a lock; reads
- * go on, and the mesh may be removed. */
+ * A claim reserves a mesh for a long edit, which works without a lock on its own copy. Until the
+ * claim ends no other write can change the mesh, so its content can be read and copied without a
+ * lock. Other threads can still read the mesh, and remove it. */
 #ifndef HE_STORE_WRITE_H
 #define HE_STORE_WRITE_H
 
@@ -31,33 +31,37 @@ typedef enum st_write_kind {
     ST_WRITE_REMOVE
 } st_write_kind;
 
-/* A write. It is in the caller's storage, from a successful begin to the commit or abort. */
+/* A write under way. It is in the caller's storage, from a successful st_write_begin or
+ * st_write_claim to the commit or abort. */
 typedef struct st_write {
-    st_mesh *mesh;      /* NULL: no write is under way */
-    he_mesh *content;   /* to be changed, recording; for a claim the copy, NULL until it is made */
-    he_delta *delta;    /* the recorded delta; NULL if info.busy, and after a step or replace */
+    st_mesh *mesh; /* NULL: no write is under way */
+    /* The content to be changed, which records its changes; for a claim it is the copy, NULL until
+     * the copy is made. */
+    he_mesh *content;
+    he_delta *delta;    /* the recorded changes; NULL if info.busy, and after a step or replace */
     he_changes changes; /* the net changes, until the write ends */
-    st_mesh_info info;  /* facts of the mesh at the begin; after the commit, the new ones */
+    st_mesh_info info;  /* facts of the mesh when the write began; after the commit, the new ones */
 
     /* --- private to the store --- */
     st_write_kind kind;
-    bool claimed, found; /* found: `changes` is filled in */
+    bool claimed, found; /* claimed: this is a claim; found: `changes` is filled in */
     st_cause cause;
-    he_savepoint mark; /* where the delta began */
-    const char *name;  /* for a rename */
-    st_action which;   /* for a step, with what it needs to be committed */
+    he_savepoint mark; /* where the changes of this write begin in `delta` */
+    const char *name;  /* new name, if the write is a rename */
+    /* ST_UNDO or ST_REDO, if the write is a step; the next four members belong to it, too. */
+    st_action which;
     uint32_t steps;
     he_delta **deltas;
     struct st_event *events;
     st_record *records;
     st_booking booking;   /* room in the journal */
-    const st_shown *from; /* what was read of other meshes */
+    const st_shown *from; /* records of other meshes that the change is made from */
     size_t from_count;
 } st_write;
 
 /* Begins a write and takes the exclusive lock of the mesh. `cause` is the reason for the write, or
  * NULL; its records store it. If info.busy, a long edit has claimed the mesh, which can then only
- * be removed. On failure the lock is not held, and `info` is filled in too.
+ * be removed. `info` is filled in on failure, too, and the lock is then not held.
  * Returns ST_ABSENT if the mesh was removed.
  * Returns ST_LOST if the mesh has a change that was lost.
  * Returns ST_NO_MEMORY if memory is out. */
@@ -73,7 +77,7 @@ st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);
 const he_mesh *st_write_claimed(const st_write *write);
 /* Makes the copy that a claim works on; a copy made before is replaced. */
 HE_NODISCARD he_status st_write_copy(st_write *write, he_progress *progress, he_error *err);
-/* Frees the copy that the claim works on, with its changes; the claim goes on. */
+/* Frees the copy that the claim works on, with its changes; the mesh stays claimed. */
 void st_write_discard_copy(st_write *write);
 
 /* Declares that the change is made from the records that `shown` shows, which must outlive the
@@ -83,17 +87,19 @@ void st_write_from(st_write *write, const st_shown *shown, size_t count);
 /* Computes the net changes of the edit that was recorded. */
 HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
 /* Returns true if the edit could be undone if it were committed; must be called after
- * st_write_changes. It is false if the edit is larger than the undo budget or changes the meaning
- * of ids; committing it then ends the history. */
+ * st_write_changes. It is false if the edit is larger than the undo budget or renumbers elements;
+ * its commit then clears the history. */
 bool st_write_undoable(const st_write *write);
-/* Undoes or redoes `steps` steps, at least one, and computes the net changes: each step will be a
+/* Undoes or redoes `steps` steps, at least one, and computes the net changes. Each step becomes a
  * revision of its own.
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_step(st_write *write, st_action which, uint32_t steps);
-/* Replaces the content (PUT). Takes `stage`, too, which st_store_stage made, or NULL. */
+/* Makes the write replace the whole content of the mesh (PUT). Takes `stage`, too: the content that
+ * st_store_stage has written in advance, or NULL. */
 void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
-/* Renames the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME bytes. */
+/* Makes the write rename the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME
+ * bytes. */
 void st_write_rename(st_write *write, const char *name);
 void st_write_remove(st_write *write);
 
@@ -110,12 +116,12 @@ st_status st_write_commit(st_write *write, const char *ops);
 /* Ends the write without a change; the mesh is as it was. */
 void st_write_abort(st_write *write);
 
-/* Sets the id of the job that has claimed the mesh, which other requests find in `info`. It takes
+/* Sets the id of the job that has claimed the mesh, which other requests find in info.job. It takes
  * no lock. */
 void st_claimed_by(st_mesh *mesh, const char *id);
-/* Finds how many steps undo (redo) takes to the content of a revision, 0 if the mesh has it now,
- * and the bytes of all their deltas. If `revision` is 0, `steps` is read and only the bytes are
- * found. The caller holds either lock.
+/* Finds `steps`, the number of undos (redos) that lead to the content of a revision, 0 if the mesh
+ * has it now, and `bytes`, those of all their deltas. If `revision` is 0, `steps` is an input and
+ * only the bytes are found. The caller holds the shared or the exclusive lock.
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_AHEAD, ST_GONE or ST_ELSEWHERE as st_log_steps_to does. */
 st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,

@@ -40,8 +40,8 @@ static char *put_digits(char *at, int value, int digits)
     return at + digits;
 }
 
-/* Formats a time. It is written by hand, because the access log formats a time for each line, and
- * the C library's functions would take as long as the rest of the line. */
+/* Formats a time without the C library's functions, which would take as long as the rest of a line
+ * of the access log. */
 void st_clock_format(double utc, char out[ST_TIMESTAMP])
 {
     time_t seconds = (time_t)utc;

@@ -11,16 +11,16 @@
 enum { MOST_COPIES = 8, LINE = 64 / sizeof(uint64_t) };
 
 struct st_counters {
-    size_t count;  /* counters of a copy */
-    size_t stride; /* distance between copies */
-    size_t copies; /* a power of two */
+    size_t count;  /* number of counters in each copy */
+    size_t stride; /* distance between two copies */
+    size_t copies; /* number of copies, a power of two */
     _Atomic uint64_t values[];
 };
 
 /* The number of threads that have counted so far. A thread gets its number when it counts for the
  * first time. */
 static _Atomic size_t threads;
-static _Thread_local size_t own_number; /* from 1; 0: none yet */
+static _Thread_local size_t own_number; /* number of this thread, from 1; 0: none yet */
 
 static size_t number(void)
 {

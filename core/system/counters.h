@@ -1,8 +1,8 @@
 /* counters.h - a table of counters that many threads add to and one thread sums up now and then.
  *
  * There are several copies of the table. A thread adds to one of them, mostly its own, so that
- * threads on different cores seldom write to one cache line; a sum adds up the copies. Nothing is
- * locked, and adding allocates nothing. Sums never fall. */
+ * threads on different cores seldom write to one cache line; a sum adds up the copies. No lock is
+ * taken, and adding allocates nothing. A sum is never lower than an earlier one. */
 #ifndef HE_SYSTEM_COUNTERS_H
 #define HE_SYSTEM_COUNTERS_H
 
@@ -15,9 +15,9 @@ typedef struct st_counters st_counters;
 st_counters *st_counters_new(size_t count);
 void st_counters_free(st_counters *counters); /* takes NULL */
 
-/* Adds `amount` to the counter at `at`, which must be below the count. */
+/* Adds `amount` to counter `at`, which must be below the number of counters. */
 void st_counters_add(st_counters *counters, size_t at, uint64_t amount);
-/* Adds 1 to the counter at `at`, and `amount` to the one at `other`. */
+/* Adds 1 to counter `at`, and `amount` to counter `other`. */
 void st_counters_add_pair(st_counters *counters, size_t at, size_t other, uint64_t amount);
 uint64_t st_counters_sum(const st_counters *counters, size_t at);
 

@@ -2,7 +2,8 @@
  *
  * All histograms have the same number of buckets: one for each bound of their scale, which counts
  * values up to it and above the one before, and one for larger values. Threads add at any time; a
- * copy made meanwhile may lack values that are added while it is made, and no others. */
+ * copy of a histogram has all values that were added before the copying began, and may have or lack
+ * those that are added meanwhile. */
 #ifndef HE_SYSTEM_HISTOGRAM_H
 #define HE_SYSTEM_HISTOGRAM_H
 
@@ -13,8 +14,9 @@
 enum { ST_BOUNDS = 14, ST_BUCKETS = ST_BOUNDS + 1 };
 
 /* A scale consists of ST_BOUNDS rising bounds. */
-extern const uint64_t st_scale_micros[ST_BOUNDS]; /* 100 microseconds to 300 seconds */
-extern const uint64_t st_scale_counts[ST_BOUNDS]; /* 1 to 8192, doubling */
+/* The scale for times: 100 microseconds to 300 seconds. */
+extern const uint64_t st_scale_micros[ST_BOUNDS];
+extern const uint64_t st_scale_counts[ST_BOUNDS]; /* the scale for numbers: 1 to 8192, doubling */
 
 /* Returns the bucket of a value, 0 to ST_BOUNDS. */
 static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t value)
@@ -26,7 +28,7 @@ static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t valu
     return bucket;
 }
 
-/* A histogram. Zeroed memory is an empty one. */
+/* A histogram. Zeroed memory is an empty histogram. */
 typedef struct st_histogram {
     _Atomic uint64_t buckets[ST_BUCKETS];
     _Atomic uint64_t sum; /* sum of the values */
@@ -34,7 +36,7 @@ typedef struct st_histogram {
 
 void st_histogram_add(st_histogram *histogram, const uint64_t scale[ST_BOUNDS], uint64_t value);
 
-/* A copy of a histogram. */
+/* A copy of a histogram as plain numbers, not changed by other threads. */
 typedef struct st_distribution {
     uint64_t buckets[ST_BUCKETS];
     uint64_t sum;

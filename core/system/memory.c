@@ -9,9 +9,10 @@
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
-static _Atomic uint64_t outside; /* bytes of `used` that are counted by st_memory_count */
+static _Atomic uint64_t outside; /* bytes of `used` that st_memory_count has added */
 static _Atomic uint64_t budget_bytes;
-static _Atomic bool over_budget; /* the budget refused the last block that was refused */
+/* Whether the last block that was refused was refused by the budget and not by the C library. */
+static _Atomic bool over_budget;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
 
@@ -56,14 +57,14 @@ static void give_back(size_t size)
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
 }
 
-/* Returns the bytes of a block, including the word that the C library has before it. */
+/* Returns the bytes of a block, including the word that the C library stores before it. */
 static size_t block_bytes(void *memory)
 {
     return malloc_usable_size(memory) + sizeof(size_t);
 }
 
-/* The block's true size is known only after it is allocated: the requested size is taken from the
- * budget first, and the difference is settled afterwards. */
+/* Changes the size of a block. Its true size is known only after it is allocated, so the requested
+ * growth is taken from the budget first and corrected afterwards. */
 static void *resize(void *context, void *memory, size_t size)
 {
     (void)context;
@@ -91,9 +92,9 @@ static void *resize(void *context, void *memory, size_t size)
     return resized;
 }
 
-/* A block of this size or more is a mapping of its own: growing it moves page tables and not bytes,
- * so the first edit of a large mesh does not copy it, and freeing it returns it to the system. By
- * default glibc would raise this threshold to 32 MB as blocks are freed. */
+/* The C library maps a block of this size or more separately (mmap): growing it moves page tables
+ * and not bytes, so the first edit of a large mesh does not copy it, and freeing it returns it to
+ * the system. By default glibc would raise this threshold to 32 MB as blocks are freed. */
 enum { OWN_MAPPING_BYTES = 1 << 20 };
 
 void st_memory_install(uint64_t budget)
@@ -162,10 +163,10 @@ bool st_memory_is_short(void)
            st_memory_used() + budget / ST_MEMORY_SHORT_SHARE > budget - budget / RESERVE_SHARE;
 }
 
-/* The process counts as idle if it worked at least WORKED_MICROS since memory was last returned,
- * and less than RESTING_MICROS since the last call. Every thread has a heap of its own, and glibc
- * returns only what is free at the end of one. Pages in between stay: after minutes of mixed
- * requests they are more than all memory in use. */
+/* A process that worked at least WORKED_MICROS since it last returned memory to the system, and
+ * less than RESTING_MICROS since the last call, counts as idle. glibc has a heap for each thread,
+ * and returns only memory that is free at the end of a heap. Free pages in the middle stay: after
+ * minutes of mixed requests they are more than all memory in use. */
 enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
 
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor)

@@ -1,13 +1,14 @@
 /* memory.h - counts the memory of the daemon and keeps it within a budget.
  *
- * Everything core and api allocate comes through the hook installed here: columns at their
- * capacity, undo, snapshots, uploads, documents, answers. It is counted as the C library sees it
- * (malloc_usable_size and its word before each block), in one atomic counter. Memory that the
- * process holds beside that never refuses an allocation, but makes the store evict meshes earlier
+ * core and api allocate all their memory through a function that is installed here: columns at
+ * their capacity, undo, snapshots, uploads, documents, answers. One atomic counter counts the true
+ * sizes of blocks: malloc_usable_size and the word that the C library stores before each block.
+ * Other memory of the process never causes a refusal, but makes the store evict meshes earlier
  * (resident.h).
  *
  * An allocation beyond the budget fails. The last sixteenth is reserved for blocks of at most 64
- * KiB, so that a full server still answers, refuses and deletes. */
+ * KiB, so that a server whose memory is full can still answer requests, refuse them and delete
+ * meshes. */
 #ifndef HE_SYSTEM_MEMORY_H
 #define HE_SYSTEM_MEMORY_H
 
@@ -15,23 +16,23 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Installs the hook of base/mem.h. `budget` is in bytes, 0 for none. Must be called before the
- * first thread and the first allocation. */
+/* Installs the function by which base/mem.h allocates. `budget` is in bytes, 0 for no limit. Must
+ * be called before the first thread and the first allocation. */
 void st_memory_install(uint64_t budget);
 void st_memory_set_budget(uint64_t budget);
 
-/* Counts memory that does not come from the hook: the kernel's for sockets, libmicrohttpd's for
- * connections. `bytes` are added, or subtracted if negative. Such memory is never refused, but
- * leaves less for large blocks. */
+/* Counts memory that is not allocated through base/mem.h: that of the system for sockets, and of
+ * libmicrohttpd for connections. `bytes` are added, or subtracted if negative. Such memory is never
+ * refused, but leaves less of the budget for large blocks. */
 void st_memory_count(int64_t bytes);
-/* Returns the memory counted by st_memory_count. */
+/* Returns the bytes that st_memory_count has added. */
 uint64_t st_memory_outside(void);
 
-/* Resizes like he_mem_resize, for a library that cannot undo its work if memory is refused: a block
- * beyond the budget is allocated and counted, too. */
+/* Resizes a block like he_mem_resize, but beyond the budget, too; it is then counted all the same.
+ * It is for a library that cannot undo its work if memory is refused. */
 void *st_memory_resize_unrefused(void *memory, size_t size);
 
-/* A function that may free memory for a thread that needs it. */
+/* A function that may free memory when an allocation of a thread would be refused. */
 typedef struct st_memory_giver {
     /* Tries to free `bytes`. It is called under any locks that the thread holds, so it must not
      * wait long for a lock. Returns false if nothing was freed. */
@@ -39,36 +40,37 @@ typedef struct st_memory_giver {
     void *context;
 } st_memory_giver;
 
-/* Sets the function that is called before this thread is refused memory; NULL sets none. */
+/* Sets the function that is called before this thread is refused memory; NULL means none. */
 void st_memory_ask(const st_memory_giver *giver);
 
 uint64_t st_memory_used(void);
 uint64_t st_memory_budget(void);
-/* Returns true if this much memory is free, including the part that is reserved for small
+/* Returns true if this much of the budget is free, including the part that is reserved for small
  * blocks. */
 bool st_memory_has(uint64_t bytes);
-/* Returns true if a block that is barely large would be refused now. */
+/* Returns true if a block just too large for the reserved part of the budget would be refused
+ * now. */
 bool st_memory_is_full(void);
-/* Returns true if the budget refused the last block that was refused, and not the C library.
- * Threads are not told apart: a block may be refused to a thread that works for another one. */
+/* Returns true if the last block that was refused was refused by the budget, and not by the C
+ * library. It does not matter which thread was refused, because a thread may work for another
+ * one. */
 bool st_memory_was_over_budget(void);
-/* Returns true if a block of this share of the budget would be refused now. Where requests need
- * large blocks, memory that is used up never becomes full: the block that would fill it is
- * refused. */
+/* A block of one 64th of the budget decides whether memory is short. Requests that need large
+ * blocks never use up all memory, because the block that would do so is refused. */
 enum { ST_MEMORY_SHORT_SHARE = 64 };
 bool st_memory_is_short(void);
 
-/* What st_memory_rests remembers: the processor time of the process at its last call, and when
- * memory was last returned; in microseconds. */
+/* What st_memory_rests remembers, in microseconds: the processor time of the process at the last
+ * call (`looked`), and when memory was last returned to the system (`trimmed`). */
 typedef struct st_memory_rest {
     uint64_t looked, trimmed;
 } st_memory_rest;
 
-/* Returns memory of freed blocks, which the C library keeps, to the system once the process is
- * idle: it worked for 20 ms or more since the last time, and for less than 50 ms since the last
- * call. `processor` is its processor time until now. Must be called about once a second by a thread
- * that serves no request, because it takes the lock of each heap in turn. Returns true if memory
- * was returned. */
+/* Returns memory of freed blocks, which the C library keeps, to the system when the process is
+ * idle: when it used 20 ms or more of processor time since memory was last returned, and less than
+ * 50 ms since the last call. `processor` is the processor time that it has used so far. Must be
+ * called about once a second by a thread that serves no request, because it takes the lock of each
+ * heap in turn. Returns true if memory was returned. */
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor);
 
 #endif

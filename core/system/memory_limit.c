@@ -7,12 +7,12 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The room for a line of /proc/self/mountinfo. Only an overlay with many layers has a longer
- * line. */
+/* The most bytes of a line of /proc/self/mountinfo that are read. Only an overlay with many layers
+ * has a longer line. */
 enum { LINE = 8192, DIGITS = 19 };
 
-/* The two versions of control groups, and the files that limit memory in each. Above memory.high
- * the kernel slows a group down until it hardly moves, so it limits just as well. */
+/* The two versions of control groups, and the files that limit memory in each. memory.high counts
+ * as a limit, too, because above it the kernel slows a group down until it hardly runs. */
 typedef struct version {
     const char *filesystem;
     const char *files[3];
@@ -25,7 +25,7 @@ static const version versions[] = {
 
 enum { VERSION_1, VERSION_2, VERSIONS };
 
-/* The path of the process's group in each hierarchy; empty if it is in none. */
+/* The path of the process's group in the hierarchy of each version; empty if it is in none. */
 typedef struct membership {
     char path[VERSIONS][PATH_MAX];
 } membership;
@@ -57,8 +57,8 @@ static void keep_smallest(st_memory_limit *limit, uint64_t bytes, const char *so
     }
 }
 
-/* Reads the next line without its end; a line that is too long is cut. Returns false after the
- * last. */
+/* Reads the next line without its end; a line that is too long is cut. Returns false after the last
+ * line. */
 static bool next_line(FILE *file, char line[LINE])
 {
     if (fgets(line, LINE, file) == NULL) {
@@ -76,7 +76,7 @@ static bool next_line(FILE *file, char line[LINE])
     return true;
 }
 
-/* Returns true if `word` is in a list separated by commas. */
+/* Returns true if `word` is in a list whose words are separated by commas. */
 static bool has_word(const char *list, const char *word)
 {
     size_t length = strlen(word);
@@ -96,8 +96,8 @@ static FILE *open_beneath(const char *root, const char *name)
     return length < 0 || (size_t)length >= sizeof path ? NULL : fopen(path, "re");
 }
 
-/* Reads the path of the process's group in each hierarchy. Lines are NUMBER:CONTROLLERS:PATH; that
- * of version 2 names no controllers. */
+/* Reads the path of the process's group in each hierarchy. Lines are NUMBER:CONTROLLERS:PATH; the
+ * line of version 2 names no controllers. */
 static void read_membership(const char *root, membership *m)
 {
     char line[LINE];
@@ -121,7 +121,7 @@ static void read_membership(const char *root, membership *m)
     }
 }
 
-/* Replaces the escapes of blanks and similar characters, which are written as \040. */
+/* Replaces octal escapes such as \040, by which mountinfo writes blanks and similar characters. */
 static void unescape(char *text)
 {
     char *to = text;
@@ -136,10 +136,11 @@ static void unescape(char *text)
 }
 
 typedef struct mount {
-    char *root;  /* root of the mount: the group that is visible at `point` */
-    char *point; /* where it is mounted */
+    char *root;  /* the group that is visible at `point` */
+    char *point; /* the folder where the hierarchy is mounted */
     char *filesystem;
-    char *options; /* options of the file system: in version 1 they include its controllers */
+    /* Options of the file system; in version 1 they include the controllers of the hierarchy. */
+    char *options;
 } mount;
 
 /* Parses a line of mountinfo: NUMBER PARENT DEVICE ROOT POINT OPTIONS [FIELD...] - FILESYSTEM
@@ -180,9 +181,9 @@ static const char *below(const char *path, const char *above)
     return path + length;
 }
 
-/* Reads the limits of the process's group and of all above it, as far as this mount shows them. If
- * it does not show the process's own group, the mount's root either is above the process ("/.." is
- * the name of that in a namespace) or is the only visible group: then its limit is taken. */
+/* Reads the limits of the process's group and of all groups above it that this mount shows. If the
+ * mount does not show the process's group, its root is either a group above the process (a
+ * namespace calls that "/..") or the only visible group; the limit of the root is then read. */
 static void look_through(const char *root, const mount *m, const version *v, const char *path,
                          st_memory_limit *limit)
 {

@@ -13,17 +13,17 @@
 enum { SRV_LIMIT_SOURCE = 512 };
 
 typedef struct st_memory_limit {
-    uint64_t bytes; /* UINT64_MAX if not even the machine's memory is known */
+    uint64_t bytes; /* the limit; UINT64_MAX if not even the machine's memory is known */
     /* What sets the limit, such as "the machine" or "/sys/fs/cgroup/a/memory.max"; a long one is
      * cut at its beginning. */
     char source[SRV_LIMIT_SOURCE];
 } st_memory_limit;
 
-/* Finds the smallest limit. `root` is the folder that contains proc and the mounts: "" for the
- * system's, else a test's own. `machine` is the machine's memory in bytes, 0 if unknown. A limit
- * that cannot be read is ignored. */
+/* Finds the smallest of these limits. `root` is the folder that contains proc and the mounts: ""
+ * for the real ones, else the folder of a test. `machine` is the machine's memory in bytes, 0 if
+ * unknown. A limit that cannot be read is ignored. */
 st_memory_limit st_memory_limit_find(const char *root, uint64_t machine);
-/* Returns the memory of this machine in bytes, 0 if the system does not tell. */
+/* Returns the memory of this machine in bytes, 0 if it is unknown. */
 uint64_t st_memory_limit_machine(void);
 
 #endif

@@ -5,16 +5,16 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 
-/* Work in parts, on the stack of the thread that has it. */
+/* A loop in parts. It is on the stack of the thread that called `run`. */
 typedef struct work {
     he_part part;
     void *context;
     uint32_t parts, begun, running;
     bool stopped;    /* no more parts are begun */
-    uint32_t failed; /* the first part that failed, or the number of parts */
+    uint32_t failed; /* index of the first part that failed; if none failed, the number of parts */
     he_status status;
     he_error err;
-    pthread_cond_t ended; /* signalled when no part runs */
+    pthread_cond_t ended; /* signalled when no part of this work is running */
     struct work *next;
 } work;
 
@@ -23,12 +23,12 @@ struct st_parallel {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
-    work *first; /* list of work with parts that no thread has begun */
+    work *first; /* list of works that have parts which no thread has begun */
     size_t thread_count;
     pthread_t *threads;
 };
 
-/* All functions below run with the lock held, except while they run a part itself. */
+/* All functions below are called with the lock held; it is released only while a part runs. */
 
 static bool has_parts(const work *w)
 {
@@ -55,8 +55,8 @@ static void take_out(st_parallel *h, const work *w)
     }
 }
 
-/* Runs the next part of `w`. After the last running part has ended, no pool thread uses `w`
- * again. */
+/* Runs the next part of `w` with the lock released. When this was its last running part, the thread
+ * that owns `w` is woken and may free it, so a pool thread must not use it afterwards. */
 static void run_next(st_parallel *h, work *w)
 {
     he_error err = {0};
@@ -99,7 +99,7 @@ static void *help(void *context)
     return NULL;
 }
 
-/* he_parallel.run */
+/* The member `run` of he_parallel: runs the parts of a loop on this thread and on idle threads. */
 static he_status run(void *self, uint32_t parts, he_part part, void *context, he_progress *progress,
                      he_error *err)
 {

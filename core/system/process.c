@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Reads a file by its descriptor. A FILE would allocate memory that is not counted. */
+/* Reads a file by its descriptor. A FILE would allocate memory that memory.h does not count. */
 static void read_text(const char *path, char *out, size_t size)
 {
     ssize_t got = -1;
@@ -46,8 +46,9 @@ static void read_memory(st_process *out)
     }
 }
 
-/* Reads when the process started. The start time is in ticks since the machine was booted. It is
- * word 22, the 20th after the name, which is in parentheses and may contain anything. */
+/* Reads when the process started, from /proc/self/stat. The start time is in ticks since the
+ * machine was booted. It is word 22, the 20th after the process's name, which is in parentheses and
+ * may contain anything. */
 static void read_start(st_process *out)
 {
     char text[1024];
@@ -67,7 +68,7 @@ static void read_start(st_process *out)
 }
 
 /* Returns the number of open descriptors. Since Linux 6.2 the size of the folder is this number;
- * before, they are counted, and the descriptor of the folder itself is included. */
+ * before, the entries are counted, and one of them is the descriptor of the folder itself. */
 static uint64_t count_descriptors(void)
 {
     static const char folder[] = "/proc/self/fd";

@@ -8,10 +8,10 @@
 typedef struct st_process {
     double processor;          /* seconds of processor time */
     double started;            /* seconds since 1970 UTC */
-    uint64_t resident;         /* bytes of resident memory, */
-    uint64_t address_space;    /* and of address space */
-    uint64_t descriptors;      /* open descriptors, */
-    uint64_t most_descriptors; /* and the limit of them */
+    uint64_t resident;         /* bytes of resident memory */
+    uint64_t address_space;    /* bytes of address space */
+    uint64_t descriptors;      /* number of open descriptors */
+    uint64_t most_descriptors; /* limit of open descriptors */
 } st_process;
 
 /* Reads the facts from /proc, which does not wait for a disk. */

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <sys/random.h>
 
-/* Fills bytes with random numbers. getrandom fails only when interrupted by a signal; a kernel
- * without it cannot run the daemon. */
+/* Fills bytes with random numbers. getrandom fails only when a signal interrupts it; the daemon
+ * needs a kernel that has it. */
 static void fill(void *bytes, size_t size)
 {
     unsigned char *at = bytes;

@@ -7,7 +7,7 @@
 
 uint64_t st_random(void);
 /* Writes `length` characters of A-Z a-z 0-9, each equally likely, and a NUL: 10 characters hold 59
- * bits. */
+ * random bits. */
 void st_random_id(char *out, size_t length);
 
 #endif

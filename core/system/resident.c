@@ -12,14 +12,15 @@
 
 enum { MEASURE_MICROS = 100 * 1000 };
 
-/* Shares of the budget: how near resident bytes may come to it, and how much they must grow before
- * it is reported again. Resident memory does not fall at once after an eviction, so without the
- * growth every call would evict more, until memory is empty. */
+/* The resident memory is too near to the budget when less than 1/NEAR_SHARE of the budget is left.
+ * It must grow by 1/GROWTH_SHARE of the budget before that is reported again: it does not fall at
+ * once after an eviction, so otherwise every call would evict more, until no mesh is left in
+ * memory. */
 enum { NEAR_SHARE = 32, GROWTH_SHARE = 192 };
 
 static bool watched;
 static _Atomic uint64_t beside;
-static _Atomic uint64_t measured; /* when it was last measured */
+static _Atomic uint64_t measured; /* when `beside` was last measured */
 static _Atomic uint64_t told;     /* resident bytes when st_resident_is_beyond last returned true */
 
 /* Returns the resident bytes of the process, 0 if the system does not reveal them. */

@@ -6,20 +6,20 @@
 #include <string.h>
 #include <sys/prctl.h>
 
-/* The number of stamps for flows. Flows whose hashes have equal low bits share a stamp, and so take
- * turns as if they were one flow. */
+/* The number of stamps that are kept for flows (thread_pool.h). Flows whose hashes have equal low
+ * bits share a stamp, so they are scheduled as if they were one flow. */
 enum { FLOWS = 256 };
 
-enum { NAME = 16 /* with its NUL, as prctl(2) has it */ };
+enum { NAME = 16 /* most bytes of a thread's name with its NUL, a limit of prctl(2) */ };
 
 typedef struct waiting {
     st_task task;
     double stamp;
-    uint64_t number; /* in the order of submission */
+    uint64_t number; /* number of the task, in the order of submission */
 } waiting;
 
-/* The tasks of a share that wait, as a heap: no task comes before its parent, which is at (i - 1) /
- * 2. */
+/* The waiting tasks of a share, as a binary heap: no task comes before its parent, which is at (i -
+ * 1) / 2. */
 typedef struct queue {
     waiting *heap;
     size_t count, room;
@@ -31,26 +31,26 @@ struct st_pool {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
-    size_t capacity; /* capacity of each queue */
+    size_t capacity; /* most tasks that each queue can hold */
     queue queues[ST_SHARES];
-    size_t most_long;     /* most tasks of LONG and JOB that may run at once */
-    size_t idle;          /* threads that wait for `wake` or were woken and do not run yet */
+    size_t most_long;     /* most tasks of the shares LONG and JOB that may run at once */
+    size_t idle;          /* threads that wait for `wake`, or were woken and do not run yet */
     double clock;         /* stamp of the task that was begun last */
-    double stamps[FLOWS]; /* stamp of the last task of each flow */
+    double stamps[FLOWS]; /* for each flow, the stamp of its newest task */
     uint64_t submitted;
     char name[NAME];
     pthread_t *threads;
     size_t thread_count;
 };
 
-/* --- a queue --- */
+/* --- the queue of a share --- */
 
 static bool is_before(const waiting *a, const waiting *b)
 {
     return a->stamp != b->stamp ? a->stamp < b->stamp : a->number < b->number;
 }
 
-/* Makes room for one more task in a queue. Returns false if memory is out. */
+/* Makes memory available for one more task in a queue. Returns false if memory is out. */
 static bool make_room(queue *q)
 {
     if (q->count < q->room) {
@@ -65,7 +65,7 @@ static bool make_room(queue *q)
     return heap != NULL;
 }
 
-/* The queue must have room. */
+/* Adds a task to a queue. make_room must have been called. */
 static void push(queue *q, const waiting *w)
 {
     size_t at = q->count++;
@@ -96,7 +96,7 @@ static waiting pop(queue *q)
     return top;
 }
 
-/* --- the pool, while its lock is held --- */
+/* --- the pool; the caller holds its lock --- */
 
 static bool may_begin(const st_pool *pool, st_share share)
 {
@@ -106,7 +106,7 @@ static bool may_begin(const st_pool *pool, st_share share)
            (share == ST_SHARE_BRIEF || long_running < pool->most_long);
 }
 
-/* Returns the share whose first task is next; ST_SHARES if none may begin. */
+/* Returns the share whose first task is next; ST_SHARES if no task may begin. */
 static st_share next_share(const st_pool *pool)
 {
     st_share next = ST_SHARES;
@@ -129,8 +129,8 @@ static bool is_empty(const st_pool *pool)
     return count == 0;
 }
 
-/* Unlocks the pool, and wakes a thread if there is a task that it can begin: waking threads in vain
- * costs more than a task of some microseconds. The woken thread needs the lock at once, so the
+/* Unlocks the pool, and wakes a thread only if there is a task that it can begin, because waking a
+ * thread in vain costs more than a short task. The woken thread needs the lock at once, so the
  * signal is sent after the lock is released. A thread that has ended a task looks for another
  * without a signal. */
 static void unlock(st_pool *pool)
@@ -148,7 +148,7 @@ static void run_next(st_pool *pool, st_share share)
     const waiting next = pop(q);
     pool->clock = next.stamp > pool->clock ? next.stamp : pool->clock;
     q->running++;
-    unlock(pool); /* another task may be able to begin too */
+    unlock(pool); /* another task may be able to begin, too */
     next.task.work(next.task.context);
     pthread_mutex_lock(&pool->lock);
     q->running--;
@@ -169,8 +169,8 @@ static void *run(void *context)
             run_next(pool, share);
         }
     }
-    /* Threads may be waiting for a task of a share that will not come any more, so all are
-     * woken. */
+    /* Other threads may be waiting for a task that they may begin; no task comes any more, so all
+     * threads are woken to end. */
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -259,8 +259,8 @@ void st_pool_look(st_pool *pool, st_share share, st_pool_state *out)
     pthread_mutex_unlock(&pool->lock);
 }
 
-/* Adds a text to a hash by FNV-1a, 64 bits. Each text is added with its NUL, so no two pairs of
- * texts give one sequence. */
+/* Adds a text to a hash by FNV-1a, 64 bits. Each text is added with its NUL, so different pairs of
+ * texts are different sequences of bytes. */
 static uint64_t add_text(uint64_t hash, const char *text)
 {
     do {

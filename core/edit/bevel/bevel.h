@@ -6,8 +6,8 @@
 
 #include <math.h>
 
-/* A bevel cuts at most this part of an edge's length off, so that no cut reaches the other end of
- * the edge. */
+/* The largest part of an edge's length that a bevel cuts off, so that no cut reaches the other end
+ * of the edge. */
 #define HE_BEVEL_MOST 0.99
 
 /* Returns where the edge of half-edge h is cut, as a part of its length: `width` (above 0) from the

@@ -11,12 +11,13 @@ void he_bevel_clear(he_bevel *bevel)
     he_ids_clear(&bevel->edges);
 }
 
-/* One end of the edge. */
+/* One end of the edge that is bevelled. */
 typedef struct bevel_end {
-    he_halfedge along; /* the half-edge of the edge that leaves this end */
-    he_ids ring; /* the other half-edges of the fan that leave the end, counter-clockwise from it */
-    size_t gap;  /* the hole is before this index of the ring; 0 at an interior end */
-    uint32_t first; /* the new vertex at index 0 */
+    he_halfedge along; /* the half-edge of the bevelled edge that leaves this end */
+    /* The other half-edges of its fan that leave the end, counter-clockwise from `along`. */
+    he_ids ring;
+    size_t gap;     /* the hole is before this index of `ring`; 0 if the end is interior */
+    uint32_t first; /* the new vertex on the edge of ring[0]; those of the others follow */
 } bevel_end;
 
 static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, he_error *err)
@@ -30,7 +31,7 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
             continue;
         }
         /* This half-edge ends the fan: a hole, or other fans, follow it counter-clockwise. The fan
-         * begins where turning clockwise from the edge ends, so the walk goes on from there. */
+         * begins where turning clockwise from the edge ends, so the walk continues there. */
         out->gap = out->ring.count;
         h = along;
         while (!he_is_boundary_halfedge(m, he_twin(h))) {
@@ -117,8 +118,8 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
         need.edges += ends[i].gap > 0;
         need.deleted_vertices += ends[i].gap == 0;
     }
-    /* Each cut edge writes its origin and two links; each face beside the bevelled edge writes two
-     * links and a stored half-edge; a hole writes two more links. */
+    /* Each cut edge has its origin and two links written; each of the two faces beside the bevelled
+     * edge two links and a stored half-edge; a hole two more links. */
     need.links = 3 * cuts + 2 * (3 + 2 + HE_SETTLE_LINKS);
     need.attributes = cuts;
     need.lineage = need.vertices + need.edges + 1;
@@ -189,9 +190,9 @@ static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)
     }
 }
 
-/* Makes one of the two long sides of the new face, in the face left of `h`, whose place it takes:
- * from cut 0 of the origin of `h` to the last cut of its target. Returns its half-edge along the
- * new face. */
+/* Makes one of the two long sides of the new face. It takes the place of `h` in the face left of
+ * `h`, and runs from cut 0 at the origin of `h` to the last cut at the target. Returns the
+ * half-edge that runs along the new face. */
 static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *from,
                                   const bevel_end *to, double width)
 {
@@ -210,8 +211,8 @@ static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *fr
 }
 
 /* Makes the two sides of the new face that border the hole at an end on the boundary: from the cut
- * at index `gap` - 1 to the end itself, and on to the next cut. `corner` leaves that first cut in
- * the face before it. */
+ * at index `gap` - 1 to the end itself, and on to the next cut. The half-edge `corner` leaves the
+ * cut at `gap` - 1 inside the face before it. */
 static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new_face *rim)
 {
     he_vertex v = he_origin(m, end->along);
@@ -233,8 +234,8 @@ static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new
     add_side(m, rim, in);
 }
 
-/* Makes the sides of the new face between the cuts at one end. `corner` leaves cut 0 inside the
- * face beside the edge. */
+/* Makes the sides of the new face between the cuts at one end. The half-edge `corner` leaves cut 0
+ * inside the face beside the bevelled edge. */
 static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_halfedge corner,
                              new_face *rim)
 {
@@ -263,7 +264,7 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
             he_attributes_copy(m, HE_HALFEDGE, in.i, h.i);
         }
         he_set_origin(m, h, cut_at(end, i));
-        /* The first cut after the hole must store a boundary half-edge, which is that of its
+        /* The vertex at the first cut after the hole must store a boundary half-edge: that of the
          * stub. */
         bool stub = end->gap > 0 && i == end->gap;
         he_halfedge stored = stub ? he_next(m, he_twin(h)) : h;

@@ -6,12 +6,13 @@
 
 typedef struct he_bevel {
     he_face face;
-    he_ids vertices, edges; /* in the order of the face */
+    he_ids vertices, edges; /* the new elements, in the order of the new face */
 } he_bevel;
 
-/* edge_bevel, for ends with d1 and d2 edges: V + d1 + d2 - 4, E + d1 + d2 - 3, F + 1, and V + 1, E
- * + 1 more for each end on the boundary. Every other edge at the two ends is cut at `width` from
- * its end, and a new face joins the cuts; the edge and interior ends are deleted.
+/* edge_bevel replaces an edge, whose ends have d1 and d2 edges, by a face: V + d1 + d2 - 4,
+ * E + d1 + d2 - 3, F + 1; each end on the boundary adds V + 1, E + 1. Every other edge at the two
+ * ends is cut at `width` from that end, and a new face joins the cuts. The bevelled edge and its
+ * interior ends are deleted.
  *
  *        o           o             o           o
  *         \    f    /               \    f    /          the face f left of half-edge 2e, u -> v,
@@ -27,18 +28,19 @@ typedef struct he_bevel {
  *          /   g                      /            and the stubs from it to the cuts are sides.
  *                                    2---
  *
- * Other fans of an end on the boundary stay with it; d1 and d2 count only the edges of the fan that
- * has the edge.
+ * If an end on the boundary has several fans, the other fans stay at it; d1 and d2 count only the
+ * edges of the fan that the bevelled edge belongs to.
  *
- * No cut is farther along its edge than 0.99 of the length, so that none passes the other end; an
+ * No cut is farther away than 0.99 of the length of its edge, so none reaches the other end; an
  * edge without length is cut half-way (bevel.h).
  *
  * The new vertices come in the order of the new face, from the one after the edge counter-clockwise
- * about the origin of half-edge 2e on: 1 to 6 above. They descend from their end, and have values
- * between it and the other end of their edge. The new edges come in the same order. The old edges
- * keep their ids at their other ends. The two long sides descend from the edge, the stubs from
- * theirs, and the face from the one left of half-edge 2e. Half-edge 2e of a new edge runs along the
- * new face, whose stored half-edge leaves the first vertex.
+ * about the origin of half-edge 2e on: 1 to 6 above. Each descends from the end whose edge was cut,
+ * and has values between that end and the other end of its edge. The new edges come in the same
+ * order. The old edges keep their ids at their other ends. The two long sides of the new face
+ * descend from the bevelled edge, the stubs from the boundary edges that were cut, and the new face
+ * from the face left of half-edge 2e. Half-edge 2e of a new edge runs along the new face, whose
+ * stored half-edge leaves the first vertex.
  *
  * `out` may be NULL; otherwise he_bevel_clear frees it. Takes time linear in the size of the fans
  * at both ends.

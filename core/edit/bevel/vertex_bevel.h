@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.h"
 
-/* vertex_bevel: V + (d - 1), E + d, F + 1 for an interior vertex with d edges.
+/* vertex_bevel cuts off the corner at an interior vertex v with d edges: V + (d - 1), E + d, F + 1.
  *
  *              o                              o
  *              |                              |
@@ -15,7 +15,7 @@
  *          /       \                    /           \         from it.
  *        o           o                o               o
  *
- * Every edge at v is cut at `width` from v, but never beyond 0.99 of its length, so no cut passes
+ * Every edge at v is cut at `width` from v, but never beyond 0.99 of its length, so no cut reaches
  * the other end; an edge without length is cut half-way (bevel.h). Edges and faces keep their ids;
  * each face gets one more corner. Attributes of vertices and corners are interpolated along the
  * edges. The half-edge that the new face n stores leaves v, and half-edges 2e of the new edges run

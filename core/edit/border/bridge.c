@@ -13,14 +13,14 @@ void he_bridge_clear(he_bridge *bridge)
 }
 
 /* The plan of a strip between two loops. Corner i of the first loop is the origin of a[i]; corner j
- * of the second is the target of b[j]. The second loop is listed backwards, because the two run in
- * opposite directions along the strip. */
+ * of the second is the target of b[j]. The second loop is listed backwards, because the two loops
+ * run in opposite directions along the strip. */
 typedef struct plan {
     const he_mesh *m;
     he_ids a, b;
-    he_ids rungs;     /* pairs of a corner of each loop */
-    he_idmap corners; /* vertices of the first loop, then those of the second */
-    bool repeats;     /* does a loop pass a vertex twice? */
+    he_ids rungs;     /* pairs of a corner of the first loop and one of the second */
+    he_idmap corners; /* the vertices of the first loop, then those of the second */
+    bool repeats;     /* true if a loop passes a vertex twice */
     double scale;     /* a power of two that brings all coordinates within [-1, 1] */
 } plan;
 
@@ -42,7 +42,7 @@ static he_vertex corner_of_b(const plan *p, uint32_t j)
     return he_target(p->m, (he_halfedge){p->b.ids[j]});
 }
 
-/* --- the loops --- */
+/* --- the two loops --- */
 
 static he_status require_hole(const he_mesh *m, he_halfedge h, he_error *err)
 {
@@ -111,7 +111,7 @@ static void find_scale(plan *p)
     p->scale = ldexp(1, -exponent < MOST_EXPONENT ? -exponent : MOST_EXPONENT);
 }
 
-/* --- the rungs --- */
+/* --- rungs: the edges between the two loops --- */
 
 /* Returns the squared distance between corner i of the first loop and corner j of the second. */
 static double apart(const plan *p, uint32_t i, uint32_t j)
@@ -134,10 +134,10 @@ static double twist(const plan *p, uint32_t s)
     return sum;
 }
 
-/* Returns true if side one, with i of its n edges done, is less than half a loop ahead of side two,
- * with j of m done. Each loop has at least three corners, so the side that is behind can always go
- * on, and no two rungs join the same pair of corners: for that, one side would have to go round
- * while the other stands still. */
+/* Returns true if the side of the strip with i of n edges done is less than half a loop ahead of
+ * the other side, with j of m edges done. Each loop has at least three corners, so the side that is
+ * behind can always advance. And no two rungs join the same two corners: for that, one side would
+ * have to go around its whole loop while the other does not advance. */
 static bool is_abreast(uint64_t i, uint64_t n, uint64_t j, uint64_t m)
 {
     uint64_t x = i * m, y = j * n;
@@ -157,8 +157,8 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
            apart(p, (i + 1) % n, (s + j) % m) <= apart(p, i % n, (s + j + 1) % m);
 }
 
-/* Computes the rungs, the edges from one loop to the other, of pairing s. The caller has reserved
- * room for them. */
+/* Computes the rungs, the edges from one loop to the other, if corner 0 of the first loop is paired
+ * with corner s of the second. The caller has reserved memory for them. */
 static void make_rungs(plan *p, uint32_t s)
 {
     uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
@@ -181,7 +181,8 @@ static he_status refuse_rung(const plan *p, uint32_t i, uint32_t j, he_error *er
 }
 
 /* Refuses a pairing in which two rungs join the same two vertices, which is possible if a loop
- * passes a vertex twice. `first` and `next` chain the rungs of each vertex of the first loop. */
+ * passes a vertex twice. `first` and `next` are buffers for linked lists of the rungs at each
+ * vertex of the first loop. */
 static he_status compare_rungs(const plan *p, uint32_t *first, uint32_t *next, he_error *err)
 {
     he_ids ends = {0};
@@ -238,11 +239,11 @@ static he_status check_rungs(const plan *p, he_error *err)
     return status;
 }
 
-/* --- the pairing --- */
+/* --- the pairing of corners --- */
 
 /* Marks in `passed` each pairing in which a rung would join two vertices that an edge already
- * joins; such a pairing is skipped. In loops that pass no vertex twice, corners are numbered by
- * their vertices. */
+ * joins; such a pairing is skipped. It must be called only if no loop passes a vertex twice, so
+ * that corners are numbered like vertices. */
 static void pass_over_joined(const plan *p, uint64_t *passed)
 {
     uint32_t n = (uint32_t)p->a.count;
@@ -258,8 +259,8 @@ static void pass_over_joined(const plan *p, uint64_t *passed)
     }
 }
 
-/* Returns the pairing of corners with the least twist that is not marked in `passed`, which is NULL
- * if none is to be skipped; `count` if all are skipped. */
+/* Returns the pairing of corners with the smallest twist of those that are not marked in `passed`;
+ * `count` if all are marked. `passed` may be NULL, if none is marked. */
 static uint32_t least_twisted(const double *twists, uint32_t count, const uint64_t *passed)
 {
     uint32_t best = count;
@@ -299,7 +300,7 @@ static he_status try_pairings(plan *p, const double *twists, uint64_t *passed, h
 static he_status choose_rungs(plan *p, he_error *err)
 {
     size_t n = p->a.count, m = p->b.count;
-    /* A hole of two half-edges would mean two edges between two vertices. */
+    /* A hole of two half-edges would have two edges between the same two vertices. */
     assert(n >= 3 && m >= 3);
     he_status status = he_ids_reserve(&p->rungs, 2 * (n + m), err);
     if (status != HE_OK) {
@@ -323,8 +324,7 @@ static he_status choose_rungs(plan *p, he_error *err)
 
 /* --- writing --- */
 
-/* Makes the face between two consecutive rungs, from p_i to q_j and from p_k to q_l, which differ
- * in at least one end. */
+/* Makes the face between rung number `at` and the next one, which differ in at least one end. */
 static he_face close_face(he_mesh *m, const plan *p, size_t at, const he_ids *edges)
 {
     size_t count = p->rungs.count / 2, after = at + 1 == count ? 0 : at + 1;
@@ -365,8 +365,8 @@ static void commit(he_mesh *m, const plan *p, he_bridge *made)
     for (size_t k = 0; k < count; k++) {
         made->faces.ids[made->faces.count++] = close_face(m, p, k, &made->edges).i;
     }
-    /* he_ring_settle is called once for each vertex: it walks around the vertex, so one call for
-     * each rung would be slow at a vertex with many rungs. */
+    /* he_ring_settle is called once for each vertex and not for each rung: it walks around the
+     * vertex, which would be slow at a vertex with many rungs. */
     for (size_t k = 0; k < p->corners.ids.count; k++) {
         he_vertex v = {p->corners.ids.ids[k]};
         he_ring_settle(m, v, he_vertex_halfedge(m, v));

@@ -7,12 +7,14 @@
 /* The elements that loop_bridge made, in the order of the loop of half-edge `a` from the origin of
  * `a` on. */
 typedef struct he_bridge {
-    he_ids edges; /* rungs: half-edge 2e leaves the loop of a */
-    he_ids faces; /* face n is between rung n and the one after it */
+    /* The rungs, edges between the two loops: half-edge 2e of each leaves the loop of a. */
+    he_ids edges;
+    he_ids faces; /* face n is between rung n and the next one */
 } he_bridge;
 
-/* loop_bridge: V + 0; for loops of n and n half-edges E + n, F + n quadrilaterals, for loops of n
- * and m E + (n + m), F + (n + m) triangles.
+/* loop_bridge joins the loops of two holes by a strip of faces: V + 0; for two loops of n
+ * half-edges E + n, F + n quadrilaterals; for loops of n and m half-edges E + (n + m), F + (n + m)
+ * triangles.
  *
  *        o<------o<------o  loop of b          o-------o-------o
  *        |   b       .   |                     |       |       |
@@ -20,21 +22,23 @@ typedef struct he_bridge {
  *        |   a       .   |                     |       |       |    to the loop of b
  *        o------>o------>o  loop of a          o-------o-------o
  *
- * a and b are any boundary half-edges of the two loops; they only decide the order of the new
- * elements. Loops follow the boundary links; at a bow-tie a loop may pass a vertex more than once.
- * The strip fills the gaps between fans that it passes there, so that they become one fan. Only a
- * vertex with a single fan has a gap of the fan with itself, so no vertex gets a closed fan beside
- * another fan.
+ * a and b are any boundary half-edges of the two loops; they decide only the order of the new
+ * elements. The loops are those that the links of boundary half-edges make; at a bow-tie a loop may
+ * pass a vertex more than once. At such a vertex the strip fills gaps between fans, so that these
+ * become one fan. A fan is closed only if it is the only one of its vertex, so no vertex gets a
+ * closed fan beside another fan.
  *
  * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n, rounded, of the other, and
- * s is chosen so that the squared distances of the pairs sum to the least, the lowest s where
- * several do. On loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread.
- * A pairing that would double an edge is skipped for the one with the next least twist: on loops of
- * equal length that pass no vertex twice as long as there are any, on others HE_TWIST_TRIES times.
+ * s is chosen so that the sum of the squared distances of the pairs is smallest; of several such s
+ * the lowest is taken. On loops of more than HE_TWIST_PAIRS corners the sum is over that many
+ * corners, evenly spread. If a pairing would join two vertices that an edge joins already, the
+ * pairing with the next smallest sum is tried: all pairings on loops of equal length that pass no
+ * vertex twice, at most HE_TWIST_TRIES on others.
  *
- * Triangles start at the pair of a's origin, and each next rung is the shorter of two candidates
- * (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line definitions into
- * polygonal element mosaics", 1978), but one side never gets half a loop ahead.
+ * Triangles start at the pair of corners with the origin of a, and each next rung is the shorter of
+ * two candidates (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line
+ * definitions into polygonal element mosaics", 1978), but neither side of the strip gets half a
+ * loop ahead of the other.
  *
  * Old elements keep their ids; new ones have no parents.
  *

@@ -11,16 +11,16 @@ void he_walls_clear(he_walls *walls)
     he_ids_clear(&walls->faces);
 }
 
-/* A vertex of the edges that are extruded: the list indices of the edge that arrives there and of
- * the one that leaves along the boundary, or HE_NONE if a chain of edges begins or ends there. */
+/* An end of the edges that are extruded: the indices in plan.chain of the half-edge that arrives
+ * there and of the one that leaves; HE_NONE if a chain begins or ends there. */
 typedef struct joint {
     uint32_t in, out;
 } joint;
 
 typedef struct plan {
     size_t count;
-    he_ids chain; /* the half-edges on the open side of the edges */
-    he_ids ends;  /* their ends, in rising order */
+    he_ids chain; /* the half-edges of the edges on the side without a face */
+    he_ids ends;  /* the ends of the edges, in rising order */
     joint *joints;
 } plan;
 
@@ -222,8 +222,8 @@ static he_face make_wall(he_mesh *m, const plan *p, const fresh *new, uint32_t i
     for (unsigned k = 0; k < 4; k++) {
         he_link(m, loop[k], loop[(k + 1) % 4]);
         he_set_face(m, loop[k], f);
-        /* The first and the last corner of the quad lie at the origin of h, or above it on the
-         * copy. */
+        /* The first and the last corner of the quad are at the origin of h and at the copy of that
+         * vertex. */
         he_attributes_copy(m, HE_HALFEDGE, loop[k].i, k % 3 == 0 ? he_next(m, inner).i : inner.i);
     }
     he_set_face_halfedge(m, f, h);

@@ -4,17 +4,17 @@
 
 #include "mesh/mesh.h"
 
-/* What edge_extrude made. */
+/* The elements that edge_extrude made. */
 typedef struct he_walls {
-    he_ids vertices; /* in the order of the vertices they descend from */
-    he_ids edges;    /* the far ones, in the order of the given edges */
-    he_ids faces;    /* in the order of the given edges */
+    he_ids vertices; /* the new vertices, in the order of the vertices they descend from */
+    he_ids edges;    /* the far edges, in the order of the given edges */
+    he_ids faces;    /* the quads, in the order of the given edges */
 } he_walls;
 
-/* edge_extrude: V + k + 1, E + 2k + 1, F + k for each chain of k edges that follow each other along
- * the boundary; V + k, E + 2k, F + k for a closed chain. Each edge gets a quad on its open side,
- * between it and a copy that is shifted by the vector `by`. Neighbouring quads of a chain share a
- * side.
+/* edge_extrude extrudes boundary edges into walls: V + k + 1, E + 2k + 1, F + k for each chain of k
+ * edges that follow each other along the boundary; V + k, E + 2k, F + k for a closed chain. Each
+ * edge gets a quad on the side where it has no face, between it and a copy of it that is shifted by
+ * the vector `by`. Neighbouring quads of a chain share a side.
  *
  *                                        v1----->v2----->v3     the far edges
  *                                        |       |       |
@@ -24,10 +24,11 @@ typedef struct he_walls {
  *        o-------o-------o               |   f   |   g   |
  *                                        o-------o-------o
  *
- * New vertices descend from those beneath them and have their values, far edges from the edges. A
- * quad descends from the face beside its edge, with that face's values and the corners it has
- * there. Half-edge 2e of a far edge runs along its quad, that of a side leaves the old vertex. At a
- * bow-tie the chain of fans is rearranged if other fans are in a gap that is closed (ring.h).
+ * New vertices descend from the vertices they are copies of and have their values; far edges
+ * descend from the given edges. A quad descends from the face on the other side of its edge, and
+ * has the values of that face and of its corners there. Half-edge 2e of a far edge runs along its
+ * quad; that of a new edge between an old vertex and its copy leaves the old vertex. At a bow-tie
+ * the order of the fans is changed if other fans are in a gap that is closed (ring.h).
  *
  * Deleting the new faces is the inverse.
  *

@@ -6,13 +6,13 @@
 
 typedef enum he_fill {
     HE_FILL_POLYGON,    /* one face: V + 0, E + 0, F + 1 */
-    HE_FILL_FAN,        /* triangles about a new vertex at the mean: V + 1, E + n, F + n */
+    HE_FILL_FAN,        /* triangles around a new vertex at the mean: V + 1, E + n, F + n */
     HE_FILL_TRIANGULATE /* triangles between the corners: V + 0, E + (n - 3), F + (n - 2) */
 } he_fill;
 
 typedef struct he_filled {
-    he_vertex vertex;    /* the fan's new vertex, else HE_NONE */
-    he_ids edges, faces; /* the new ones */
+    he_vertex vertex;    /* the new vertex if the method is HE_FILL_FAN, else HE_NONE */
+    he_ids edges, faces; /* the new edges and faces */
 } he_filled;
 
 /* hole_fill: closes the hole to the left of the boundary half-edge h, a loop of n half-edges.
@@ -26,11 +26,11 @@ typedef struct he_filled {
  *        o-----o-----o            o-----o-----o          o-----o-----o          o-----o-----o
  *                                    polygon                  fan                triangulate
  *
- * The loop follows the boundary links: at a bow-tie it may lead from one fan to another. The new
- * faces fill the gap between these fans, which become one. Only a vertex with a single fan has a
- * gap of the fan with itself, so no vertex gets a closed fan beside another fan. Old elements keep
- * their ids; the
- * new faces and the vertex have no parents. A polygon stores h.
+ * The loop is the one that the links of boundary half-edges make: at a bow-tie it may lead from one
+ * fan to another. The new faces fill the gap between these fans, which become one fan. A fan is
+ * closed only if it is the only one of its vertex, so no vertex gets a closed fan beside another
+ * fan. Old elements keep their ids; the new faces and the new vertex have no parents. With
+ * HE_FILL_POLYGON the new face stores h.
  *
  * `out` may be NULL; otherwise he_filled_clear frees it.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

@@ -13,7 +13,7 @@ typedef struct plan {
     he_mesh *m;
     he_ids a, b;
     uint32_t n;
-    he_idmap vertices; /* the n of the second loop, then the n of the first */
+    he_idmap vertices; /* the n vertices of the second loop, then the n of the first */
 } plan;
 
 static void clear(plan *p)
@@ -55,7 +55,7 @@ static he_vec3 place(const plan *p, uint32_t i)
     return he_point_between(he_position(p->m, stays(p, i)), he_position(p->m, goes(p, i)), 0.5);
 }
 
-/* --- the loops --- */
+/* --- the two loops --- */
 
 static he_status find_loops(plan *p, he_halfedge a, he_halfedge b, he_error *err)
 {
@@ -115,10 +115,10 @@ static he_status check_sides(const plan *p, he_error *err)
     return HE_OK;
 }
 
-/* --- elements that would become one --- */
+/* --- faces and edges that would become one --- */
 
-/* Adds the faces at a vertex to the set `seen`, except the face of `own`, the loop's half-edge
- * there. With `again`, a face that is in the set already is refused. */
+/* Adds the faces at the origin of `first` to the set `seen`, except the face of `own`, which is the
+ * half-edge of the loop there. With `again`, a face that is in the set already is refused. */
 static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first, bool again,
                               he_idmap *seen, he_error *err)
 {
@@ -154,7 +154,8 @@ static he_status check_faces(const plan *p, uint32_t i, he_error *err)
     return status;
 }
 
-/* Adds the neighbours of a vertex to the set `seen`, as they will be after the loops are joined. */
+/* Adds the neighbours of the origin of `first` to the set `seen`, as they will be after the loops
+ * are joined. */
 static he_status gather_neighbours(const plan *p, he_halfedge first, const he_halfedge skip[2],
                                    he_idmap *seen, he_error *err)
 {
@@ -243,14 +244,14 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
 {
     he_halfedge h = first;
     do {
-        /* Turning about a vertex reads only links, and this loop changes origins only. */
+        /* Turning about a vertex reads links only, and this loop changes only origins. */
         he_set_origin(m, h, to);
         h = he_swing_ccw(m, h);
     } while (h.i != first.i);
 }
 
-/* Lets a[i] take the place of the twin of b[i]. If that twin's neighbour in its loop is the twin of
- * a neighbour of b[i], then its place is taken, too. */
+/* Puts a[i] in the place of the twin of b[i]. If a neighbour of that twin in its loop is the twin
+ * of b[i - 1] or b[i + 1], a[i] is linked to a[i - 1] or a[i + 1] in its place. */
 static void sew_side(const plan *p, uint32_t i)
 {
     he_mesh *m = p->m;
@@ -326,7 +327,7 @@ static he_status check(plan *p, he_halfedge a, he_halfedge b, he_error *err)
     return status == HE_OK ? check_marks(p, err) : status;
 }
 
-/* Performs the join. Values that merged vertices would lose are moved to corners first; if anything
+/* Performs the join. Values that merged vertices would lose are first moved to corners; if anything
  * fails, they are moved back. */
 static he_status write(plan *p, uint64_t *moved, he_error *err)
 {

@@ -4,8 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* loop_join: V - n, E - n for loops of n half-edges, F - 1 for each of the two that is the loop of
- * a face. It connects two components, or adds a handle to one.
+/* loop_join joins two loops edge by edge: V - n, E - n for loops of n half-edges, F - 1 for each of
+ * the two loops that is the border of a face. The edit connects two components, or adds a handle to
+ * one.
  *
  *         \     /                      \     /
  *          o<--o   face or hole         \   /
@@ -17,10 +18,10 @@
  *          o-->o   face or hole         /   \
  *         /     \                      /     \
  *
- * If a loop is that of a face, the face is deleted first. The vertices and edges of a stay, those
- * of b are merged into them. A vertex moves half-way to the one merged into it. Values in which the
- * two differ move to their corners (keep.h) and are counted in `moved`, which may be NULL. Corner
- * values follow their half-edges.
+ * If a loop is that of a face, the face is deleted first. The vertices and edges of the loop of a
+ * stay; those of the loop of b are merged into them. A vertex moves half-way to the vertex that is
+ * merged into it. Values in which the two vertices differ move to their corners (keep.h); `moved`,
+ * which may be NULL, gets the number of these values. Corner values follow their half-edges.
  *
  * At no vertex does a fan become closed while the vertex has other fans: the half-edges around a
  * joined vertex are those of its two vertices, one ring after the other.

@@ -48,7 +48,7 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
 }
 
 /* Returns the first half-edge, counter-clockwise, that leaves the origin of cycle[i] on the right
- * of the cycle: those lie between the edge of the cycle that arrives and the one that leaves. */
+ * of the cycle, between the edge of the cycle that arrives there and the one that leaves. */
 static he_halfedge first_on_right(const he_mesh *m, const he_halfedge cycle[3], unsigned i)
 {
     return he_swing_ccw(m, he_twin(cycle[(i + 2) % 3]));
@@ -109,8 +109,8 @@ static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_ve
     }
 }
 
-/* Lets `outer` take the place of `twin`, the twin of an edge of the cycle, which will belong to the
- * face that caps the cut. */
+/* Puts `outer` in the place of `twin`, the twin of a half-edge of the cycle; `twin` will belong to
+ * the face that caps the cut. */
 static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 {
     he_face f = he_face_of(m, twin);
@@ -125,8 +125,7 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
 {
-    /* The half-edges of the new edges that border the new cap. They run in the direction of the
-     * cycle. */
+    /* The half-edges of the new edges along the new cap. They run in the direction of the cycle. */
     he_halfedge inner[3];
     for (unsigned i = 0; i < 3; i++) {
         he_vertex u = he_origin(m, cycle[i]);
@@ -142,8 +141,8 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_attributes_copy(m, HE_EDGE, made->edges[i].i, e.i);
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
-    /* The elements on the right are found by walking around the vertices, so this must come before
-     * any link there is changed. */
+    /* The elements on the right are found by walking around the vertices, so their origins are
+     * changed before any link there is. */
     for (unsigned i = 0; i < 3; i++) {
         move_right(m, cycle, i, made->vertices[i]);
     }
@@ -183,8 +182,9 @@ he_status he_loop_split(he_mesh *m, he_edge a, he_edge b, he_edge c, he_loop_par
     }
     he_reservation need = {.vertices = 3, .edges = 3, .faces = 2, .lineage = 6};
     for (unsigned i = 0; i < 3; i++) {
-        /* The links are the origins around the vertex, two links of neighbours, the stored
-         * half-edge of a face, three links of the cap, and the vertex's stored half-edge. */
+        /* These links are written at each vertex: the origins of half-edges that leave it, two
+         * links of neighbours, the stored half-edge of a face, three links of the cap, and the
+         * half-edge that the vertex stores. */
         need.links += (size_t)he_vertex_degree(m, he_origin(m, cycle[i])) + 7;
     }
     status = he_reserve(m, need, err);

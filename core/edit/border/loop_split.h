@@ -9,11 +9,11 @@
 typedef struct he_loop_parts {
     he_vertex vertices[3];
     he_edge edges[3];
-    he_face faces[2]; /* the cap of the old vertices, then that of the new ones */
+    he_face faces[2]; /* the cap at the old vertices, then the cap at the new ones */
 } he_loop_parts;
 
-/* loop_split: V + 3, E + 3, F + 2. The edges a, b and c make up a cycle u, v, w, which runs as
- * half-edge 2a does.
+/* loop_split cuts a mesh around a triangle of edges and caps both sides: V + 3, E + 3, F + 2. The
+ * edges a, b and c make up a cycle u, v, w, which runs as half-edge 2a does.
  *
  *        \  |  /                    \  |  /
  *         \ | /                      \ | /
@@ -23,14 +23,14 @@ typedef struct he_loop_parts {
  *                                  ---x y z---      right of it: new ones, a cap above
  *                                    / | \
  *
- * It cuts a neck, or removes a handle, and is the inverse of loop_join: joining the caps by the
- * twin of a half-edge of the cycle and the corresponding half-edge of the other cap restores all
- * links, except which half-edge a vertex stores.
+ * The edit cuts a neck, or removes a handle, and is the inverse of loop_join: if loop_join joins
+ * the two caps, given the twin of a half-edge of the cycle and the corresponding half-edge of the
+ * other cap, all links are restored, except which half-edge a vertex stores.
  *
- * The new vertices lie where the old ones do, have their values and descend from them, as do the
- * new edges, whose half-edges 2e run as those of their parents. Elements to the right of the cycle
- * get the new vertices as ends and corners. Caps have no parents; their corners get the values of
- * the half-edges whose place they take.
+ * The new vertices lie where the old ones do, have their values and descend from them. The new
+ * edges descend from the old ones, and their half-edges 2e have the same direction. Elements to the
+ * right of the cycle get the new vertices as ends and corners. The caps have no parents; their
+ * corners get the values of the half-edges that were in the place of their half-edges.
  *
  * `out` may be NULL. Takes time linear in the degrees of the three vertices.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

@@ -11,11 +11,12 @@ void he_seam_clear(he_seam *seam)
 }
 
 typedef struct plan {
-    he_ids cuts;    /* the edges in rising order: new edge i is cut from cuts[i] */
-    he_ids ends;    /* their ends, in rising order */
-    he_ids parts;   /* half-edges at which the parts begin that get a new vertex */
-    size_t moved;   /* half-edges of those parts that leave the vertex, old and new */
-    uint64_t *once; /* edges whose sides nothing else separates at one of their ends */
+    he_ids cuts;  /* the edges to cut, in rising order: new edge i comes from cuts[i] */
+    he_ids ends;  /* the ends of these edges, in rising order */
+    he_ids parts; /* half-edges with which the parts of fans begin that get a new vertex */
+    size_t moved; /* number of half-edges that leave the vertex in those parts, old and new */
+    /* A bit for each cut edge: at one of its ends the fan is closed and has no other cut edge. */
+    uint64_t *once;
     bool marked;
     he_marks marks;
 } plan;
@@ -68,8 +69,8 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_swing_ccw(m, h);
-        /* If h is a cut edge, this part of the fan may lie on the side that gets a new edge; then
-         * the lock of the old edge does not matter. */
+        /* If h is a cut edge, this part of the fan may lie on the side that gets a new edge; the
+         * lock of the old edge does not matter then. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);
         }
@@ -89,7 +90,7 @@ static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfe
 }
 
 /* Counts the cut edges of the fan that begins at `first`; *lowest is set to the half-edge of the
- * one with the lowest id. */
+ * cut edge with the lowest id. */
 static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge *lowest)
 {
     uint32_t count = 0;
@@ -104,8 +105,8 @@ static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, h
     return count;
 }
 
-/* Plans which parts a fan falls into. `first` begins the fan, or is a cut edge if the fan is
- * closed. */
+/* Plans which parts a fan falls into. `first` is the half-edge with which the fan begins; in a
+ * closed fan it is a half-edge of a cut edge. */
 static he_status plan_fan(const he_mesh *m, plan *p, he_halfedge first, he_error *err)
 {
     he_halfedge lowest = {HE_NONE};
@@ -225,7 +226,8 @@ static he_edge open_edge(he_mesh *m, he_edge e)
     return made;
 }
 
-/* Gives the part of a fan that begins with `first` a new vertex at the position of the old one. */
+/* Gives a new vertex, at the position of the old one, to the part of a fan that begins with
+ * `first`. */
 static he_vertex split_fan(he_mesh *m, he_halfedge first)
 {
     he_vertex v = he_origin(m, first), w = he_new_vertex(m);

@@ -9,12 +9,13 @@
 
 /* The results of edge_cut. */
 typedef struct he_seam {
-    he_ids vertices; /* in rising order of the half-edges at which their parts begin */
-    he_ids edges;    /* in rising order of the edges that were cut */
+    /* The new vertices, in rising order of the half-edges with which their parts of fans begin. */
+    he_ids vertices;
+    he_ids edges; /* the new edges, in the order of the ids of the edges that were cut */
 } he_seam;
 
-/* edge_cut: V + the parts that get a new vertex, E + count, F + 0. Interior edges become pairs of
- * boundary edges.
+/* edge_cut opens the mesh along interior edges, which become pairs of boundary edges: V + the
+ * number of parts that get a new vertex (see below), E + count, F + 0.
  *
  *        o-------v-------o             o-------v w-------o
  *        |       ^       |             |       ^ ^       |
@@ -22,19 +23,20 @@ typedef struct he_seam {
  *        |       |       |             |       | |       |
  *        o-------u-------o             o-------u x-------o
  *
- * The cut edges and the boundary part each fan about a vertex. A closed fan that meets one cut edge
- * opens; one that meets k falls into k parts, an open one into k + 1. One part of a fan keeps the
- * vertex: the one on the side of half-edge 2e of the lowest edge that is cut there. Every other
- * part gets a new vertex at the same position, which descends from the old one and has its values.
- * Fans without a cut edge keep the vertex.
+ * The cut edges divide each fan around a vertex into parts. A closed fan with one cut edge becomes
+ * an open fan; a closed fan with k cut edges falls into k parts, an open fan into k + 1. One part
+ * of a fan keeps the vertex: the one on the side of half-edge 2e of the cut edge with the lowest id
+ * there. Every other part gets a new vertex at the same position, which descends from the old one
+ * and has its values. Fans without a cut edge keep the vertex.
  *
  *        a   b                    a   b             where all four edges about an interior vertex
  *        |   |                    |   |             are cut, one part stays and three get a vertex
  *      --v---     v's fans:     --v w--
  *        |                      --x y--
  *
- * A cut edge keeps its id on the side of half-edge 2e, the other side is new and descends from it,
- * with the corner of the face there. Half-edge 2e of a new edge runs along its face.
+ * A cut edge keeps its id on the side of half-edge 2e. On the other side is a new edge, which
+ * descends from it; the corner values of the face there move to it. Half-edge 2e of a new edge runs
+ * along its face.
  *
  * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_seam_clear frees it.
  * Takes time linear in the size of the fans at the ends of the edges.
@@ -51,12 +53,12 @@ HE_NODISCARD he_status he_edge_cut(he_mesh *m, const uint32_t *edges, size_t cou
                                    he_error *err);
 void he_seam_clear(he_seam *seam);
 
-/* Where the ends of two edges are after these are welded: half-way between both, or at the ends of
- * edge a, or at those of edge b. */
+/* Where the ends of two edges lie after edge_weld: half-way between both, where those of edge a
+ * were, or where those of edge b were. */
 typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
 
-/* edge_weld: V - 1 where a and b have an end in common, else V - 2; E - 1, F + 0. Two boundary
- * edges become one, so that their faces are on its two sides.
+/* edge_weld makes one edge of two boundary edges, so that their faces are on its two sides: V - 1
+ * if a and b have an end in common, else V - 2; E - 1, F + 0.
  *
  *        o-------q r-------o            o-------q-------o
  *        |       ^ |       |            |       |       |
@@ -66,10 +68,9 @@ typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
  *
  * r is merged into q, s into p, and b into a, so the ids of a stay. The ends of a move half-way to
  * those of b; or they stay with HE_KEEP_A, or move to those of b with HE_KEEP_B. Values in which
- * the ends differ move
- * to their corners (keep.h) and are counted in `moved`, which may be NULL; edge a keeps its values.
- * A common end stays as it is. At a bow-tie the chain of fans is rearranged if other fans are
- * between a and b (ring.h).
+ * the merged ends differ move to their corners (keep.h); `moved`, which may be NULL, gets the
+ * number of these values. Edge a keeps its values. A common end stays as it is. At a bow-tie the
+ * order of the fans is changed if other fans are between a and b (ring.h).
  *
  * Takes time linear in the size of the faces at the ends of b.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

@@ -1,4 +1,4 @@
-/* edge_weld of seam.h. */
+/* seam_weld.c - edge_weld of seam.h. */
 #include "edit/border/seam.h"
 #include "edit/local/cut.h"
 #include "edit/piece/keep.h"
@@ -6,15 +6,15 @@
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
 
-/* An end of edge a (`stays`), and the end of edge b that is merged into it (`goes`); both are one
- * vertex if the edges share this end. `in` and `out` are the boundary half-edges of a and b that
- * arrive and leave there. */
+/* An end of edge a (`stays`), and the end of edge b that is merged into it (`goes`); they are the
+ * same vertex if the edges share this end. `in` is the boundary half-edge of a or b that arrives
+ * there, `out` the one of the other edge that leaves. */
 typedef struct pair {
     he_vertex stays, goes;
     he_halfedge in, out;
 } pair;
 
-/* Returns that half-edge of a boundary edge which has no face. */
+/* Returns the half-edge of a boundary edge that has no face. */
 static he_halfedge outer(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);

@@ -8,8 +8,8 @@ void he_bisect_reservation(he_reservation *need)
 {
     need->vertices++;
     need->edges++;
-    /* The links are those of the neighbours and of both old half-edges, the half-edges stored by
-     * the target and by two faces, and the origin of half-edge 2e + 1. */
+    /* These links are written: those of the neighbours and of both old half-edges, the half-edges
+     * stored by the target and by two faces, and the origin of half-edge 2e + 1. */
     need->links += 16;
     need->attributes += 2;
     need->lineage++;

@@ -4,8 +4,8 @@
 
 #include "mesh/write.h"
 
-/* edge_bisect: V + 1, E + 1, F + 0. The new vertex w has degree 2; each face beside the edge gets
- * one more corner.
+/* edge_bisect puts a vertex on an edge: V + 1, E + 1, F + 0. The new vertex w has degree 2; each
+ * face beside the edge gets one more corner.
  *
  *           a           b                  a     w     b
  *           o-----------o       --->       o-----o-----o
@@ -15,7 +15,7 @@
  * half-edge 2e' in the direction of 2e, and has e as its parent. w lies at t from a (0) to b (1).
  * Corner values at w are between those of the same face at a and b.
  *
- * Each output may be NULL.
+ * `vertex` is w, and `edge` is e'; each may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BAD_VALUE unless 0 < t < 1.
  * Returns HE_NO_MEMORY if memory is out.
@@ -23,7 +23,7 @@
 HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex *vertex,
                                       he_edge *edge, he_error *err);
 
-/* edge_join: V - 1, E - 1, F + 0. The inverse of edge_bisect: a vertex v of degree 2 is deleted,
+/* edge_join is the inverse of edge_bisect: V - 1, E - 1, F + 0. A vertex v of degree 2 is deleted,
  * and so is the edge with the higher id at v; the other edge keeps its id and direction.
  *
  *           a     v     b                  a           b
@@ -39,9 +39,9 @@ HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err);
 
-/* The last part of edge_bisect, which writes, for edits that do their own checks and reserve their
- * own memory. he_bisect_reservation adds what it writes to `need`; he_bisect_commit returns the
- * half-edge 2e' of the new edge e'. */
+/* These functions are the COMMIT part of edge_bisect, for edits that do their own checks and
+ * reserve their own memory. he_bisect_reservation adds what he_bisect_commit will write to `need`;
+ * he_bisect_commit puts a vertex on edge e and returns half-edge 2e' of the new edge e'. */
 void he_bisect_reservation(he_reservation *need);
 he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t);
 

@@ -26,11 +26,13 @@ typedef struct ring {
     uint32_t count, out[SMALL_RING], target[SMALL_RING];
 } ring;
 
-/* Two walks around a vertex in opposite directions that start at one half-edge, and the number of
- * half-edges that neither has visited yet. */
+/* The state of two walks around a vertex, which start at one half-edge and go in opposite
+ * directions. */
 typedef struct hands {
     he_halfedge up, down;
-    uint32_t ups, downs; /* entries written from the front of the ring, and from the back */
+    /* Number of entries that the two walks have written: from the front of the ring, and from its
+     * back. */
+    uint32_t ups, downs;
     bool open;
 } hands;
 
@@ -58,7 +60,8 @@ static bool turn(const he_mesh *m, hands *at, ring *r)
     return true;
 }
 
-/* Sorts what the two walks have gathered in the order of turning counter-clockwise from h. */
+/* Puts the half-edges that the two walks have gathered in counter-clockwise order, starting at
+ * h. */
 static void close_ring(const hands *at, ring *r)
 {
     r->count = at->ups;
@@ -71,9 +74,9 @@ static void close_ring(const hands *at, ring *r)
     }
 }
 
-/* Gathers the half-edges around both ends of h. Each step of a walk waits for memory, so four
- * walks, in both directions around both ends, advance together. Returns false if an end has too
- * many half-edges for the arrays. */
+/* Gathers the half-edges around both ends of h. Each step of a walk waits for memory, so four walks
+ * advance together: one in each direction around each end. Returns false if an end has too many
+ * half-edges for the arrays. */
 static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
 {
     ring *const rings[2] = {of_u, of_v};
@@ -105,8 +108,8 @@ static bool is_in(const ring *r, uint32_t vertex)
     return found;
 }
 
-/* Checks the link condition's parts L1 and L4 (collapse.h) in one walk around u. If `of_v` is NULL,
- * the half-edges around v are searched for each neighbour. */
+/* Checks the link condition's parts L1 and L4 (collapse.h) for half-edge k, which leaves u. `of_v`
+ * is the ring of v; if it is NULL, the half-edges around v are searched. */
 static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k, const ring *of_v,
                                  he_vertex c, he_vertex d, he_error *err)
 {
@@ -116,7 +119,8 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
         return refuse(err, h, "its ends share a neighbour that is not a corner of its faces",
                       "vertex", w.i);
     }
-    /* All corners of a triangle at u are neighbours of u, so L1 already covers this face for L4. */
+    /* All corners of a triangle at u are neighbours of u, so the check of L1 includes that of
+     * L4. */
     if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
         return HE_OK;
     }
@@ -160,7 +164,7 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
     return HE_OK;
 }
 
-/* Returns true if the origin of h is an interior vertex with three triangles around it. */
+/* Returns true if the origin of h is an interior vertex of three triangles. */
 static bool is_apex(const he_mesh *m, he_halfedge h)
 {
     he_halfedge second = he_swing_ccw(m, h), third = he_swing_ccw(m, second);
@@ -208,8 +212,8 @@ static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedg
     return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
 }
 
-/* Counts the feature edges at the origin of h. *which is set to one of them, if possible not to the
- * edge of h. */
+/* Counts the feature edges at the origin of h. *which is set to one of these edges, if possible not
+ * to that of h. */
 static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
                                he_edge *which)
 {
@@ -271,8 +275,8 @@ static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_
     return status != HE_OK ? status : check_features(m, &marks, h, moves, err);
 }
 
-/* The triangle left of h now has only the two sides `kept` and `gone`, so they become one edge.
- * Deletes `gone`: `kept` takes the place of `outer`, the twin of `gone`. */
+/* Merges the two sides that the triangle left of h still has: `kept` takes the place of `outer`,
+ * the twin of `gone`, and `gone` is deleted. */
 static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
 {
     he_halfedge outer = he_twin(gone);
@@ -337,8 +341,8 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     if (!interior) {
         he_ring_settle(m, v, after);
     } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
-        /* v is an interior vertex, so it needs no boundary half-edge (I8) and the search for one,
-         * which may take long, is skipped. */
+        /* v is an interior vertex, which may store any half-edge (I8), so no search for a boundary
+         * half-edge is needed, which may take long. */
         he_set_vertex_halfedge(m, v, after);
     }
 }

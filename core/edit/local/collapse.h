@@ -4,8 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* edge_collapse of h: u -> v. u is deleted, v stays; V - 1 and, depending on the faces beside the
- * edge,
+/* edge_collapse collapses the edge of half-edge h, u -> v: u is deleted, v stays; V - 1 and,
+ * depending on the faces beside the edge,
  *
  *     two triangles              E - 3, F - 2     triangle and boundary   E - 2, F - 1
  *     triangle and polygon       E - 2, F - 1     otherwise               E - 1, F + 0
@@ -23,11 +23,12 @@
  *              d                             d
  *
  * A triangle u, v, c beside the edge is deleted and its other sides become one edge: the side at v
- * stays, the side at u is merged into it. A polygon loses the corner u. All other edges and faces
- * at u are moved to v.
+ * stays, the side at u is merged into it. A face of more corners beside the edge loses the corner
+ * u. All other edges and faces at u are moved to v.
  *
- * v moves to `to`, or if that is NULL to the point at t from u (0) to v (1); interpolated
- * attributes of v are taken at t, or half-way with `to`. A merged edge takes the mean of both.
+ * v moves to `to`, or if that is NULL to the point at t from u (0) to v (1). Interpolated
+ * attributes of v are taken at t, or half-way between u and v if `to` is not NULL. An edge into
+ * which another is merged takes the mean of both.
  *
  * The link condition (Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving edge contraction",
  * 1999), for polygons and boundaries:
@@ -54,8 +55,8 @@
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);
 
-/* he_edge_collapse with both a position and a parameter: v moves to `to`, and attributes are
- * interpolated at t. */
+/* he_edge_collapse with both a position and a parameter: the target of h moves to `to`, and its
+ * attributes are interpolated at t from the origin of h (0) to the target (1). */
 HE_NODISCARD he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to,
                                            he_error *err);
 

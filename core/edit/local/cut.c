@@ -8,7 +8,8 @@ void he_cut_reservation(uint32_t corners, he_reservation *need)
     need->edges++;
     need->faces++;
     need->links +=
-        (size_t)corners + 5; /* the faces; four links of neighbours, one stored half-edge */
+        /* The corners that get another face, four links of neighbours, and one stored half-edge. */
+        (size_t)corners + 5;
     need->lineage++;
 }
 
@@ -114,9 +115,9 @@ he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he_halfedge to,
     return HE_OK;
 }
 
-/* Returns a corner of face(h), other than the ends of h, that is on `other` too; HE_NONE if there
- * is none. Walks around each corner, so it takes at most time linear in the half-edges of the
- * mesh. */
+/* Returns a corner that face(h) and the face `other` have in common, except the ends of h; HE_NONE
+ * if there is none. Walks around each corner, so it takes at most time linear in the half-edges of
+ * the mesh. */
 static he_vertex shared_corner(const he_mesh *m, he_halfedge h, he_face other)
 {
     he_halfedge x = he_next(m, he_next(m, h));

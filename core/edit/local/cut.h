@@ -5,8 +5,8 @@
 
 #include "mesh/write.h"
 
-/* face_split: V + 0, E + 1, F + 1. `from` and `to` are half-edges of f; the diagonal joins the
- * corners they leave.
+/* face_split splits face f by a diagonal: V + 0, E + 1, F + 1. `from` and `to` are half-edges of f;
+ * the diagonal joins the corners they leave.
  *
  *              <----- o to                         o to
  *            /        ^ \                        / ^\
@@ -15,10 +15,11 @@
  *              \      . /  .                     \ | /         from -> to
  *                from o                       from o
  *
- * The part to the left of from -> to keeps the id of f and its values; the other is new, descends
- * from f and has the half-edge `from`. The new corners copy those they were cut from.
+ * The part to the left of from -> to keeps the id and the values of f; the other part f' is new,
+ * descends from f and has the half-edge `from`. The new corners copy the values of the corners that
+ * were divided.
  *
- * Each output may be NULL.
+ * `edge` is the diagonal, and `face` is f'; each may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the face or a half-edge is not live.
  * Returns HE_NOT_A_CORNER if a half-edge is of another face.
  * Returns HE_SAME_CORNER if both are one corner.
@@ -33,7 +34,7 @@ HE_NODISCARD he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he
  * f. */
 he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
 
-/* face_join: V + 0, E - 1, F - 1. The inverse of face_split: the edge is deleted, and the other
+/* face_join is the inverse of face_split: V + 0, E - 1, F - 1. The edge is deleted, and the other
  * face is merged into f, the face of its half-edge 2e. Interpolated attributes of f become the mean
  * of both.
  *
@@ -52,10 +53,10 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);
 
-/* The last part of face_split, which writes, for edits that do their own checks and reserve their
- * own memory. he_cut_reservation adds to `need` what cutting off a face of `corners` corners
- * writes. he_cut_commit returns half-edge 2e of the diagonal; the new face is on the side of its
- * twin. */
+/* These functions are the COMMIT part of face_split, for edits that do their own checks and reserve
+ * their own memory. he_cut_reservation adds to `need` what cutting off a face of `corners` corners
+ * will write. he_cut_commit returns half-edge 2e of the diagonal; the new face is on the side of
+ * its twin. */
 void he_cut_reservation(uint32_t corners, he_reservation *need);
 he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to);
 

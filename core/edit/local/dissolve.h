@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* vertex_dissolve: V - 1, E - d, F - (d - 1) for an interior vertex with d edges.
+/* vertex_dissolve deletes an interior vertex with d edges and merges the faces around it: V - 1,
+ * E - d, F - (d - 1).
  *
  *        o-----------o               o-----------o
  *        | \       / |               |           |
@@ -15,7 +16,7 @@
  *        o-----------o               o-----------o
  *
  * This is the inverse of face_poke (poke.h). Corners keep their values; interpolated attributes of
- * f become the mean of the faces. `face` is f and may be NULL.
+ * f become the mean of the faces. The output `face` is f and may be NULL.
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_VERTEX if the vertex is on the boundary.

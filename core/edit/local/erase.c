@@ -10,14 +10,14 @@ static bool edge_would_die(const he_mesh *m, he_halfedge h)
     return he_is_boundary_halfedge(m, he_twin(h));
 }
 
-/* Adds what erasing face f writes to `need`. Unless the face is the only one to be deleted
- * (`alone`), its neighbours may be deleted before it, so any of its edges may die. */
+/* Adds what erasing face f writes to `need`. If more faces are deleted (not `alone`), those beside
+ * f may be deleted before it, so each edge of f may be deleted. */
 static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *need)
 {
     he_halfedge first = he_face_halfedge(m, f), h = first;
     do {
-        /* This counts the face and the stored half-edge of each corner; and for each edge that dies
-         * two pairs of links and two stored half-edges. */
+        /* This counts two links for each corner: the face and a stored half-edge; and for each edge
+         * that is deleted two pairs of links and two stored half-edges. */
         need->links += 2;
         if (!alone || edge_would_die(m, h)) {
             need->links += 6;
@@ -29,9 +29,8 @@ static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *ne
     need->deleted_faces++;
 }
 
-/* Takes an edge without faces out of the rings of its ends. If an end has another half-edge, the
- * one that followed the edge in the loop of the hole is a boundary half-edge and becomes the stored
- * one. */
+/* Takes an edge without faces out of the rings of its ends. If an end keeps other half-edges, it
+ * stores the one that followed the edge in the loop of the hole, which is a boundary half-edge. */
 static void erase_edge(he_mesh *m, he_edge e)
 {
     for (unsigned side = 0; side < 2; side++) {
@@ -63,9 +62,9 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     } while (h.i != first.i);
     he_delete_face(m, f);
 
-    /* Erasing an edge relinks its neighbours in the loop, so the walk keeps the next half-edge,
-     * which does not die before its turn. The end is found by counting, because the first half-edge
-     * may be dead by then. */
+    /* Erasing an edge relinks its neighbours in the loop, so the walk remembers the next half-edge,
+     * which is not deleted before it is visited. The end of the loop is found by counting, because
+     * the first half-edge may be deleted by then. */
     uint32_t corners = he_loop_length(m, first);
     for (uint32_t i = 0; i < corners; i++) {
         he_halfedge next = he_next(m, h);
@@ -83,7 +82,7 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     }
 }
 
-/* Checks whether an element is locked that would be deleted with face f. A corner's vertex is
+/* Checks that no element is locked that would be deleted with face f. The vertex of a corner is
  * deleted if f is its last face. */
 static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover leftover, he_error *err)
 {
@@ -107,7 +106,8 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Returns true if left of h is a hole, or a face of the given set, whose faces are deleted. */
+/* Returns true if there is a hole, or a face of the set `faces`, to the left of h. The faces of the
+ * set are deleted. */
 static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);
@@ -126,8 +126,8 @@ static bool origin_goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
     return true;
 }
 
-/* Checks that no element is locked that is deleted with the given faces. Each corner's vertex that
- * is locked is visited once. */
+/* Checks that no element is locked that is deleted with the given faces. Each locked vertex at a
+ * corner is visited once. */
 static he_status check_star_locks(const he_mesh *m, const he_idmap *faces, he_leftover leftover,
                                   he_error *err)
 {
@@ -189,7 +189,7 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
         return erase_one(m, (he_face){faces[0]}, leftover, err);
     }
     /* Which edges are deleted depends on the order of the faces, so memory is reserved for each
-     * face in turn: one reservation for all would have to count every edge twice. */
+     * face separately: a single reservation would have to count every edge twice. */
     he_bracket bracket;
     status = he_edit_begin(m, &bracket, err);
     if (status != HE_OK) {

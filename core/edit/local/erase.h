@@ -1,8 +1,9 @@
 /* erase.h - deletes faces, edges and vertices.
  *
  * A deleted face leaves a hole: its half-edges keep their links and become boundary half-edges.
- * Edges without a face left are deleted, so holes that touch along an edge merge; the ring of a
- * vertex only loses half-edges, so it still visits every fan, and a bow-tie may appear.
+ * Edges that are left without a face are deleted, so holes that touch along an edge merge. Around a
+ * vertex half-edges only disappear, so turning about it still visits every fan; the vertex may
+ * become a bow-tie.
  *
  *        o-------o-------o            o-------o-------o
  *        |       |       |            |       |       |
@@ -11,7 +12,7 @@
  *        o-------o-------o            .       o-------o
  *                                   deleted   (the left edges had no other face)
  *
- * Vertices left without an edge are deleted too, unless the caller asks to keep them.
+ * Vertices that are left without an edge are deleted, too, unless the caller asks to keep them.
  *
  * Every function returns HE_LOCKED_ELEMENT if a face, edge or vertex that would be deleted is
  * locked (marks.h), and HE_NO_MEMORY if memory is out; the mesh is then as it was. */
@@ -24,27 +25,27 @@
 typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 
 /* face_delete: deletes `count` faces, with the edges that are left without a face. All other
- * elements keep their ids. If it is refused, nothing changes.
+ * elements keep their ids. If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 
 /* edge_delete: deletes the faces beside the edges as face_delete does, and with them the edges. A
- * face beside two of the edges is deleted once. V varies, E - count at least, F - the faces beside
- * them. All or nothing: a refusal changes nothing.
+ * face beside two of the edges is deleted once. V varies, E falls by `count` or more, F by the
+ * number of faces beside the edges. If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count,
                                       he_leftover leftover, he_error *err);
 
-/* vertex_delete: deletes the faces of v as face_delete does, then v itself; `leftover` is for the
- * other vertices. An isolated vertex is simply deleted.
+/* vertex_delete: deletes the faces at v as face_delete does, then v itself; `leftover` says what
+ * happens to other vertices that are left without an edge. An isolated vertex is simply deleted.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live. */
 HE_NODISCARD he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover,
                                         he_error *err);
 
-/* delete_isolated: V - n, E + 0, F + 0. Deletes every vertex without an edge. */
+/* delete_isolated deletes every vertex without an edge: V - n for n such vertices, E + 0, F + 0. */
 HE_NODISCARD he_status he_delete_isolated(he_mesh *m, he_error *err);
 
 #endif

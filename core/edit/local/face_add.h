@@ -4,27 +4,27 @@
 
 #include "mesh/mesh.h"
 
-/* face_add: V + 0, E + the edges that were missing, F + 1.
+/* face_add adds a face over existing vertices: V + 0, E + the number of missing edges, F + 1.
  *
  *        c       d                    c - - - d           The face runs counter-clockwise through
  *        |       |                    |       |           the vertices in the order given. Edges
  *        |       |      a,b,d,c       |  new  |           it needs that exist must be on the
  *        a-------b      --->          a-------b           boundary on its side and are adopted.
  *
- * If two of its sides meet at a vertex v and both exist, the face fills the gap between two fans.
- * If other fans lie in that gap, their links are moved to another gap first:
+ * If two sides of the face meet at a vertex v and both exist already, the face fills the gap
+ * between two fans of v. If other fans lie in that gap, their links are moved to another gap first:
  *
  *        ring at v:  Y, Z.., X, W..   --->   Y + new + X, Z.., W..
  *
  * This works unless X and Y are one fan: the face would close it, which is allowed only if the
  * vertex has no other fan.
  *
- * The old elements keep their ids. `out` is the face, whose half-edge leaves the first vertex; the
- * ids of new edges are appended to `edges`, in the face's order. Both may be NULL. Half-edge 2e of
- * a new edge runs along the face.
+ * The old elements keep their ids. `out` is the new face, whose stored half-edge leaves the first
+ * vertex. The ids of new edges are appended to `edges`, in the order of the face. Both may be NULL.
+ * Half-edge 2e of a new edge runs along the face.
  *
- * No pair of vertices can get a second edge: an existing edge between two neighbours is adopted or
- * the edit is refused.
+ * No pair of vertices can get a second edge: an existing edge between two neighbours of the list
+ * becomes a side, or the edit is refused.
  * Returns HE_TOO_FEW_CORNERS if there are fewer than three vertices.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_CORNER if a vertex is not live or
  * is listed twice.

@@ -3,8 +3,8 @@
 #include "edit/local/collapse.h"
 #include "mesh/write.h"
 
-/* Returns the half-edge that runs from the next corner to corner `a`, along the side of what is
- * left of the face; if the face is deleted already, the half-edge from `last` to `a`. */
+/* Returns the half-edge from the next corner of face f to corner `a`, outside the face. If f is
+ * deleted already, returns the half-edge from `last` to `a`. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {
@@ -17,8 +17,8 @@ static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex
     return he_twin(h);
 }
 
-/* Refuses a face whose collapse would take too much work. Every collapse of a side visits the loops
- * of the faces around its ends again, at a vertex into which the earlier corners were merged. */
+/* Refuses a face whose collapse would take too much work. Every collapse of a side visits again the
+ * loops of all faces around its ends, and at one end the faces of all corners merged before. */
 static he_status check_work(const he_mesh *m, he_face f, uint32_t n, he_error *err)
 {
     uint64_t steps = 0, most = HE_FACE_COLLAPSE_STEPS / n;
@@ -63,7 +63,8 @@ he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *e
         return status;
     }
     for (uint32_t k = 1; status == HE_OK && k < n; k++) {
-        /* The weight of the corner that is merged into a. Vertex a already stands for k corners. */
+        /* The weight of the corner that is merged into a, which k corners have been merged into
+         * already. */
         double t = (double)k / (k + 1);
         status = he_edge_collapse(m, next_side(m, f, a, last), t, NULL, NULL, err);
     }

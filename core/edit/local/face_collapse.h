@@ -5,12 +5,12 @@
 #include "mesh/mesh.h"
 
 /* The most work that the collapse of one face may take, measured as the number of its corners times
- * the half-edges of the loops at them. */
+ * the number of half-edges in the loops at its corners. */
 enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
 
 /* face_collapse: a face of n corners is deleted, and its corners become one vertex at their mean: V
- * - (n - 1). Among polygons of more corners E - n, F - 1; a triangle beside one of the sides is
- * deleted too, with another edge.
+ * - (n - 1). If no face beside it is a triangle, E - n, F - 1; a triangle beside one of the sides
+ * is deleted, too, with another edge.
  *
  *        o---o---o---o               o----o----o
  *        |   |   |   |               |\   |   /|
@@ -20,11 +20,11 @@ enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
  *        |   |   |   |               |/   |   \|
  *        o---o---o---o               o----o----o
  *
- * It runs edge_collapse on the sides, in order: a, the corner that the stored half-edge leaves,
- * stays, and the corner after it is merged into it, until only the two ends of the last side are
- * left, which is collapsed too. Interpolated attributes of a become the mean of the corners'.
+ * The edit runs edge_collapse on the sides, in order. The corner a that the stored half-edge leaves
+ * stays, and the corner after it is merged into it, again and again, until the last side is
+ * collapsed. Interpolated attributes of a become the mean of all corners.
  *
- * All or nothing: a refusal changes nothing. `vertex` is a and may be NULL.
+ * If the edit is refused, nothing changes. The output `vertex` is a and may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_LINK_CONDITION or HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if edge_collapse refuses one of
  * the sides.

@@ -4,8 +4,8 @@
 #include "mesh/marks.h"
 
 /* Checks that the origin of h, which loses edge e, keeps at least three edges or is on the
- * boundary. Three steps around the vertex decide whether its degree is at least 4; a walk around
- * the whole vertex would make a thousand flips at one vertex slow. */
+ * boundary. Three steps around the vertex decide whether its degree is at least 4. A walk around
+ * the whole vertex would be slow at a vertex with many edges. */
 static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_halfedge second = he_swing_ccw(m, he_swing_ccw(m, h));
@@ -62,7 +62,8 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
         return status;
     }
     /* Half-edge twin(next(h)) leaves c inside face(h). The search for an edge from c to d walks in
-     * both directions around c, so starting there it soon reaches both sides of that face. */
+     * both directions around c, so starting there it soon finds edges on both sides of that
+     * face. */
     he_halfedge joined = he_find_halfedge_from(m, he_twin(he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,

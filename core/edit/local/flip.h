@@ -4,8 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* edge_flip: V + 0, E + 0, F + 0. The edge turns counter-clockwise: each end moves to the next
- * corner of its face. Ids of edge and faces stay; half-edge 2e runs d -> c and keeps its face.
+/* edge_flip turns an edge inside the two faces beside it: V + 0, E + 0, F + 0. It turns
+ * counter-clockwise: each end moves to the next corner of its face. Ids of edge and faces stay;
+ * half-edge 2e runs d -> c and keeps its face.
  *
  *          c       b                   c       b             2e: a -> b   --->   d -> c
  *          o<------o                   o<------o
@@ -16,10 +17,11 @@
  *          o------>o                   o------>o              corners after b and a)
  *          a       d                   a       d
  *
- * The corner values of f's new corner d are those it had in g, and the reverse for c.
+ * The new corner of f at d gets the values of the corner of g at d; the new corner of g at c gets
+ * those of the corner of f at c.
  *
- * At every vertex concerned a fan loses or gains an edge between two of its faces, so no fan closes
- * or opens.
+ * At each of the four vertices a fan loses or gains an edge between two of its faces, so no fan
+ * closes or opens.
  *
  * Takes time linear in the corners of both faces and the lesser degree of c and d.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

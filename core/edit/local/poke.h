@@ -4,7 +4,8 @@
 
 #include "mesh/write.h"
 
-/* face_poke: V + 1, E + n, F + (n - 1) for a face of n corners.
+/* face_poke divides a face of n corners into triangles around a new vertex w: V + 1, E + n,
+ * F + (n - 1).
  *
  *        o-----------o               o-----------o
  *        |           |               | \   f2  / |
@@ -18,9 +19,10 @@
  * The triangle of the stored half-edge keeps the id of f; the others descend from it. Half-edge 2e
  * of a new edge runs from the old corner to w. Ids follow the loop from the stored half-edge. w is
  * at `position`, or at the mean of the corners if that is NULL; its interpolated attributes, and
- * those of its corners, are the mean of those around it.
+ * those of the corners at w, are the mean of those around the loop.
  *
- * New ids are appended to `edges` and `faces`; each output may be NULL.
+ * `vertex` is w; the ids of new edges and faces are appended to `edges` and `faces`. Each of the
+ * three may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_NOT_FINITE if the position is not finite.
  * Returns HE_NO_MEMORY if memory is out.
@@ -28,25 +30,29 @@
 HE_NODISCARD he_status he_face_poke(he_mesh *m, he_face f, const he_vec3 *position,
                                     he_vertex *vertex, he_ids *edges, he_ids *faces, he_error *err);
 
-/* A planned face_poke of any loop, of a face or a hole. Without `keep` all n triangles are new
- * faces, as in a hole; with `keep` the first triangle keeps the id of the face of `first`. */
+/* A plan to fill a loop, the border of a face or a hole, with triangles around a new vertex. With
+ * `keep` the first triangle keeps the id of the face that has the half-edge `first`; without
+ * `keep`, as for a hole, all n triangles are new faces. */
 typedef struct he_poke {
     he_halfedge first;
     bool keep;
     uint32_t corners;
     he_vec3 position;
     he_ids around,
-        loop; /* the corners' vertices and half-edges; filled only if there are columns */
+        /* The vertices and half-edges of the loop; filled only if the mesh has columns whose values
+         * are copied. */
+        loop;
 } he_poke;
 
-/* Plans the edit and adds what he_poke_commit writes to `need`; the caller reserves it.
- * he_poke_clear frees the plan.
+/* Plans to fill the loop of `first`, and adds what he_poke_commit will write to `need`, which the
+ * caller must reserve. he_poke_clear frees the plan.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out,
                                     he_reservation *need, he_error *err);
 void he_poke_clear(he_poke *poke);
-/* Writes the planned triangles and cannot fail. `edges` and `faces` must have room, or be NULL. For
- * the vertices of a hole's loop the caller must call he_ring_settle. */
+/* Writes the planned triangles and cannot fail. The lists `edges` and `faces` must have memory for
+ * all new ids, or be NULL. If the loop was a hole, the caller must then call he_ring_settle for its
+ * vertices. */
 he_vertex he_poke_commit(he_mesh *m, const he_poke *poke, he_ids *edges, he_ids *faces);
 
 #endif

@@ -8,12 +8,13 @@ typedef struct he_split {
     he_vertex vertex;
     he_edge edges[3]; /* the new part of the edge, then the diagonals */
     he_face faces[2];
-    unsigned sides; /* faces beside the edge: 2, or 1 on the boundary; there is one edge more */
+    /* Number of faces beside the edge: 2, or 1 on the boundary; `edges` has one entry more. */
+    unsigned sides;
 } he_split;
 
-/* edge_split: V + 1, E + 3, F + 2; on the boundary V + 1, E + 2, F + 1. Bisects the edge
- * (edge_bisect), and adds in each face beside it a diagonal from the new vertex w to the second
- * corner after it, which in a triangle is the opposite one.
+/* edge_split: V + 1, E + 3, F + 2; on the boundary V + 1, E + 2, F + 1. It puts a vertex on the
+ * edge (edge_bisect), and adds in each face beside it a diagonal from the new vertex w to the
+ * second corner after it, which in a triangle is the opposite one.
  *
  *              c                          c
  *             o                          o

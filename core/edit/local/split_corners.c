@@ -29,8 +29,8 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
     return HE_OK;
 }
 
-/* Links h into the loop of a corner, between the half-edge `enters`, which arrives at the vertex,
- * and the half-edge that followed it. */
+/* Links h into a corner: between the half-edge `enters`, which arrives at the vertex, and the
+ * half-edge that followed `enters` in its loop. */
 static void into_corner(he_mesh *m, he_halfedge enters, he_halfedge h)
 {
     he_halfedge leaves = he_next(m, enters);

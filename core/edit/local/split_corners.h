@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* vertex_split_corners: V + 1, E + 1, F + 0. a and b are different half-edges that leave v.
+/* vertex_split_corners splits a vertex v into an edge between two of its corners: V + 1, E + 1,
+ * F + 0. a and b are different half-edges that leave v.
  *
  *          g                             g
  *      o       o b                   o       o b
@@ -16,14 +17,14 @@
  *          f                         o   |   o
  *                                      a o
  *
- * The new edge lies between the two corners that separate them: that of the face of twin(a), which
- * is clockwise before a, and that of twin(b). One of them may be the corner of a hole. Each face of
- * the two gets one more corner. u lies where v does; half-edge 2e runs from u to v, so that
- * edge_collapse of it is the inverse. At a bow-tie whole fans may go to u too, in the order in
- * which turning about v visits them.
+ * The new edge lies in the two corners that separate the half-edges of u from those of v: the
+ * corner clockwise before a, in the face of twin(a), and the corner clockwise before b, in the face
+ * of twin(b). One of these corners may belong to a hole. Each of the two faces gets one more
+ * corner. u lies where v does; half-edge 2e runs from u to v, so that edge_collapse of it is the
+ * inverse. If v is a bow-tie, whole fans may go to u, too.
  *
- * u descends from v, the edge has no parent; u and the new corners have the values of v and of the
- * corner that each was part of. Outputs may be NULL.
+ * u descends from v, the edge has no parent; u has the values of v, and each new corner those of
+ * the corner that was divided. The outputs are u and the new edge; each may be NULL.
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_SAME_CORNER if a is b.

@@ -4,8 +4,8 @@
 #include "edit/piece/ring.h"
 
 /* Where vertex v is cut: along the half-edges v -> left and v -> right, of which one is HE_NONE if
- * the client gave null. The `count` half-edges counter-clockwise from `first` will leave the new
- * vertex u. */
+ * the caller gave a null vertex. The `count` half-edges counter-clockwise from `first` will leave
+ * the new vertex u. */
 typedef struct cut {
     he_halfedge left, right;
     he_halfedge first;
@@ -67,7 +67,7 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
     if (status != HE_OK) {
         return status;
     }
-    /* A null for `left` or `right` stands for the hole at v. In the order of turning, the hole lies
+    /* If `left` or `right` is null, it stands for the hole at v. Counter-clockwise, the hole lies
      * between the last half-edge of the fan, which is the boundary half-edge that v stores, and the
      * first. */
     he_halfedge hole = he_vertex_halfedge(m, v);
@@ -97,7 +97,7 @@ static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
     return h;
 }
 
-/* Lets the new half-edge `made` take the place of `old` in the loop on the left of `old`. */
+/* Puts the new half-edge `made` in the place of `old` in the loop of `old`. */
 static void replace(he_mesh *m, he_halfedge old, he_halfedge made)
 {
     he_face f = he_face_of(m, old);
@@ -123,8 +123,8 @@ static he_face new_triangle(he_mesh *m, he_halfedge a, he_halfedge b, he_halfedg
     return f;
 }
 
-/* Links the new boundary half-edge h into a hole at v: after the half-edge that arrives at v, and
- * before `hole`, which leaves v. */
+/* Links the new boundary half-edge h into the loop of a hole at v: directly before `hole`, which
+ * leaves v. */
 static void into_hole(he_mesh *m, he_halfedge h, he_halfedge hole)
 {
     he_link(m, he_prev(m, hole), h);

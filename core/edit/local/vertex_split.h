@@ -5,13 +5,15 @@
 #include "mesh/mesh.h"
 
 typedef struct he_vertex_parts {
-    he_vertex vertex; /* u */
-    he_edge edges[3]; /* u-v, then u-left and u-right, if they exist */
-    he_face faces[2]; /* left and right of u -> v */
-    unsigned sides;   /* faces: 2, or 1 with a null; there is one edge more */
+    he_vertex vertex; /* u, the new vertex */
+    he_edge edges[3]; /* the edge u-v, then those from u to `left` and to `right`, if they exist */
+    he_face faces[2]; /* the triangles left and right of u -> v */
+    /* Number of new faces: 2, or 1 if `left` or `right` was null; `edges` has one entry more. */
+    unsigned sides;
 } he_vertex_parts;
 
-/* vertex_split: V + 1, E + 3, F + 2; with one null V + 1, E + 2, F + 1.
+/* vertex_split splits a vertex v into an edge with a triangle on each side: V + 1, E + 3, F + 2; if
+ * `left` or `right` is null, V + 1, E + 2, F + 1.
  *
  *            left                         left
  *              o                            o
@@ -24,17 +26,17 @@ typedef struct he_vertex_parts {
  *              o                          right
  *            right
  *
- * `left` and `right` are neighbours of v. The sectors about v from left to right, counter-
- * clockwise (a and b), go to the new vertex u, which lies at `to`; the others stay with v, and v
- * stays where it is. Two triangles fill the gap: u, v, left and v, u, right. edge_collapse of u ->
- * v is the exact inverse: it restores all links, except which half-edge an interior v stores.
+ * `left` and `right` are neighbours of v. The faces and edges around v that lie counter-clockwise
+ * from left to right (a and b) go to the new vertex u, which lies at `to`; the others stay with v,
+ * and v stays where it is. Two triangles fill the gap: u, v, left and v, u, right. edge_collapse of
+ * u -> v is the exact inverse: it restores all links, except which half-edge an interior v stores.
  *
  * If v is on the boundary, `left` or `right` may be null ({HE_NONE}) and then stands for the hole
  * at v. Afterwards the hole is on that side of the new edge, and there is a triangle on the other
  * side only.
  *
- * The edges v-left and v-right keep their ids; the edges of u to the same vertices are new and
- * descend from them, as u does from v. Half-edge 2e of a new edge leaves u.
+ * The edges v-left and v-right keep their ids; the edges u-left and u-right are new and descend
+ * from them, as u does from v. Half-edge 2e of a new edge leaves u.
  *
  * `out` may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

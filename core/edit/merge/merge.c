@@ -77,8 +77,8 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
     he_status status = check_faces(p, &marks, err);
     for (uint32_t i = 0; status == HE_OK && i < p->group.count; i++) {
         he_vertex v = {p->group.ids[i]};
-        /* Whether a vertex moves is tested only if it stays, because the test visits all vertices
-         * that are merged into it. */
+        /* If the vertex goes into another one, it is not tested whether it moves, because that test
+         * visits all vertices that are merged into it. */
         if (goes_into_another(p, v) || moves(p, i)) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }
@@ -113,7 +113,7 @@ static he_status reserve(he_merge_plan *p, he_error *err)
 }
 
 /* Moves the corners of a face from deleted half-edges to those that take their place. Each link is
- * read before anything is written that leads to it. */
+ * read before it is overwritten. */
 static void relink_face(const he_merge_plan *p, he_face f)
 {
     he_mesh *m = p->m;
@@ -211,8 +211,8 @@ static void commit(const he_merge_plan *p)
     write_vertices(p);
 }
 
-/* Writes the merge. Values that merged vertices would lose are moved to corners first; if anything
- * fails, they are moved back. */
+/* Performs the merge. Values that merged vertices would lose are first moved to corners; if
+ * anything fails, they are moved back. */
 static he_status write(he_merge_plan *p, uint64_t *moved, he_error *err)
 {
     const he_keep_pairs pairs = {p->how->gone, p->how->into, p->how->count};

@@ -11,7 +11,8 @@
  *
  *  - An edge whose ends become one is deleted, and the faces beside it lose a corner. A face left
  *    with fewer than three corners is deleted.
- *  - If several faces then run through the same corners in the same order, only the lowest stays.
+ *  - If several faces then run through the same corners in the same order, only the face with the
+ * lowest id stays.
  *  - Edges without a face are deleted; so are vertices left without an edge, except those into
  *    which others were merged.
  *
@@ -24,11 +25,10 @@
 
 #include "mesh/mesh.h"
 
-/* Where a vertex lies after others were merged into it: at the mean of all of them, or where it
- * was. */
+/* Where a vertex lies after other vertices were merged into it. */
 typedef enum he_merge_place {
-    HE_MERGE_MEAN, /* at the mean of all of them */
-    HE_MERGE_INTO  /* where it was */
+    HE_MERGE_MEAN, /* at the mean of all merged vertices */
+    HE_MERGE_INTO  /* where it was before */
 } he_merge_place;
 
 typedef struct he_merge {
@@ -39,9 +39,9 @@ typedef struct he_merge {
     he_merge_place place;
 } he_merge;
 
-/* Merges vertices: V - count, and less if other vertices are deleted as well. Does nothing if
- * `count` is 0. `moved`, which may be NULL, gets the number of vertex values that are kept at
- * corners (edit/piece/keep.h).
+/* Merges vertices: V falls by `count`, and by more if other vertices are deleted as well. Does
+ * nothing if `count` is 0. `moved`, which may be NULL, gets the number of vertex values that are
+ * kept at corners (edit/piece/keep.h).
  *
  * Returns HE_REPEATED_CORNER if a face would pass a vertex twice.
  * Returns HE_NONMANIFOLD_EDGE if more than two faces would meet at an edge.

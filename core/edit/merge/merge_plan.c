@@ -12,8 +12,8 @@ static he_halfedge before(const he_merge_plan *p, he_halfedge h)
     return h;
 }
 
-/* Returns the old half-edge whose face will be the face of h after the merge; HE_NONE if h will be
- * a boundary half-edge. */
+/* Returns the old half-edge whose face h will have after the merge; HE_NONE if h will be a boundary
+ * half-edge. */
 static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
@@ -23,7 +23,7 @@ static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
 
-/* Returns what he_swing_ccw of h will be after the merge. h must have a face then. */
+/* Returns the half-edge that he_swing_ccw(h) will be after the merge, when h must have a face. */
 static he_halfedge swing(const he_merge_plan *p, he_halfedge h)
 {
     return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
@@ -38,7 +38,7 @@ static uint32_t *new_list(size_t count, he_error *err)
     return list;
 }
 
-/* --- elements that take part --------------------------------------------------------------- */
+/* --- elements that the merge changes --- */
 
 he_status he_merge_find_group(he_merge_plan *p, he_error *err)
 {
@@ -64,7 +64,8 @@ he_status he_merge_find_group(he_merge_plan *p, he_error *err)
         p->rep[i] = p->group.ids[i];
         p->next[i] = HE_NONE;
     }
-    /* Going backwards puts each list into the caller's order. */
+    /* Each vertex is put at the front of its list, so going backwards leaves each list in the
+     * caller's order. */
     for (size_t i = how->count; i-- > 0;) {
         uint32_t gone = he_merge_index(&p->group, how->gone[i]),
                  into = he_merge_index(&p->group, how->into[i]);
@@ -95,7 +96,8 @@ he_status he_merge_find_rings(he_merge_plan *p, he_error *err)
     return status == HE_OK ? he_ids_sort(&p->faces, err) : status;
 }
 
-/* Counts the corners that face i keeps; if it is deleted, all its edges become part of the plan. */
+/* Counts the corners that face i keeps. If the face is deleted, all its edges are added to the
+ * plan. */
 static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -119,7 +121,7 @@ static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
     return status;
 }
 
-/* Checks that face i, if it stays, does not pass a vertex twice after the merge. */
+/* Checks that face i does not pass a vertex twice after the merge, unless it is deleted. */
 static he_status check_corners(const he_merge_plan *p, size_t i, he_ids *corners, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -174,8 +176,8 @@ static size_t slot_of(const he_merge_plan *p, uint32_t a, uint32_t b)
     return (size_t)(h >> 32) & (p->slot_count - 1);
 }
 
-/* Records that edge i stays, or that it is merged into an edge which will have the same two
- * ends. */
+/* Records in the plan that edge i stays, or that it is merged into an edge that will have the same
+ * two ends. */
 static void enter(he_merge_plan *p, uint32_t i)
 {
     he_halfedge h = {2 * p->edges.ids[i]};
@@ -221,10 +223,10 @@ he_status he_merge_pair_edges(he_merge_plan *p, he_error *err)
     return HE_OK;
 }
 
-/* --- which faces lie along the edges that stay --- */
+/* --- the faces beside the edges that stay --- */
 
-/* Returns true if the faces of the old half-edges a and b will pass the same vertices in the same
- * order, starting at a and b. */
+/* Returns true if the faces of the old half-edges a and b will be equal: starting at a and b, they
+ * will pass the same vertices in the same order. */
 static bool is_same_face(const he_merge_plan *p, he_halfedge a, he_halfedge b)
 {
     he_halfedge h = a, k = b;
@@ -255,8 +257,8 @@ static void occupy_face(const he_merge_plan *p, size_t i)
 {
     he_halfedge first = he_face_halfedge(p->m, (he_face){p->faces.ids[i]});
     first = he_merge_shrinks(p, first) ? he_merge_after(p, first) : first;
-    /* If the face equals another one, each of its half-edges is merged into a side of that one, so
-     * looking at one half-edge suffices. */
+    /* If the face equals another one, each of its half-edges is merged into one of the other face,
+     * so testing one half-edge suffices. */
     uint32_t at = he_merge_index(&p->edges, he_edge_of(he_merge_heir(p, first)).i);
     if (at != HE_NONE && p->fates[at].occupant[he_merge_heir(p, first).i & 1] != HE_NONE) {
         he_halfedge other = {p->fates[at].occupant[he_merge_heir(p, first).i & 1]};
@@ -288,7 +290,8 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
         he_merge_fate *f = &p->fates[i];
         uint32_t e = p->edges.ids[i];
         for (unsigned side = 0; f->into == e && side < 2; side++) {
-            /* The face beside a deleted face may have no merged vertex, so it is added here. */
+            /* The face beside a deleted face may have no merged vertex and not be in the plan yet,
+             * so it is added. */
             he_halfedge h = he_edge_halfedge((he_edge){e}, side);
             if (!he_is_boundary_halfedge(m, h) &&
                 he_merge_index(&p->faces, he_face_of(m, h).i) == HE_NONE) {
@@ -311,7 +314,7 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
     return HE_OK;
 }
 
-/* --- rings ---------------------------------------------------------------------------------- */
+/* --- rings: the half-edges around a vertex --- */
 
 static he_status find_rim(he_merge_plan *p, he_error *err)
 {
@@ -332,8 +335,8 @@ static he_status find_rim(he_merge_plan *p, he_error *err)
     return status;
 }
 
-/* Lists the half-edges that will leave vertex v after the merge. v is a vertex at which the links
- * between fans may change. */
+/* Lists the half-edges that will leave vertex v after the merge; the links between the fans of v
+ * may change. */
 static he_status find_ring(const he_merge_plan *p, he_vertex v, he_ids *ring, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -362,7 +365,8 @@ static bool is_boundary(const he_merge_plan *p, he_halfedge h)
     return occupant_of(p, h).i == HE_NONE;
 }
 
-/* Links the fans at the i-th vertex whose fans change, and chooses the half-edge that it stores. */
+/* Links the fans of the i-th vertex of the list `rim` with each other, and chooses the half-edge
+ * that the vertex will store. */
 static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_error *err)
 {
     he_vertex v = {p->rim.ids[i]};
@@ -376,8 +380,8 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         if (is_boundary(p, h) || !is_boundary(p, he_twin(h))) {
             continue;
         }
-        /* A new fan begins here: the boundary half-edge that ends the fan before it is linked to
-         * the one that arrives at this fan. */
+        /* A new fan begins here, so the boundary half-edge that arrives at the vertex is linked to
+         * the one that ends the fan before. */
         if (out.i != HE_NONE) {
             status = he_ids_add(&p->holes, he_twin(h).i, err);
             if (status == HE_OK) {

@@ -6,37 +6,46 @@
 #include "edit/merge/merge.h"
 #include "mesh/write.h"
 
-/* What happens to an edge if one of its ends is merged, or if a face beside it is deleted. */
+/* What a merge does to an edge if one of its ends is merged, or if a face beside it is deleted. */
 typedef struct he_merge_fate {
-    uint32_t into; /* the edge into which it is merged, itself, or HE_NONE if its ends become one */
-    uint32_t turned;      /* 1 if half-edge 2e takes the place of 2 * into + 1 */
-    uint32_t occupant[2]; /* for an edge that stays: the old half-edge whose face will run along
-                             each side */
-    uint32_t uses[2];     /* how many faces will run along each side */
+    /* The edge into which this one is merged; itself if it stays; HE_NONE if its ends become one
+     * vertex. */
+    uint32_t into;
+    /* 1 if half-edge 2e takes the place of half-edge 2 * into + 1, so that the direction
+     * changes. */
+    uint32_t turned;
+    /* The old half-edges whose faces will be on the two sides of an edge that stays. */
+    uint32_t occupant[2];
+    uint32_t uses[2]; /* for each side, how many faces would be there */
 } he_merge_fate;
 
-/* What a merge will do to each element concerned. Lists of ids are sorted unless they say
- * otherwise; each array is parallel to a list. */
+/* What a merge will do to each element concerned. Lists of ids are sorted, unless their comment
+ * says otherwise; each array has one entry for each id of the list before it. */
 typedef struct he_merge_plan {
     he_mesh *m;
     const he_merge *how;
-    he_ids group;   /* the vertices to be merged */
-    uint32_t *rep;  /* for each the vertex it becomes */
-    uint32_t *next; /* for each the next of those that become one vertex, from rep on; HE_NONE at
-                       the end */
+    he_ids group;  /* the vertices to be merged */
+    uint32_t *rep; /* for each vertex of `group`, the vertex it becomes */
+    /* The next vertex that becomes the same vertex as this one of `group`; such a list begins with
+     * the vertex in `rep` and ends with HE_NONE. */
+    uint32_t *next;
     he_ids edges;
     he_merge_fate *fates;
-    uint32_t *slots; /* hash table of the edges that stay, by their ends: index in edges + 1 */
+    /* A hash table of the edges that stay, by their ends; it has the index in `edges`, plus 1. */
+    uint32_t *slots;
     size_t slot_count;
     he_ids faces;
-    uint32_t *goes;   /* HE_NONE: it stays; HE_DEAD: it is deleted; else the face it is equal to */
-    he_ids rim;       /* vertices that stay and whose rings change */
-    uint32_t *stored; /* the half-edge each of those will store; HE_DEAD if it is deleted */
-    he_ids holes;     /* pairs of boundary half-edges that will follow each other; unsorted */
-    size_t corners;   /* corners of the faces */
+    /* What becomes of each face: HE_NONE if it stays, HE_DEAD if it is deleted, else the face that
+     * equals it and stays. */
+    uint32_t *goes;
+    he_ids rim; /* vertices that stay and whose half-edges change */
+    /* The half-edge that each vertex of `rim` will store; HE_DEAD if the vertex is deleted. */
+    uint32_t *stored;
+    he_ids holes;   /* pairs of boundary half-edges that will follow each other; unsorted */
+    size_t corners; /* number of corners of the faces */
 } he_merge_plan;
 
-/* Returns the index of an id in a sorted list, or HE_NONE. */
+/* Returns the index of an id in a sorted list, or HE_NONE if the list does not have it. */
 static inline uint32_t he_merge_index(const he_ids *list, uint32_t id)
 {
     size_t low = 0, high = list->count;
@@ -92,7 +101,7 @@ static inline bool he_merge_stays(const he_merge_plan *p, he_halfedge h)
 }
 
 /* These functions plan a merge and must be called in this order, because each uses the results of
- * those before. They return the errors that merge.h lists. */
+ * the ones before. They return the errors that merge.h lists. */
 HE_NODISCARD he_status he_merge_find_group(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_rings(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_faces(he_merge_plan *p, he_error *err);

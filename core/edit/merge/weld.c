@@ -33,8 +33,8 @@ he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_
     return status;
 }
 
-/* Finds the vertices that are merged (`gone`) and for each the vertex into which it is merged
- * (`to`). */
+/* Finds the vertices that are merged (`gone`) and for each of them the vertex into which it is
+ * merged (`to`). */
 static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he_ids *to,
                             he_error *err)
 {

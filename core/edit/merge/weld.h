@@ -4,8 +4,8 @@
 
 #include "edit/merge/merge.h"
 
-/* vertex_weld: merges the given vertices into the one with the lowest id; V, E and F fall by what
- * is deleted.
+/* vertex_weld: merges the given vertices into the one with the lowest id; V, E and F fall by the
+ * numbers of deleted elements.
  *
  *     o---o       o---o               o---o---o          o---o           o---o
  *     |   a       b   |               |   a   |          |  / \ f        |   |
@@ -15,8 +15,8 @@
  *
  * merge.h says which other elements are merged or deleted. The vertex with the lowest id moves to
  * the mean of all, or stays where it is if `place` is HE_MERGE_INTO. `into`, which may be NULL,
- * gets the vertex that stays;
- * `moved`, which may be NULL, counts the values that moved from vertices to corners (keep.h).
+ * gets the vertex that stays. `moved`, which may be NULL, gets the number of values that were moved
+ * from vertices to corners (keep.h).
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
@@ -27,15 +27,16 @@ HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size
                                       he_merge_place place, he_vertex *into, uint64_t *moved,
                                       he_error *err);
 
-/* weld: merges all vertices that are close together. Takes the vertices in rising order of ids.
- * Each is merged into the first vertex that is no farther away than `tolerance` and was not itself
- * merged; if there is none, it stays and later vertices may be merged into it. So all vertices that
- * become one lie in a ball around the one with the lowest id, and merging does not run along
- * chains. With a tolerance of 0 vertices at equal positions are merged.
+/* weld: merges all vertices that are close together. Vertices are visited in rising order of ids.
+ * Each one is merged into the first vertex that is no farther away than `tolerance` and was not
+ * merged itself; if there is no such vertex, it stays, and later vertices may be merged into it. So
+ * all vertices that become one lie in a ball around the one with the lowest id, and a chain of
+ * vertices with small gaps does not become one vertex. With a tolerance of 0 vertices at equal
+ * positions are merged.
  *
  * The ids of the vertices into which others were merged are appended to `into`, in rising order.
- * Takes time linear in the number of vertices, with the grid of point_grid.h. Returns the errors of
- * vertex_weld, too.
+ * Takes time linear in the number of vertices, with the grid of point_grid.h. Fails as vertex_weld
+ * does, and:
  * Returns HE_BAD_VALUE if the tolerance is negative. */
 HE_NODISCARD he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place,
                                     he_ids *into, uint64_t *moved, he_error *err);

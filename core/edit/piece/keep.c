@@ -14,7 +14,7 @@ static bool has_corners(const he_mesh *m, uint32_t v)
 }
 
 /* Returns true if vertex `gone`, which is merged into vertex `into`, has a different value of the
- * attribute. Where new elements get the attribute's default, the default counts as no value. */
+ * attribute. If the attribute's rule is `default`, the default counts as no value. */
 static bool differs(const he_column *column, uint32_t gone, uint32_t into)
 {
     const unsigned char *value = he_column_value(column, gone);
@@ -55,7 +55,7 @@ static bool is_needed(const he_mesh *m, const he_column *column)
     return false;
 }
 
-/* Returns true if all corners at vertex v have the value of v, so that its value is kept there. */
+/* Returns true if all corners at vertex v have the value of v already, so that it is kept there. */
 static bool says_so(const he_mesh *m, const he_column *corners, const he_column *column, uint32_t v)
 {
     he_halfedge first = he_vertex_halfedge(m, (he_vertex){v}), h = first;
@@ -138,8 +138,8 @@ static he_status keep_column(he_mesh *m, const he_column *column, const he_keep_
 static he_status keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
 {
     he_status status = HE_OK;
-    /* The columns that this loop adds belong to corners, and the loop skips columns of corners, so
-     * it does not visit its own. */
+    /* The columns that this loop adds are columns of corners, which the loop skips, so it does not
+     * process them. */
     for (size_t slot = 0; slot < m->c.column_count && status == HE_OK; slot++) {
         const he_column *column = m->c.columns[slot];
         if (is_value(column) && count_differing(m, column, pairs) > 0) {

@@ -1,7 +1,8 @@
 /* keep.h - keeps the values of vertices that are merged, by moving them to their corners.
  *
- * Both sides have a vertex attribute "uv" with values of their own. One vertex could have only one
- * value, so "uv" becomes an attribute of corners, and each side keeps its values:
+ * In this example the vertices of both sides have an attribute "uv" with different values. A merged
+ * vertex could have only one value, so "uv" becomes an attribute of corners, and each side keeps
+ * its values:
  *
  *     o---o o---o              o---o---o
  *     | 3 | | 8 |              | 3 | 8 |
@@ -14,10 +15,10 @@
  * under the attribute's name. The attribute of vertices is then deleted, unless a vertex without
  * corners has a value of it that is not the default.
  *
- * CORNERS MAY ALREADY HAVE AN ATTRIBUTE OF THAT NAME, which is never changed. If it has the same
- * type, and the corners at the vertices that are merged have their values, nothing needs to be
- * kept. Otherwise the name is NAME_2, or the first number after that for which this holds or which
- * is free.
+ * If corners already have an attribute of that name, it is never changed. If it has the same type,
+ * and the corners at the merged vertices have the values of these vertices, nothing needs to be
+ * moved. Otherwise the new attribute is called NAME_2, or gets the first higher number that is
+ * free; an attribute of such a name that has the values already suffices, too.
  *
  * Marks (marks.h) are not moved. A vertex without corners cannot keep its value: the value of the
  * vertex it is merged into stays. If an attribute's rule is `default`, a vertex with the default
@@ -27,23 +28,24 @@
 
 #include "mesh/write.h"
 
-/* One weld's list of merges: vertex gone[i] is merged into vertex into[i]. */
+/* The merges of one weld: vertex gone[i] is merged into vertex into[i]. */
 typedef struct he_keep_pairs {
     const uint32_t *gone, *into;
     size_t count;
 } he_keep_pairs;
 
-/* What a weld that is under way must keep: he_keep_begin fills it, he_keep_end clears it. */
+/* The values that a weld under way must keep: he_keep_begin fills this struct, he_keep_end clears
+ * it. */
 typedef struct he_keeping {
     /* The number of values that would be lost: values of merged vertices that differ from the value
      * of the vertex they are merged into. */
     uint64_t count;
-    he_bracket bracket; /* begun only if there are such values */
+    he_bracket bracket; /* encloses the weld; begun only if `count` is above 0 */
 } he_keeping;
 
-/* Moves the vertex values that the weld would lose to corners. An edit calls it after its checks
- * and before it reserves memory. On failure the mesh is as it was, and the caller must not call
- * he_keep_end.
+/* Moves the values of vertices that the weld would lose to corners. An edit must call it after its
+ * checks and before it reserves memory. On failure the mesh is as it was, and the caller must not
+ * call he_keep_end.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out,

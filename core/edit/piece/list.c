@@ -3,8 +3,8 @@
 #include "query/idmap.h"
 
 /* Up to SHORT_LIST ids are compared pairwise, which needs no memory. A longer list uses a bit set
- * from the lowest id to the highest, unless that range is SPARSE_LIST times the list: clearing the
- * bits would cost more than the list. */
+ * from the lowest id to the highest, unless that range is more than SPARSE_LIST times the length of
+ * the list: a hash table is then faster than clearing the bits. */
 enum { SHORT_LIST = 32, SPARSE_LIST = 256 };
 
 static size_t short_repeat(const uint32_t *ids, size_t count)

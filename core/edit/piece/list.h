@@ -5,12 +5,12 @@
 
 #include "mesh/mesh.h"
 
-/* Finds the index of the first id that repeats an earlier id of the list; `count` if all ids
- * differ. Takes time linear in the length of the list, whatever its ids are.
+/* Finds the index of the first id that also occurs earlier in the list; *at is `count` if all ids
+ * differ. Takes time linear in the length of the list.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_list_repeat(const uint32_t *ids, size_t count, size_t *at, he_error *err);
 
-/* Checks a list of element ids; an error names the first bad id.
+/* Checks that all elements of a list are live and listed once; an error names the first bad id.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns the status that the caller passes as `repeated` if an element is listed twice.
  * Returns HE_NO_MEMORY if memory is out. */

@@ -24,8 +24,8 @@ he_vec3 he_loop_mean(const he_mesh *m, he_halfedge h)
     if (he_point_is_finite(sum)) {
         return (he_vec3){sum.x / n, sum.y / n, sum.z / n};
     }
-    /* The plain sum is more exact. If it overflows, half of the mean is computed first, which
-     * cannot overflow. */
+    /* The plain sum is more exact, so it is tried first. If it overflows, half of the mean is
+     * computed, which cannot overflow. */
     sum = sum_corners(m, h, 0.5 / n);
     he_vec3 mean = {2 * sum.x, 2 * sum.y, 2 * sum.z};
     mean.x = fmin(fmax(mean.x, -DBL_MAX), DBL_MAX);

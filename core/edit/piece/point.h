@@ -11,8 +11,8 @@ static inline bool he_point_is_finite(he_vec3 p)
     return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
 }
 
-/* Interpolates from a (t = 0) to b (t = 1). The result is never outside [a, b] by rounding, so it
- * is finite if both are, and a if a = b. */
+/* Interpolates from a (t = 0) to b (t = 1). Rounding never puts the result outside [a, b], so it is
+ * finite if a and b are, and it is a if a = b. */
 static inline double he_between(double a, double b, double t)
 {
     double low = a < b ? a : b, high = a < b ? b : a;
@@ -26,7 +26,7 @@ static inline he_vec3 he_point_between(he_vec3 a, he_vec3 b, double t)
 }
 
 /* Returns the mean position of the corners of a loop, which is the face or the hole that half-edge
- * h belongs to. It is always finite. */
+ * h belongs to. The result is always finite. */
 he_vec3 he_loop_mean(const he_mesh *m, he_halfedge h);
 
 #endif

@@ -1,26 +1,28 @@
-/* ring.h - maintains the ring of a vertex, which is the cycle of half-edges that leave it: which of
- * them the vertex stores (invariant I8 of mesh.h), and in which order its fans are chained. */
+/* ring.h - maintains the ring of a vertex, which is the cycle of half-edges that leave it: chooses
+ * which of them the vertex stores (invariant I8 of mesh.h), and changes the order in which its fans
+ * are linked. */
 #ifndef HE_EDIT_PIECE_RING_H
 #define HE_EDIT_PIECE_RING_H
 
 #include "mesh/write.h"
 
-/* The most links that one call of he_ring_settle writes. Edits add it to the memory they
- * reserve. */
+/* The most links that one call of he_ring_settle writes. Edits reserve memory for them. */
 enum { HE_SETTLE_LINKS = 1 };
 
 /* Makes the half-edge that vertex v stores satisfy I8: it must leave v, and be a boundary half-edge
  * if v has any. `leaving` is any half-edge that leaves v. A stored half-edge that satisfies I8
  * stays. An edit calls this for each vertex it changed, once all links, origins and faces at v are
- * final. It walks around v only if one look at the stored half-edge does not suffice. */
+ * final. The function walks around v only if the stored half-edge does not satisfy I8 at once. */
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving);
 
-/* `in` is a boundary half-edge. One of the fans at its target begins there; returns the boundary
- * half-edge that leaves the target and ends that fan. Takes time linear in the size of the fan. */
+/* Returns the end of a fan. `in` is a boundary half-edge, with which one of the fans at its target
+ * begins; the result is the boundary half-edge that leaves the target and ends that fan. Takes time
+ * linear in the size of the fan. */
 he_halfedge he_ring_fan_end(const he_mesh *m, he_halfedge in);
 
-/* Makes `out` follow `in`. They are boundary half-edges that end and begin different fans, or the
- * only fan, at a vertex. The fans between them move to the gap behind the fan that begins at `in`:
+/* Makes `out` follow `in` in the loop of a hole. Both are boundary half-edges at one vertex: a fan
+ * X ends with `out`, and a fan Y begins with `in`; X may be Y if the vertex has no other fan. The
+ * fans Z between X and Y are moved to the gap after Y:
  *
  *     Y (from in), Z.., X (to out), W..   --->   X Y next to each other, Z.., W..
  *

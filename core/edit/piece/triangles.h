@@ -7,12 +7,13 @@
 
 typedef struct he_triangles {
     he_triangulation of;
-    uint32_t *side; /* for COMMIT: the half-edge that leaves each corner in what is left */
+    /* Used by COMMIT: for each corner, the half-edge that leaves it in the part not filled yet. */
+    uint32_t *side;
 } he_triangles;
 
-/* Plans the triangles that fill a loop, before an edit writes. Diagonals avoid existing edges.
- * Fails as he_triangulation_make does; `work` is passed on to it and may be NULL for a single loop.
- * he_triangles_clear frees the plan. */
+/* Plans the triangles that fill the loop of half-edge `first`. Diagonals avoid existing edges.
+ * Fails as he_triangulation_make does, which gets `work`; `work` may be NULL if only one loop is
+ * filled. he_triangles_clear frees the plan. */
 HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first,
                                          he_triangulation_work *work, he_triangles *out,
                                          he_error *err);
@@ -23,7 +24,8 @@ void he_triangles_clear(he_triangles *plan);
  * the triangle of its stored half-edge keeps the face's id, the other triangles descend from it,
  * and corners copy the values of the face's corners. Without `keep` the loop is a hole and all
  * triangles are new; the caller must call he_ring_settle for its vertices. Half-edge 2e of a new
- * edge lies in the triangle that was cut off. `edges` and `faces` must have room, or be NULL. */
+ * edge lies in the triangle that was cut off. The lists `edges` and `faces` must have memory for
+ * all new ids, or be NULL. */
 void he_triangles_reservation(const he_triangles *plan, bool keep, he_reservation *need);
 void he_triangles_commit(he_mesh *m, he_triangles *plan, bool keep, he_ids *edges, he_ids *faces);
 

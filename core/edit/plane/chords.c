@@ -6,12 +6,13 @@
 
 /* A corner in the plane. */
 typedef struct he_line_crossing {
-    double along; /* the line */
-    uint32_t at;  /* its index in the loop */
+    double along; /* position along the line in which the face meets the plane */
+    uint32_t at;  /* index of the corner in the loop of the face */
 } he_line_crossing;
 
-/* Bits for the sides of the plane on which a part of the face has corners. Multiplied with BESIDE,
- * a bit is a side that the part must have, because a part beside it is on the other side. */
+/* Bits for the sides of the plane on which a part of the face has corners. A bit multiplied with
+ * BESIDE is a side on which the part must have corners, because a part beside it is on the opposite
+ * side. */
 enum { ABOVE = 1, BELOW = 2, BOTH = 3, BESIDE = 4 };
 
 static int side_at(const he_mesh *m, const he_sides *sides, const he_chords *c, uint32_t i)
@@ -42,8 +43,8 @@ static void sift(he_line_crossing *heap, size_t count, size_t i)
     heap[i] = moved;
 }
 
-/* Sorts the corners along the line by heapsort (J. W. J. Williams, 1964), which needs no memory and
- * is not slow for any order of input. */
+/* Sorts the corners along the line by heapsort (J. W. J. Williams, 1964), which needs no extra
+ * memory and is fast whatever the order of the input. */
 static void sort(he_line_crossing *line, size_t count)
 {
     for (size_t i = count / 2; i-- > 0;) {
@@ -93,8 +94,8 @@ static void forget_partners(he_chords *c)
     }
 }
 
-/* Makes corners a and b partners, which a chord joins. No corner has more than two partners: its
- * neighbours on the line. */
+/* Makes a chord join corners a and b, which are then called partners. A corner has at most two
+ * partners, its neighbours on the line. */
 static void join(he_chords *c, uint32_t a, uint32_t b)
 {
     c->partners.ids[2 * (size_t)a + (c->partners.ids[2 * (size_t)a] != HE_NONE)] = b;
@@ -117,8 +118,8 @@ static void join_along_line(const he_mesh *m, const he_sides *sides, he_chords *
     }
 }
 
-/* Cuts off, by a chord, every run of corners that are on the other side of the plane than the first
- * corner outside the plane. */
+/* Plans chords in another way: each cuts off a sequence of successive corners that are on the other
+ * side of the plane than the first corner outside the plane. */
 static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     uint32_t first = 0, in_plane = HE_NONE, start = HE_NONE, end = HE_NONE;
@@ -145,11 +146,11 @@ static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords 
     }
 }
 
-/* --- checking the chords as brackets around the loop --- */
+/* --- checking that chords nest like brackets --- */
 
-/* The layout of the list `open`: it starts with the sides of the part outside all chords; then
- * follow, for each chord that has begun and not ended, the indices of its ends and the sides of the
- * part inside it. A chord takes CHORD numbers. */
+/* The list `open` starts with the sides of the part that is outside all chords. For each chord that
+ * has begun and not ended, CHORD numbers follow: the indices of its two ends, and the sides of the
+ * part inside the chord. */
 enum { CHORD = 3 };
 
 static bool is_one_sided(uint32_t part)
@@ -159,7 +160,7 @@ static bool is_one_sided(uint32_t part)
 }
 
 /* Ends the chords that end at corner i, from the innermost outwards. Returns false if the part
- * inside one has corners on both sides of the plane. */
+ * inside one of them has corners on both sides of the plane. */
 static bool close_at(he_chords *c, uint32_t i)
 {
     he_ids *open = &c->open;
@@ -176,8 +177,8 @@ static bool close_at(he_chords *c, uint32_t i)
     return true;
 }
 
-/* Begins the chord from corner i to corner `end`. Returns false if it joins neighbours or crosses a
- * chord that has begun and not ended. */
+/* Begins the chord from corner i to corner `end`. Returns false if the chord joins neighbours or
+ * crosses a chord that has begun and not ended. */
 static bool open_at(he_chords *c, uint32_t i, uint32_t end)
 {
     he_ids *open = &c->open;
@@ -191,8 +192,8 @@ static bool open_at(he_chords *c, uint32_t i, uint32_t end)
     return true;
 }
 
-/* Lists the chords in the order in which they end. Returns false if they violate what the head of
- * chords.h promises. */
+/* Lists the chords in the order in which they end. Returns false if they do not satisfy what the
+ * head of chords.h promises. */
 static bool list_pairs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     c->pairs.count = 0;
@@ -219,7 +220,7 @@ static bool list_pairs(const he_mesh *m, const he_sides *sides, he_chords *c)
     return c->open.count == 1 && is_one_sided(c->open.ids[0]);
 }
 
-/* --- the plan --- */
+/* --- the plan of a face's chords --- */
 
 static bool has_both_sides(const he_mesh *m, he_face f, const he_sides *sides, uint32_t *corners)
 {

@@ -1,9 +1,10 @@
 /* chords.h - the diagonals along which a plane cuts a face.
  *
- * No side of the face crosses the plane, except at a corner in it. In a planar face those corners
- * are on a line; walking along it, the inside of the face just above the line begins or ends at
- * every corner with a neighbour above, and the same holds below. A chord joins two successive
- * corners on the line where both are inside:
+ * The sides of the face have been split where they cross the plane, so a side meets the plane only
+ * at corners. In a planar face the corners in the plane are on a line. Just above this line, the
+ * inside of the face begins or ends at every corner that has a neighbour above the plane; below the
+ * line, at every corner that has a neighbour below. A chord joins two successive corners on the
+ * line if the inside is both above and below the line between them:
  *
  *        o-------------o               o-------------o
  *        |    above    |               |             |
@@ -17,28 +18,28 @@
  * "Computer Graphics: Principles and Practice", 1990, 3.6) along one line.
  *
  * In a face that is not planar, or crosses itself, the corners need not be on a line, and are
- * sorted along the direction in which they spread furthest. If chords found so would cross, or
- * leave a part with corners on both sides, every run of corners on one side is cut off from the
- * others instead. So these always hold: chords join corners in the plane that are not neighbours
- * and do not cross, all corners of a part are on one side or in the plane, and the two parts beside
- * a chord are on different sides. */
+ * sorted along the direction in which they spread furthest. If these chords would cross, or leave a
+ * part with corners on both sides of the plane, other chords are used: each cuts off a sequence of
+ * successive corners that are on one side. So these always hold: chords join corners in the plane
+ * that are not neighbours and do not cross, all corners of a part are on one side or in the plane,
+ * and the two parts beside a chord are on different sides. */
 #ifndef HE_EDIT_PLANE_CHORDS_H
 #define HE_EDIT_PLANE_CHORDS_H
 
 #include "edit/plane/plane.h"
 
-/* The diagonals of one face and the buffers for finding them, which are reused from face to face;
- * {0} at first. */
+/* The diagonals (chords) of one face, and the buffers for finding them, which are used again for
+ * the next face; {0} at first. */
 typedef struct he_chords {
     uint32_t n;
     he_ids corner; /* n half-edges of the face, the stored one last */
     /* The two corners of each chord, by their indices, the lower one first. A chord comes after all
      * chords between its corners. */
     he_ids pairs;
-    /* used while planning */
-    he_ids partners; /* two for each corner */
-    /* The chords that have begun and not ended at the corner being visited, each with the sides of
-     * the plane on which the part beside it has corners. */
+    /* the members from here on are used while planning */
+    he_ids partners; /* two partners (corners joined by a chord) for each corner */
+    /* The chords that have begun and not ended at the corner being visited. Each has the sides of
+     * the plane on which the part of the face beside it has corners. */
     he_ids open;
     struct he_line_crossing *line;
     size_t line_capacity;
@@ -46,7 +47,7 @@ typedef struct he_chords {
 
 /* Finds the chords of face f. There are none if the face does not have corners on both sides of the
  * plane. Takes linear time, except for sorting the corners that lie in the plane. he_chords_clear
- * frees.
+ * frees *chords.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_chords_plan(const he_mesh *m, he_face f, const he_sides *sides,
                                       he_chords *chords, he_error *err);

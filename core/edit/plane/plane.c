@@ -4,8 +4,8 @@
 
 #include <float.h>
 
-/* The default TOLERANCE, relative to the size of the mesh, and the NOISE of rounding, relative to
- * the coordinates along the normal. */
+/* TOLERANCE is the default tolerance, relative to the size of the mesh. NOISE is the rounding error
+ * of distances, relative to the coordinates along the normal. */
 static const double TOLERANCE = 1e-9, NOISE = 0x1p-48;
 
 /* The largest exponent of the factor that scales coordinates. A power of two with a larger exponent
@@ -39,7 +39,7 @@ static he_vec3 unit_of(he_vec3 normal)
     return (he_vec3){n.x / length, n.y / length, n.z / length};
 }
 
-/* Returns true if v can be cut, which isolated vertices cannot: they do not count for the size of
+/* Returns true if v has edges. Isolated vertices are not cut, so they do not count for the size of
  * the mesh. */
 static bool is_cut(const he_mesh *m, uint32_t v)
 {
@@ -82,8 +82,8 @@ static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
     return fmax(fmin(far, DBL_MAX), -DBL_MAX);
 }
 
-/* Computes the distances of all vertices from the plane, and the default tolerance in the same
- * unit. */
+/* Computes the distances of all vertices from the plane, and the default tolerance, both times the
+ * scale. */
 static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides,
                          double *tolerance, he_error *err)
 {

@@ -16,9 +16,11 @@ typedef struct he_plane {
 } he_plane;
 
 typedef struct he_sides {
-    double *distance; /* for each vertex, times `scale`; exactly 0 in the plane and in dead rows */
-    /* The number of vertices that were issued when they were measured. Later vertices count as in
-     * the plane, because only cuts along the plane make them. */
+    /* Distance of each vertex from the plane, times `scale`; exactly 0 for vertices in the plane
+     * and for deleted ones. */
+    double *distance;
+    /* The number of vertices that were issued when the distances were measured. Newer vertices
+     * count as in the plane, because only cuts along the plane make them. */
     uint32_t count;
     /* The factor that coordinates are multiplied with: a power of two that brings the point and all
      * vertices that have edges within [-1, 1], so that nothing overflows or underflows. */

@@ -13,20 +13,20 @@ void he_cut_parts_clear(he_cut_parts *parts)
     he_ids_clear(&parts->caps);
 }
 
-/* The state of one call. */
+/* The state of one plane_cut. */
 typedef struct cutter {
     he_mesh *m;
     he_sides sides;
     const he_plane *plane;
-    int away;        /* the side that is deleted: 1 above, -1 below */
-    uint64_t *going; /* faces to delete, as bits */
-    he_ids faces;    /* faces to delete, as a list */
-    he_ids rim;      /* their half-edges whose twins are of faces that stay */
+    int away;        /* the side that is cut off: 1 above, -1 below */
+    uint64_t *going; /* a bit for each face: it will be deleted */
+    he_ids faces;    /* list of these faces */
+    he_ids rim;      /* half-edges of these faces whose twins belong to faces that stay */
     he_cut_parts made;
 } cutter;
 
-/* Returns the side of the plane on which face f lies. After the split all its corners are on one
- * side or in the plane. */
+/* Returns the side of the plane on which face f lies. After the split all corners of a face are on
+ * one side or in the plane. */
 static int side_of_face(const cutter *c, he_face f)
 {
     he_halfedge first = he_face_halfedge(c->m, f), h = first;
@@ -119,7 +119,7 @@ static he_status cap_loops(cutter *c, he_error *err)
         he_filled filled = {.vertex = {HE_NONE}};
         status = he_progress_at(c->m->progress, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
-            continue; /* it is on a loop that has its cap already */
+            continue; /* the half-edge is on a loop that is capped already */
         }
         status = check_loop(c, h, err);
         if (status == HE_OK) {
@@ -153,11 +153,12 @@ static he_status erase(cutter *c, he_error *err)
 
 static he_status cut(cutter *c, bool cap, he_error *err)
 {
-    /* Each step of the edit reports progress from 0 to 1, so each gets its own span of the whole
-     * edit's progress. */
+    /* Each step reports its own progress from 0 to 1, so each gets a part of the progress of the
+     * whole edit. */
     const struct {
         he_status (*run)(cutter *c, he_error *err);
-        const char *phase; /* NULL: the step names its own phases */
+        /* Name of the step for progress reports; NULL: the step names its parts itself. */
+        const char *phase;
         double to;
         bool wanted;
     } parts[] = {

@@ -1,4 +1,4 @@
-/* plane_cut.h - cuts off what is on one side of a plane. */
+/* plane_cut.h - cuts off the part of a mesh on one side of a plane. */
 #ifndef HE_EDIT_PLANE_PLANE_CUT_H
 #define HE_EDIT_PLANE_PLANE_CUT_H
 
@@ -8,14 +8,15 @@
 typedef enum he_cut_side { HE_CUT_ABOVE, HE_CUT_BELOW } he_cut_side;
 
 typedef struct he_cut_parts {
-    uint32_t edges_split, faces_split; /* as by plane_split */
-    uint32_t faces_deleted;            /* parts on the other side are counted too */
-    he_ids caps; /* the new faces, in the order of the half-edges they began with */
+    uint32_t edges_split, faces_split; /* numbers of edges and faces that were split */
+    uint32_t faces_deleted;            /* number of deleted faces, parts of split faces included */
+    /* The faces that close the cut, in the order of the half-edges with which their loops begin. */
+    he_ids caps;
 } he_cut_parts;
 
-/* plane_cut: V, E, F vary. The mesh is split along the plane (plane_split.h); then the faces of
- * the other side are deleted, with edges and vertices that have no face left (erase.h), and
- * isolated vertices on that side.
+/* plane_cut cuts off what is on one side of a plane; V, E and F vary. The mesh is split along the
+ * plane (plane_split.h); then the faces on the other side than `keep` are deleted, with edges and
+ * vertices that have no face left (erase.h), and so are isolated vertices on that side.
  *
  *         o-----------o             o-----------o              o-----------o
  *        /           /|            /           /|             /           /|
@@ -25,13 +26,15 @@ typedef struct he_cut_parts {
  *       |           |/                a hole                     capped
  *       o-----------o
  *
- * Every face counts to one side, so the results for both sides together make the whole: a face in
- * the plane counts as below if it faces up, like the top of a solid below, else as above.
+ * Every face belongs to exactly one side, so the results for both sides together make up the whole
+ * mesh. A face in the plane belongs to the side below if it faces up, like the top of a solid below
+ * the plane, else to the side above.
  *
- * With `cap` each loop of the cut becomes one polygon, even if the section has several loops, one
- * inside another: their signed areas, and the volume, are then still right.
+ * With `cap` each loop of the cut is closed by one polygon, even if a loop lies inside another one:
+ * the signed areas of such polygons, and the volume of the mesh, are still right.
  *
- * If it is refused, nothing changes. `out` may be NULL; otherwise he_cut_parts_clear frees it.
+ * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_cut_parts_clear frees
+ * it.
  * Returns HE_NOT_FINITE, HE_BAD_VALUE or HE_DOUBLED_EDGE as he_plane_split does.
  * Returns HE_LOCKED_ELEMENT if an element that would be deleted is locked (splitting is allowed).
  * Returns HE_OPEN_LOOP with `cap`, naming a vertex, if a loop leaves the plane along an older hole.

@@ -13,11 +13,11 @@ void he_plane_parts_clear(he_plane_parts *parts)
     *parts = (he_plane_parts){.faces_split = 0};
 }
 
-/* The state of one call. */
+/* The state of one plane_split. */
 typedef struct splitter {
     he_mesh *m;
     he_sides sides;
-    uint64_t *chosen; /* faces to split, or NULL for all */
+    uint64_t *chosen; /* a bit for each face: it is to be split; NULL: all are */
     he_chords chords;
     he_plane_parts made;
 } splitter;
@@ -107,9 +107,9 @@ static uint32_t steps_between(const he_mesh *m, he_halfedge from, he_halfedge to
     return n;
 }
 
-/* Splits the face along the chord from corner a to corner b. The chords between a and b are cut
- * before it, so what remains between a and b is one part: all chords of a face together visit each
- * of its corners once. */
+/* Splits the face along the chord from corner a to corner b. The chords whose corners lie between a
+ * and b are made before, so only one part of the face is left between a and b. In this way all
+ * chords of a face together visit each corner once. */
 static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
 {
     he_mesh *m = s->m;
@@ -180,8 +180,8 @@ he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *face
     if (status != HE_OK) {
         goto out;
     }
-    /* Faces are split after edges, so that they have the new vertices on their sides, and in order,
-     * so that each split knows the diagonals in the faces before. */
+    /* Faces are split after edges, so that their sides have the new vertices, and one after
+     * another, so that each split finds the diagonals of the earlier ones. */
     status = he_progress_phase(m->progress, "splitting edges", 0.5, err);
     if (status == HE_OK) {
         status = split_edges(&s, err);

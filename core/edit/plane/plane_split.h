@@ -5,16 +5,17 @@
 #include "edit/plane/plane.h"
 
 typedef struct he_plane_parts {
-    he_ids vertices;      /* new, one for each edge that was split */
-    he_ids edges;         /* the diagonals */
-    he_ids faces;         /* new, one for each diagonal */
-    uint32_t faces_split; /* old faces that were split */
+    he_ids vertices;      /* the new vertices, one for each edge that was split */
+    he_ids edges;         /* the new diagonals */
+    he_ids faces;         /* the new faces, one for each diagonal */
+    uint32_t faces_split; /* number of old faces that were split */
 } he_plane_parts;
 
-/* plane_split: V + k, E + k + d, F + d for k edges that the plane crosses and d diagonals, one in a
- * convex face. Each edge whose ends are on different sides gets a vertex where it meets the plane
- * (see edge_bisect), then each face with corners on both sides is cut along it (see face_split; by
- * several diagonals where it is concave, see chords.h). Nothing is deleted and nothing moves.
+/* plane_split splits faces along a plane: V + k, E + k + d, F + d for k edges that the plane
+ * crosses and d diagonals. A convex face gets one diagonal. Each edge whose ends are on different
+ * sides gets a vertex where it meets the plane (see edge_bisect), then each face with corners on
+ * both sides is split along the plane (see face_split). A concave face may get several diagonals
+ * (chords.h). Nothing is deleted and nothing moves.
  *
  *        o-------o-------o              o---w---o-------o
  *        |   .   |       |              |  /|   |       |
@@ -23,21 +24,23 @@ typedef struct he_plane_parts {
  *        |.      |       |              .                         edge in the plane is left alone
  *       .o-------o-------o
  *
- * With a list only its faces are cut. An edge between a face of the list and another still gets its
- * vertex, so that the other face has a corner more.
+ * If faces are listed, only these are split. An edge between a listed face and another one still
+ * gets its vertex, so the other face gets one more corner.
  *
- * Afterwards no face (of the list) has corners on both sides, and splitting again along the same
- * plane changes nothing. A plane that only touches a face, at corners or along sides, does not
+ * Afterwards no face, or no listed face, has corners on both sides, and splitting again along the
+ * same plane changes nothing. A plane that only touches a face, at corners or along sides, does not
  * cross it.
  *
- * Edges are split in the order of their ids, as are faces after them; the diagonals of a face come
- * innermost first, seen from its stored half-edge. An edge keeps its id at the end with the origin
- * of half-edge 2e. A face keeps its id on the part with the stored half-edge's origin and the side
- * that leaves it; the other parts descend from it. Diagonals and vertices have no parents.
+ * Edges are split in the order of their ids, then faces in the order of theirs. A diagonal of a
+ * face is made after those that it separates from the stored half-edge. An edge keeps its id at the
+ * end with the origin of half-edge 2e. A face keeps its id on the part with the stored half-edge's
+ * origin and the side that leaves it; the other parts descend from it. Diagonals and vertices have
+ * no parents.
  *
  * A NULL list of faces stands for all faces.
  *
- * If it is refused, nothing changes. `out` may be NULL; otherwise he_plane_parts_clear frees it.
+ * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_plane_parts_clear frees
+ * it.
  * Returns HE_NOT_FINITE or HE_BAD_VALUE as he_sides_find does.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list
  * is not live or is listed twice.

@@ -4,8 +4,8 @@
 #include "mesh/walk.h"
 
 /* Finds the normal of a region: the direction of the sum of its faces' vector areas. They are
- * scaled by the largest, so that nothing overflows. If they nearly cancel out, the rest is rounding
- * noise and there is no direction, so it returns false. */
+ * divided by the largest one, so that nothing overflows. If they nearly cancel each other out, the
+ * rest is rounding noise without a direction, and the function returns false. */
 static bool find_direction(const he_mesh *m, const he_region *r, he_vec3 *out)
 {
     const double noise = 1e-12;

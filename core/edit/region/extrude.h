@@ -12,8 +12,8 @@ typedef struct he_extrude_motion {
     double distance;
 } he_extrude_motion;
 
-/* face_extrude: every listed face, or with `region` every set of them connected across edges, is
- * detached from its surroundings by a ring of quads (see region.h) and moved.
+/* face_extrude: every listed face, or with `region` every set of listed faces connected across
+ * edges, is detached from its surroundings by a ring of quads (see region.h) and moved.
  *
  *                                                 o-------o
  *        o-------o-------o                       /|  f   /|
@@ -24,9 +24,10 @@ typedef struct he_extrude_motion {
  *
  * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r, E
  * + 2r, F + r. The listed faces keep their ids and are on top; vertices and edges inside a region
- * move with them. Boundary edges of a face stay where they were.
+ * move with them. The old vertices and edges on the rim stay where they were.
  *
- * If it is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees it.
+ * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees
+ * it.
  * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_LOCKED_ELEMENT and others as he_region_draw does.
  * Returns HE_NO_NORMAL, naming a face, if a distance is given and the direction of the normal is
  * zero.

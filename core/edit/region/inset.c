@@ -3,14 +3,15 @@
 #include "edit/piece/point.h"
 #include "geometry/geometry.h"
 
-/* How each corner on the rim of a region moves, and buffers for the corners of one face. */
+/* How the corners on the rim of a region move, and buffers for the corners of one face. Time runs
+ * from 0 to 1 during the motion. */
 typedef struct motion {
-    he_vec3 *path;   /* the displacement at time 1 */
-    he_vec3 *at;     /* corners of the face */
-    he_vec3 *moves;  /* their displacements */
-    he_vec3 *of;     /* one for each face: its mean, or its normal */
-    double end;      /* the first time at which something collides */
-    uint64_t budget; /* steps left */
+    he_vec3 *path;   /* displacement of each corner on the rim at time 1 */
+    he_vec3 *at;     /* positions of the corners of one face */
+    he_vec3 *moves;  /* displacements of the corners of that face */
+    he_vec3 *of;     /* for each face of the region, the mean of its corners or its normal */
+    double end;      /* the first time at which a corner or side hits another */
+    uint64_t budget; /* steps of work that may still be done */
 } motion;
 
 static void motion_clear(motion *p)
@@ -44,9 +45,9 @@ static uint32_t index_of(const he_mesh *m, const he_region *r, uint32_t h)
     return he_idmap_find(&r->faces, he_face_of(m, (he_halfedge){h}).i);
 }
 
-/* --- displacements --- */
+/* --- displacements of the corners on the rim --- */
 
-/* Sets the motion of each corner on the rim: towards the mean of its faces' means. */
+/* Sets the motion of each corner on the rim: towards the mean of the means of its faces. */
 static void aim_at_means(const he_mesh *m, const he_region *r, double factor, motion *p)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -65,7 +66,8 @@ static void aim_at_means(const he_mesh *m, const he_region *r, double factor, mo
     }
 }
 
-/* Returns the displacement of a corner if both sides at the corner move inwards by 1. */
+/* Returns the displacement of a corner whose two sides move inwards by 1. `a` and `b` are the unit
+ * vectors in which they move. */
 static he_vec3 miter(he_vec3 a, he_vec3 b)
 {
     const double sharpest = 0.125;
@@ -101,8 +103,7 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
                            r->faces.ids.ids[index]);
         }
     }
-    /* The half-edge that arrives at a corner of the rim is the one that leaves the corner before
-     * it. */
+    /* The half-edge that arrives at a rim corner is the rim half-edge of the corner before. */
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         uint32_t after = he_idmap_find(&r->corners, he_target(m, h).i);
@@ -126,7 +127,7 @@ typedef struct quadratic {
 } quadratic;
 
 /* Returns the smallest positive root of a polynomial with c0 > 0, infinity if there is none. A
- * double root counts even if rounding has removed it. */
+ * double root counts even if rounding errors have removed it. */
 static double first_root(quadratic p)
 {
     const double noise = 1e-9;
@@ -169,8 +170,8 @@ static void watch_side(motion *p, corner a, corner b)
     happens(p, length / he_vec3_dot(he_vec3_sub(a.moves, b.moves), along));
 }
 
-/* Finds the time at which corner c hits the side a-b from inside, between its ends, and shortens
- * the motion accordingly. */
+/* Finds the time at which corner c hits the side a-b from inside, between its ends, and ends the
+ * motion there if it comes first. */
 static void watch_hit(motion *p, corner a, corner b, corner c, he_vec3 normal)
 {
     quadratic area = turn(a, b, c, normal);
@@ -213,7 +214,7 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
             happens(p, first_root(area));
             continue;
         }
-        /* The face has a reflex corner at b, which is tested against every side of which it is not
+        /* The corner b is reflex, so it is tested against every side of the face of which it is not
          * an end. */
         if (p->budget < n) {
             return he_fail(
@@ -256,11 +257,11 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
     return status;
 }
 
-/* --- interpolated values --- */
+/* --- interpolated values of new vertices --- */
 
-/* Finds the point of a triangle that is nearest to the point `way`, up to rounding. Coordinates are
- * along the sides `a` and `b`, from the corner between them; *x and *y are at least 0 and together
- * at most 1. Returns the squared distance. */
+/* Finds the point of a triangle that is nearest to the point `way`, up to rounding. The sides `a`
+ * and `b` and the vector `way` start at the same corner; the point found is *x times a plus *y
+ * times b, with *x and *y at least 0 and together at most 1. Returns the squared distance. */
 static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, double *y)
 {
     double aa = he_vec3_dot(a, a), ab = he_vec3_dot(a, b), bb = he_vec3_dot(b, b);
@@ -286,8 +287,9 @@ static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, dou
     return he_vec3_dot(missing, missing);
 }
 
-/* Tries the two triangles at the origin of h, in the face of h and next to its mean, and keeps the
- * one nearest to the new position `to` if it is nearer than `*least`. */
+/* Finds which of the two triangles at the origin of h is nearer to the new position `to`: each is
+ * made of the mean of the face of h, that origin and a neighbouring corner. If the triangle is
+ * nearer than *least, it decides the mixture *out. */
 static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
                         he_region_mix *out, double *least)
 {

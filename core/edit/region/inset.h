@@ -5,7 +5,7 @@
 #include "edit/region/region.h"
 
 /* The most work for finding how far an inset can go before corners or sides of a face meet. Testing
- * one corner against one side counts as one. */
+ * one corner against one side counts as one step. */
 enum { HE_INSET_STEPS = 1 << 22 };
 
 /* How far an inset goes, one of two ways. With a `factor` above 0 and below 1, each corner on the
@@ -17,8 +17,8 @@ typedef struct he_inset_width {
     double factor, distance;
 } he_inset_width;
 
-/* face_inset: every listed face, or with `region` every set of them connected across edges, is
- * detached from its surroundings by a ring of quads (see region.h), and its rim moves inwards.
+/* face_inset: every listed face, or with `region` every set of listed faces connected across edges,
+ * is detached from its surroundings by a ring of quads (see region.h), and its rim moves inwards.
  *
  *        o---------------o            o---------------o
  *        |               |            | \           / |
@@ -32,17 +32,18 @@ typedef struct he_inset_width {
  * + 2r, F + r. The listed faces keep their ids and are the inner ones; vertices inside a region
  * stay where they are.
  *
- * New vertices copy the values of those they descend from. Interpolated attributes are those at the
- * new position in the region, whose faces are divided into triangles of the mean of their corners
- * and two neighbouring corners: the triangle at the rim corner that is nearest to the position is
- * used.
+ * New vertices copy the values of the vertices they descend from. Interpolated attributes get the
+ * values that the region has at the new position. For this each face is divided into triangles of
+ * the mean of its corners and two neighbouring corners; of the triangles at the old corner, the one
+ * nearest to the new position is used.
  *
- * CLAMPED. The motion of all corners is scaled down together if necessary: they go at most 99 % of
+ * The motion of all corners is scaled down together if necessary: they go at most 99 % of
  * the way to the first point at which, within one face of the region, a side would have no length,
  * a corner would flip, or a reflex corner would hit another side. A face that is not planar is
  * projected along its normal.
  *
- * If it is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees it.
+ * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees
+ * it.
  * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_LOCKED_ELEMENT and others as he_region_draw does.
  * Returns HE_BAD_VALUE unless 0 < factor < 1, or distance > 0.
  * Returns HE_NO_NORMAL, naming a face, if a distance is given and a face on the rim has no area.

@@ -5,8 +5,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The number of links that are written for one half-edge of the rim: its own and those of its old
- * neighbours, of the new face and of the vertex. */
+/* The most links that are written for one half-edge of the rim: its own, those of its old
+ * neighbours, and those of the new face and of the vertex. */
 enum { RIM_LINKS = 11 };
 
 static void region_clear(he_region *r)
@@ -30,7 +30,7 @@ static bool is_inside(const he_region *r, he_face f)
     return f.i != HE_NONE && he_idmap_find(&r->faces, f.i) != HE_NONE;
 }
 
-/* Adds to the region all listed faces that are connected with its faces across edges. */
+/* Adds to the region all listed faces that are connected to it across edges. */
 static he_status spread(const he_mesh *m, he_region *r, const he_idmap *listed, he_error *err)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -89,7 +89,8 @@ static he_status find_rim(const he_mesh *m, he_region *r, he_error *err)
     return HE_OK;
 }
 
-/* Finds the half-edges that leave a corner of the rim between its two sides, inside the region. */
+/* Finds the half-edges inside the region that leave corners of the rim, other than the rim
+ * half-edges. */
 static he_status find_inner(const he_mesh *m, he_region *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -177,9 +178,9 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
     return HE_OK;
 }
 
-/* --- COMMIT --- */
+/* --- COMMIT: writing --- */
 
-/* The ids of the elements made for half-edge i of the rim, counted from the first new ids. */
+/* The first new ids of each kind; those for half-edge i of the rim are counted from them. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -213,8 +214,8 @@ static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to, const h
     }
 }
 
-/* Lets the new half-edge take the place of half-edge i of the rim in its face. The neighbours of i
- * on the rim are replaced in their own turn, so only links to half-edges that stay are read. */
+/* Puts a new half-edge in the place of half-edge i of the rim in its face. The neighbours of i on
+ * the rim are replaced by other calls, so only links to half-edges that stay are read. */
 static void replace_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]}, t = above(n, i);
@@ -245,8 +246,8 @@ static void carry_corners(he_mesh *m, const he_region *r, const fresh *n, size_t
     he_attributes_copy(m, HE_HALFEDGE, he_twin(above(n, i)).i, he_next(m, h).i);
 }
 
-/* Links the four half-edges of the new quad at half-edge i of the rim: along the rim, up at its
- * target, back above it, and down at its origin. */
+/* Links the four half-edges of the new quad at half-edge i of the rim: along the rim half-edge, up
+ * at its target, back above it, and down at its origin. */
 static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]};
@@ -263,7 +264,7 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 }
 
 /* Computes the values of the new vertices from `first` to `last`, all mixed from corners of the
- * same face. The row of `last` holds the mean of these corners meanwhile. */
+ * same face. Meanwhile the row of `last` has the mean of these corners. */
 static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
                         size_t last, he_ids *corners)
 {
@@ -329,15 +330,15 @@ static void commit(he_mesh *m, const he_region *r, const he_vec3 *to, const he_r
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         he_vertex v = he_origin(m, h);
-        /* A boundary half-edge that the vertex stores still leaves it; any other may have moved to
-         * the new vertex. */
+        /* If the vertex stores a boundary half-edge, that still leaves it; any other half-edge may
+         * now leave the new vertex. */
         if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
             he_set_vertex_halfedge(m, v, h);
         }
     }
 }
 
-/* --- one region, then all --- */
+/* --- detaching one region, then all regions --- */
 
 static he_status plan(const he_mesh *m, he_region *r, he_error *err)
 {
@@ -368,8 +369,8 @@ static he_status add_parts(const he_mesh *m, const he_region *r, he_region_parts
     return status;
 }
 
-/* Computes how the values of the new vertices are mixed, and reserves room for the corners of a
- * face. `*out` stays NULL if no values are mixed. */
+/* Computes how the values of the new vertices are mixed, and reserves memory in `corners` for the
+ * corners of a face. `*out` stays NULL if no values are mixed. */
 static he_status mix(const he_mesh *m, const he_region *r, he_region_place place, const he_vec3 *to,
                      he_region_mix **out, he_ids *corners, he_error *err)
 {
@@ -389,7 +390,7 @@ static he_status mix(const he_mesh *m, const he_region *r, he_region_place place
     return status == HE_OK ? place.mix(m, r, to, *out, err) : status;
 }
 
-/* Detaches one region. On entry `r` holds its faces; on return it is cleared. */
+/* Detaches one region. On entry `r` has the faces of the region; on return it is cleared. */
 static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_region_parts *out,
                           he_error *err)
 {

@@ -1,9 +1,10 @@
 /* region.h - detaches faces from their surroundings by a ring of quads along their rim. Both
- * face_extrude and face_inset do this; they differ in where they put the new vertices.
+ * face_extrude and face_inset do this; these edits differ in where they put the new vertices.
  *
- * A region is a set of faces connected across edges. Its rim are its half-edges beside which are
- * other faces or a hole. Each rim corner gets a new vertex, to which the region's faces move, and
- * each rim half-edge a quad between old and new:
+ * A region is a set of faces connected across edges. Its rim consists of those of its half-edges
+ * whose twins belong to other faces or to a hole. Each corner on the rim gets a new vertex, which
+ * takes its place in the faces of the region, and each rim half-edge gets a quad between the old
+ * and the new vertices:
  *
  *        o-------o-------o               o-------o-------o
  *        |       |       |               | \     |     / |
@@ -25,7 +26,8 @@
  *     new edge 2i + 1   its half-edge 2e runs from a to the new vertex
  *     new face i        the quad, whose stored half-edge is the rim's; descends from the face there
  *
- * Corner values follow the corners of the region's faces; a quad has copies of those beside it.
+ * Corner values follow the corners of the region's faces; a quad has copies of the values of the
+ * corners beside it.
  *
  * The fans of a bow-tie at the rim stay as they are: at an old vertex two quads take the place of
  * the region's faces, and at a new vertex they close the fan. So no two edges join the same
@@ -42,25 +44,27 @@
 #include "query/idmap.h"
 
 typedef struct he_region {
-    he_idmap faces;   /* breadth-first from the one listed first */
-    he_idmap corners; /* vertices of the rim; the index is that of the half-edge that leaves it */
+    he_idmap faces; /* the region's faces, breadth-first from the one that is listed first */
+    /* Vertices of the rim; each has the index of the rim half-edge that leaves it. */
+    he_idmap corners;
     he_ids rim;
-    he_ids inner, inner_at; /* other half-edges inside that leave the rim, and their corner */
+    /* Other half-edges inside the region that leave a rim vertex, and the index of that vertex. */
+    he_ids inner, inner_at;
 } he_region;
 
-/* How the interpolated values of a new vertex are computed. It is a weighted mean: `mean` is the
+/* How the interpolated values of a new vertex are computed, as a weighted mean. `mean` is the
  * weight of the mean of the corners of the face of `in`, a half-edge that leaves the old vertex
  * below the new one; `side` is the weight of vertex `beside`; the rest is the weight of the old
  * vertex. */
 typedef struct he_region_mix {
     he_halfedge in;
     he_vertex beside;
-    double mean, side; /* at least 0, and together at most 1 */
+    double mean, side; /* both are at least 0, and their sum is at most 1 */
 } he_region_mix;
 
-/* The callback that computes where the new vertices are: it fills `to` with one position for each
- * corner of the rim. `*shift` is the vector by which the vertices inside the region move, if
- * `*shifts` is set. It may refuse the edit. `mix`, if not NULL, is called after `to` is filled and
+/* Callbacks of he_region_draw. `place` computes where the new vertices are: it fills `to` with one
+ * position for each corner of the rim. If it sets *shifts, the vertices inside the region move by
+ * the vector *shift. It may refuse the edit. `mix`, if not NULL, is called after `to` is filled and
  * says how the values of each new vertex are computed; otherwise each has the values of the old
  * vertex below it. */
 typedef struct he_region_place {
@@ -71,17 +75,17 @@ typedef struct he_region_place {
                      he_region_mix *out, he_error *err);
 } he_region_place;
 
-/* The new elements, in the order that region.h describes; {0} at first. */
+/* The new elements, in the order that the head of region.h describes; {0} at first. */
 typedef struct he_region_parts {
     he_ids vertices, edges, faces;
 } he_region_parts;
 
 void he_region_parts_clear(he_region_parts *parts);
 
-/* Detaches the listed faces from their surroundings: each by itself, or with `joined` the faces
- * that are connected across edges as one region. If it is refused, nothing changes. `out` may be
- * NULL; otherwise he_region_parts_clear frees it. Takes time linear in the elements at the corners
- * of the faces.
+/* Detaches the listed faces from their surroundings: each by itself, or with `joined` each set of
+ * faces that are connected across edges as one region. If the edit is refused, nothing changes.
+ * `out` may be NULL; otherwise he_region_parts_clear frees it. Takes time linear in the elements at
+ * the corners of the faces.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF or HE_LOCKED_ELEMENT in the cases that the head of

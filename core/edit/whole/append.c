@@ -7,7 +7,9 @@
  * mapped. */
 typedef struct target {
     size_t slot;
-    uint32_t *label; /* the index here of each of its labels; NULL: indices stay */
+    /* The index in this mesh of each label of the other column; NULL: indices stay as they
+     * are. */
+    uint32_t *label;
 } target;
 
 void he_appended_clear(he_appended *appended)
@@ -55,10 +57,11 @@ static he_status no_memory(const he_column *column, he_error *err)
 
 /* --- materials --- */
 
-/* Materials of the other mesh that get another name in this mesh, and the rows that hold them. */
+/* Materials of the other mesh that get another name in this mesh, and the slots that they have in
+ * this mesh. */
 typedef struct renames {
-    he_labels *from; /* NULL if there are none */
-    he_ids slots;    /* for each the row of this mesh */
+    he_labels *from; /* their names in the other mesh; NULL if there are none */
+    he_ids slots;    /* for each of these names, the slot of the material in this mesh's table */
 } renames;
 
 static void renames_clear(renames *r)
@@ -148,7 +151,8 @@ static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, h
 
 /* --- labels --- */
 
-/* Returns the label that stands in this mesh for a label of the other mesh. */
+/* Returns the label of this mesh that corresponds to a label of the other mesh: the name of its
+ * material may differ. */
 static const char *name_here(const he_mesh *m, const he_column *theirs, const renames *r,
                              const char *text)
 {
@@ -182,7 +186,7 @@ static he_status add_theirs(const he_mesh *m, he_labels *to, const he_column *th
 }
 
 /* Makes the list of labels of both columns, those of `own` (which may be NULL) first. out->label
- * gets the new index of each label of `theirs`. */
+ * gets the index of each label of `theirs` in that list. */
 static he_status make_labels(const he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_labels **labels, he_error *err)
 {
@@ -203,7 +207,8 @@ static he_status make_labels(const he_mesh *m, const he_column *own, const he_co
     return HE_OK;
 }
 
-/* Replaces `own` by a column that has the labels of both columns, unless `own` has them all. */
+/* Replaces `own` by a column with the labels of both columns, unless `own` has all labels
+ * already. */
 static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_error *err)
 {
@@ -227,8 +232,8 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
     return status;
 }
 
-/* Replaces the index of a label by the index of that label in this mesh. An index that has no
- * label, such as -1, stays. */
+/* Replaces the index of a label in the other mesh by the index of that label in this mesh. An index
+ * without a label stays as it is. */
 static void map_labels(const he_column *theirs, const target *to, unsigned char *value)
 {
     for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
@@ -243,8 +248,8 @@ static void map_labels(const he_column *theirs, const target *to, unsigned char 
 
 /* --- columns --- */
 
-/* Adds a column like `theirs` to this mesh, with the default in all rows; a column whose domain is
- * the mesh itself keeps its value. */
+/* Adds a column like `theirs` to this mesh, with the default in all rows; if its domain is the mesh
+ * itself, it has the value of `theirs`. */
 static he_status add_column(he_mesh *m, const he_column *theirs, const renames *r, target *out,
                             he_error *err)
 {
@@ -305,9 +310,9 @@ static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uin
     he_set_attribute(m, to->slot, row, value);
 }
 
-/* --- COMMIT --- */
+/* --- COMMIT: writing --- */
 
-/* Maps old ids to new ones. */
+/* The new id of every old id, for each kind of element. */
 typedef struct maps {
     uint32_t *vertex, *edge, *face;
 } maps;

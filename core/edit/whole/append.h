@@ -5,29 +5,31 @@
 #include "mesh/mesh.h"
 
 /* The new ids of the elements that were appended, in the order of their ids in the other mesh; {0}
- * at first. The ids of each kind are consecutive, and half-edge 2e of an edge becomes the first
- * half-edge of the new edge. */
+ * at first. The new ids of each kind are consecutive, and half-edge 2e of an edge becomes half-edge
+ * 2e' of the new edge e'. */
 typedef struct he_appended {
     he_ids vertices, edges, faces;
 } he_appended;
 
-/* append: V, E and F grow by those of `other`, which stays as it is. No old element is changed or
- * merged; parents are not recorded, since they are of another mesh.
+/* append adds the content of the mesh `other`, which is not changed, to this mesh: V, E and F grow
+ * by the numbers of `other`. No old element of this mesh is changed or merged. New elements have no
+ * parents.
  *
  *        o---o                       o---o
  *        |   |    +    o       --->  |   |    o
  *        o---o        / \            o---o   / \
  *                    o---o                  o---o
  *
- * ATTRIBUTES are matched by domain and name. If both meshes have one, type and number of components
- * must be equal, and either both have labels or neither: values are copied, and labels that this
- * mesh lacks are added after its own. Its default and rule stay. New elements have the default of
- * an attribute that only this mesh has. An attribute that only the other mesh has is added; old
- * elements have its default. Attributes of the mesh itself are added only if this mesh has none of
- * that name.
+ * ATTRIBUTES are matched by domain and name. If both meshes have an attribute, its type and number
+ * of components must be equal, and either both have labels or neither has. Values are copied, and
+ * labels that this mesh lacks are added after its own. The default and the rule of this mesh stay.
+ * New elements have the default of an attribute that only this mesh has. An attribute that only the
+ * other mesh has is added; old elements have its default. An attribute of the other mesh as a whole
+ * is added only if this mesh has none of that name.
  *
- * MATERIALS. Rows of the other mesh's table that this mesh has too are shared; others are added, as
- * NAME_2 and so on if a different row of this mesh has the name, and the new faces use that name.
+ * MATERIALS. Materials of the other mesh that equal one of this mesh are not added again; others
+ * are added. If a different material of this mesh has the name, the added one is called NAME_2 and
+ * so on, and the new faces use that name.
  *
  * `other` must not be `m`. `out` may be NULL; otherwise he_appended_clear frees it.
  * Returns HE_LIMIT if there would be more than HE_MATERIALS materials.

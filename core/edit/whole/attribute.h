@@ -1,9 +1,9 @@
 /* attribute.h - edits of attribute columns, and of their values.
  *
- * These edits are recorded and undone bit for bit like all others: adding or dropping a column is
- * one record that keeps the column, and changing a value is one record for each of its words. A
- * value is a row of the column: as many little-endian numbers of the column's type as it has
- * components.
+ * These edits are recorded and undone bit for bit like all others: adding or dropping a column
+ * makes one record, which keeps the column, and changing a value makes one record for each of its
+ * 32-bit words. A value is a row of the column: as many little-endian numbers of the column's type
+ * as it has components.
  *
  * Every function may return HE_NO_MEMORY; the mesh is then as it was. */
 #ifndef HE_EDIT_WHOLE_ATTRIBUTE_H
@@ -18,11 +18,11 @@ HE_NODISCARD he_status he_attribute_put(he_mesh *m, he_column *takes, he_error *
 /* Removes an attribute column from the mesh. */
 HE_NODISCARD he_status he_attribute_drop(he_mesh *m, const he_column *column, he_error *err);
 
-/* Writes values of elements: `count` rows at `values`, or with `same` one row for all elements.
- * NULL ids mean every live element, in the order of ids, and `count` must be their number. A column
- * whose domain is the mesh itself has the one id 0.
+/* Writes the values of `count` elements: `values` has a row for each element, or, with `same`, one
+ * row for all of them. If `ids` is NULL, the elements are all live ones in the order of ids, and
+ * `count` must be their number. A column whose domain is the mesh itself has one row, with id 0.
  *
- * All or nothing: a refusal changes nothing.
+ * If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_attribute_write(he_mesh *m, const he_column *column, const uint32_t *ids,
@@ -38,8 +38,8 @@ HE_NODISCARD he_status he_attribute_fill(const he_mesh *m, he_column *column, co
  * yet. */
 void he_attribute_settle(const he_mesh *m, he_column *column);
 
-/* Checks that `count` rows hold allowed values of the column's type. On failure `*at` is the index
- * of the bad number, counted over all components.
+/* Checks that `count` rows hold allowed values of the column's type. On failure *at is the index of
+ * the first bad number, counted over all rows and components.
  * Returns HE_BAD_VALUE if a bool is neither 0 nor 1, or if an index into the column's labels is too
  * large.
  * Returns HE_NOT_FINITE if a number is not finite. */

@@ -8,29 +8,30 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* The state of one call. */
+/* The state of one he_delaunay. */
 typedef struct flipper {
     he_mesh *m;
-    bool marked; /* are there marks? */
+    bool marked; /* true if the mesh has marks */
     he_marks marks;
-    uint32_t *queue; /* a ring buffer of size `room` */
+    uint32_t *queue; /* the edges to test: a ring buffer of `room` entries */
     size_t room, head, waiting;
-    uint64_t *queued; /* edges in the queue */
-    he_ids stuck;     /* edges that he_edge_flip refused */
-    size_t stuck_at;  /* number of flips when they were last tried */
+    uint64_t *queued; /* a bit for each edge: it is in the queue */
+    he_ids stuck;     /* edges that he_edge_flip has refused */
+    size_t stuck_at;  /* number of flips when the edges in `stuck` were last tried */
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
-    uint64_t work;        /* work since the last report of progress */
-    size_t from, fold_at; /* records before this call; number of records at the next fold */
+    uint64_t work; /* work since progress was last reported */
+    /* Number of records in the delta before this edit, and number at which they are folded next. */
+    size_t from, fold_at;
 } flipper;
 
-/* The records of repeated flips are folded (all records of one word become one) when there are this
- * many for each edge. That is fewer than an edge has words. */
+/* When the delta has this many records for each edge, they are folded: all records of one word
+ * become one. */
 enum { RECORDS_OF_EDGE = 4 };
 
-/* The amount of work between two reports of progress. Testing an edge takes as long as a
- * few elements in other loops, and as WORK_OF_EDGE steps around a vertex. */
+/* The amount of work after which progress is reported. Testing an edge takes as long as
+ * WORK_OF_EDGE steps around a vertex, and as long as a few elements in the loops of other edits. */
 enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_PROGRESS_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)
@@ -50,13 +51,13 @@ static he_edge dequeue(flipper *q)
     return (he_edge){e};
 }
 
-/* Returns the i-th edge that waits in the queue; no edge if the queue is shorter. */
+/* Returns the i-th edge in the queue; HE_NONE if the queue is shorter. */
 static he_edge waiting_at(const flipper *q, size_t i)
 {
     return (he_edge){i < q->waiting ? q->queue[(q->head + i) % q->room] : HE_NONE};
 }
 
-/* Returns true if marks (marks.h) forbid to flip an interior edge. */
+/* Returns true if marks (marks.h) forbid to flip the edge, which is not on the boundary. */
 static bool is_held(const flipper *q, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -65,7 +66,7 @@ static bool is_held(const flipper *q, he_edge e)
                          he_is_locked(&q->marks, HE_FACE, he_face_of(q->m, he_twin(h)).i));
 }
 
-/* Returns true if the edge violates the Delaunay criterion and should be flipped if it can be. */
+/* Returns true if the edge violates the Delaunay criterion, so that it should be flipped. */
 static bool is_crooked(const flipper *q, he_edge e)
 {
     const he_mesh *m = q->m;
@@ -172,7 +173,7 @@ static he_status empty_queue(flipper *q, he_error *err)
 }
 
 /* Puts the edges that could not be flipped back into the queue, because flips of other edges may
- * have made theirs possible. */
+ * have made it possible to flip them. */
 static void try_again(flipper *q)
 {
     if (q->flips.count > q->stuck_at) {

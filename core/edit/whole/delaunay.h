@@ -4,17 +4,18 @@
 
 #include "mesh/mesh.h"
 
-/* An edge is flipped only if the two angles opposite to it sum to more than pi plus this, in
+/* An edge is flipped only if the two angles opposite to it sum to more than pi plus this number of
  * radians. Otherwise rounding would flip the edges between four points on a circle back and
  * forth. */
 #define HE_DELAUNAY_EPSILON 1e-9
 
-/* The most work for each live edge before the request is refused. Testing an edge, and each step
- * around a vertex in search of an edge, counts as one. */
+/* The most work for each live edge before the request is refused. Testing an edge counts as one,
+ * and so does each step around a vertex in search of an edge. */
 enum { HE_DELAUNAY_STEPS = 512 };
 
-/* delaunay: no element is made or deleted. Edges between two triangles are flipped (see edge_flip)
- * while the angles opposite to them sum to more than pi:
+/* delaunay flips edges until the triangles are as round as possible; no element is made or deleted.
+ * Edges between two triangles are flipped (see edge_flip) while the angles opposite to them sum to
+ * more than pi:
  *
  *            c                          c
  *            o                          o
@@ -30,13 +31,13 @@ enum { HE_DELAUNAY_STEPS = 512 };
  *
  * After a flip the four sides of the kite may violate the criterion, so they are tested again, from
  * a queue in which no edge is twice (C. L. Lawson, "Software for C1 surface interpolation", 1977).
- * With a list only its edges are in the queue at first, and flips spread from there; NULL means all
- * edges.
+ * If edges are listed, only these are in the queue at first, and flips spread from there; NULL
+ * means all edges.
  *
- * Edges on the boundary, beside a face of more than three corners, that are features or locked, or
- * beside a locked face (marks.h) are never flipped. If he_edge_flip refuses, the edge stays too,
- * and is tried again after other flips. At the end every other tested edge satisfies the criterion,
- * and, without a list, a second call changes nothing.
+ * These edges are never flipped: edges on the boundary or beside a face of more than three corners,
+ * feature edges, locked edges and edges beside a locked face (marks.h). If he_edge_flip refuses an
+ * edge, the edge is tried again after other flips. At the end every other tested edge satisfies the
+ * criterion, and if no edges were listed, a second call changes nothing.
  *
  * The algorithm ends. Angles are those of the triangles in space, so a flip across a bent edge
  * changes the surface; but it never makes it larger: flattened about its edge the kite is convex
@@ -49,7 +50,7 @@ enum { HE_DELAUNAY_STEPS = 512 };
  * Edges and faces keep their ids; attributes follow the rules of edge_flip. `flips`, which may be
  * NULL, gets the edges in the order they were flipped, and an edge once for each flip.
  *
- * All or nothing: a refusal changes nothing.
+ * If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list
  * is not live or is listed twice.
  * Returns HE_LIMIT if it takes more than HE_DELAUNAY_STEPS steps for each edge.

@@ -4,11 +4,12 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The new element of every live element: vertex[f] of face f, edge[e] of edge e, face[v] of vertex
- * v. */
+/* The new element that stands for each live element: vertex[f] of face f, edge[e] of edge e,
+ * face[v] of vertex v. */
 typedef struct rows {
     uint32_t *vertex, *edge, *face;
-    uint32_t vertices, edges, faces; /* issued before */
+    /* Number of ids of each kind that were issued before the edit. */
+    uint32_t vertices, edges, faces;
 } rows;
 
 static void rows_clear(rows *r)
@@ -132,7 +133,7 @@ static void make_rows(he_mesh *m, rows *r)
 }
 
 /* Returns the dual half-edge of h: it runs from the face right of h to the face left of it, along
- * the border of the new face that stands for the origin of h. */
+ * the new face that stands for the origin of h. */
 static he_halfedge star(const rows *r, he_halfedge h)
 {
     return (he_halfedge){2 * r->edge[h.i >> 1] + (h.i & 1)};

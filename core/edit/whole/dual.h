@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* dual: in a closed mesh, V becomes F, E stays E, F becomes V. Every face becomes a
+/* dual exchanges faces and vertices of a closed mesh: V becomes F, E stays E, F becomes V. Every
+ * face becomes a vertex at the mean of its corners, and every vertex a face:
  *
  *         o-------o-------o                o-------o-------o
  *         |       |       |                | .-----|-----. |

@@ -17,8 +17,8 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
                          (*out)->labels != NULL ? " with labels" : "");
 }
 
-/* Makes a column with these labels and the values of `column`; if that is NULL, with no material
- * everywhere. */
+/* Makes a column with these labels and the values of `column`; if `column` is NULL, no face has a
+ * material. */
 static he_status column_with(const he_mesh *m, const he_column *column, he_labels *labels,
                              he_column **out, he_error *err)
 {
@@ -72,8 +72,8 @@ static void change_indices(he_column *column, const uint32_t *new_index)
     memcpy(column->fallback, &new_index[index], sizeof index);
 }
 
-/* Replaces the column by one whose labels are changed as make_labels() says: `from` becomes `to`,
- * or `to` is appended. */
+/* Replaces the column by one with the labels that make_labels makes: `from` becomes `to`, or `to`
+ * is appended. */
 static he_status put_labels(he_mesh *m, const he_column *column, const char *from, const char *to,
                             uint32_t *new_index, he_error *err)
 {
@@ -134,7 +134,9 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     if (status != HE_OK) {
         return status;
     }
-    if (*name == '\0') { /* "" means no material: all faces without a material would get this one */
+    /* "" is no name of a material, so it cannot be renamed: all faces without a material would get
+     * one. */
+    if (*name == '\0') {
         return he_fail_plain(err, HE_BAD_VALUE, "there is no material without a name");
     }
     if (he_materials_find(&m->c.materials, to, strlen(to)) != SIZE_MAX ||

@@ -1,20 +1,21 @@
 /* material.h - makes, changes and deletes materials, and assigns them to faces.
  *
- * These edits are recorded and undone bit for bit: a row of the table of materials that changes is
- * one record; if the faces' attribute `material` has no label for a name yet, the column is
- * replaced by one that has it. */
+ * These edits are recorded and undone bit for bit: each changed row of the table of materials makes
+ * one record. If the face attribute `material` has no label for a name yet, its column is replaced
+ * by one that has the label. */
 #ifndef HE_EDIT_WHOLE_MATERIAL_H
 #define HE_EDIT_WHOLE_MATERIAL_H
 
 #include "mesh/mesh.h"
 
-/* The changes to a material. A NULL leaves a value as it is; in a new material it means the value
- * of he_plain_look. */
+/* The changes to a material. A NULL member leaves that value as it is; in a new material it means
+ * the value of he_plain_look. */
 typedef struct he_material_change {
     const char *rename;
     bool replace; /* values that are not given become those of he_plain_look */
     const double *base_color;
-    bool opaque_too; /* base_color has four numbers; otherwise the opacity stays */
+    /* base_color has four numbers, the fourth for the opacity; otherwise the opacity stays. */
+    bool opaque_too;
     const double *metallic, *roughness;
     const double *emission;
     const bool *two_sided;
@@ -22,12 +23,12 @@ typedef struct he_material_change {
     size_t face_count;
 } he_material_change;
 
-/* material_set: V, E and F stay. Changes the material called `name`, or makes it. With `rename` the
- * faces that have it keep it under the new name. The listed faces get the material in their
- * attribute `material`, which is made if missing: uint32 of one component, with labels of which ""
- * means no material.
+/* material_set: V, E and F stay. Changes the material called `name`, or makes it. If `rename` is
+ * given, the faces that have the material keep it under the new name. The listed faces get the
+ * material in their attribute `material`. If that attribute does not exist, it is made: uint32, one
+ * component, with labels, of which "" means no material.
  *
- * The name "" means no material: it is allowed with faces only, which then have no material.
+ * If `name` is "", the listed faces have no material afterwards; no other change may be given then.
  *
  * Returns HE_BAD_VALUE if a name or number is not allowed (mesh/material.h), or the new name exists
  * already.
@@ -40,8 +41,8 @@ HE_NODISCARD he_status he_material_set(he_mesh *m, const char *name,
                                        const he_material_change *change, he_error *err);
 
 /* material_delete: V, E and F stay. Deletes the material of this name: its row of the table, and
- * its name from the labels of the faces' attribute. Faces that had it get the material `to`, or
- * none if that is NULL.
+ * its name from the labels of the faces' attribute. Faces that had the material get the material
+ * `to`, or none if `to` is NULL.
  *
  * Returns HE_BAD_VALUE if there is no material of this name, or none called `to`, or if both names
  * are equal.

@@ -10,8 +10,9 @@ static bool is_normal(const he_column *column)
            he_is_normal_column(column);
 }
 
-/* Computes the cofactors of the map's linear part, with the sign of its inverse transpose. Their
- * scale does not matter, so the entries are scaled to at most 1, and nothing overflows. */
+/* Computes the cofactors of the linear part of the map, with the sign that makes them a positive
+ * multiple of its inverse transpose. The entries of the map are first scaled to at most 1, so that
+ * nothing overflows; the length of the result does not matter. */
 static bool find_cofactors(const double matrix[16], double k[9])
 {
     double a[9], largest = 0, off = 0;
@@ -85,8 +86,8 @@ static bool is_mapped(const he_normals *n, he_face f)
     return true;
 }
 
-/* Counts the rows of one column of normals that are transformed, and transforms them if `commit` is
- * set. */
+/* Counts the rows of one column of normals that the map changes; if `commit` is set, it also
+ * transforms them. */
 static size_t each_row(const he_normals *n, size_t slot, bool commit)
 {
     const he_mesh *m = n->m;
@@ -113,8 +114,8 @@ static size_t each_row(const he_normals *n, size_t slot, bool commit)
         }
         while (h.i != HE_NONE) {
             he_face f = he_face_of(m, h);
-            /* The row of a face is transformed once, when the loop over corners reaches the
-             * half-edge that the face stores. */
+            /* The row of a face is transformed once: when the loop over half-edges reaches the one
+             * that the face stores. */
             bool turns = domain == HE_HALFEDGE ||
                          (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i && is_mapped(n, f));
             rows += turns;

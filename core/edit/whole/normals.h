@@ -4,31 +4,32 @@
 
 #include "mesh/mesh.h"
 
-/* Transforms every column `normal` of three floats or doubles on vertices, half-edges or faces when
- * some or all vertices are mapped: the rows of mapped vertices, of half-edges that leave them, and
- * of faces whose corners are all mapped.
+/* A transformation of normals that belongs to a map of some or all vertices. It changes every
+ * column `normal` of three floats or doubles on vertices, half-edges or faces: the rows of mapped
+ * vertices, of half-edges that leave them, and of faces whose corners are all mapped.
  *
- * A normal becomes the inverse transpose of the map's linear part times itself, at length 1 (J. D.
- * Foley, A. van Dam, S. K. Feiner and J. F. Hughes, "Computer Graphics: Principles and Practice",
- * 1990, 5.7), computed by cofactors, which also works for a map that flattens everything into a
- * plane. A normal that has no direction before or afterwards stays as it is, and so do all normals
- * if the map is a translation. */
+ * A normal is multiplied with the inverse transpose of the map's linear part and scaled to length 1
+ * (J. D. Foley, A. van Dam, S. K. Feiner and J. F. Hughes, "Computer Graphics: Principles and
+ * Practice", 1990, 5.7), computed by cofactors, which also works for a map that flattens everything
+ * into a plane. A normal that has no direction before or afterwards stays as it is, and so do all
+ * normals if the map is a translation. */
 typedef struct he_normals {
     he_mesh *m;
-    const uint32_t *vertices; /* NULL: all */
+    const uint32_t *vertices; /* the vertices that are mapped; NULL: all */
     size_t count;
-    uint64_t *chosen; /* vertices of the list as bits, if faces need them */
+    /* A bit for each vertex: whether it is in the list; made only if normals of faces need it. */
+    uint64_t *chosen;
     double k[9];
     bool turns;
 } he_normals;
 
-/* Finds the columns of normals and computes how they are transformed. `words` is set to the most
- * records that writing will make. he_normals_clear frees.
+/* Finds the columns of normals and computes how they are transformed. *words is the most records
+ * that he_normals_commit will make. he_normals_clear frees *n.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_normals_init(he_normals *n, he_mesh *m, const double matrix[16],
                                        const uint32_t *vertices, size_t count, size_t *words,
                                        he_error *err);
-/* To be called in COMMIT. */
+/* Writes the transformed normals. An edit must call it in its COMMIT part. */
 void he_normals_commit(const he_normals *n);
 void he_normals_clear(he_normals *n);
 

@@ -3,7 +3,7 @@
 #include "edit/piece/list.h"
 #include "mesh/write.h"
 
-/* The elements to reverse. */
+/* The elements that are reversed. */
 typedef struct part {
     he_ids vertices, edges, faces;
 } part;
@@ -15,7 +15,8 @@ static void part_clear(part *p)
     he_ids_clear(&p->faces);
 }
 
-/* Takes all live elements that have a face; isolated vertices have nothing to reverse. */
+/* Puts all live elements that have a face into the lists; isolated vertices have nothing to
+ * reverse. */
 static he_status take_all(const he_mesh *m, part *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -38,7 +39,7 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
     return status;
 }
 
-/* Takes the listed faces with their corners and edges, each only once. */
+/* Puts the listed faces into the lists, with their corners and edges, each only once. */
 static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
                              he_error *err)
 {
@@ -111,8 +112,8 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
 }
 
 /* Moves the corner values around vertex v. The corner that h leaves in face(h) is left by
- * turn_ccw(h) afterwards, so values shift by one place. Those of holes take part, so that a second
- * call restores all values. */
+ * turn_ccw(h) afterwards, so the values of half-edges around v shift by one place. Those of
+ * boundary half-edges shift, too, so that reversing a second time restores all values. */
 static void shift_corners(he_mesh *m, size_t slot, he_vertex v)
 {
     const he_column *column = m->c.columns[slot];
@@ -164,8 +165,9 @@ static void turn_values(he_mesh *m, const part *p)
     }
 }
 
-/* Exchanges the two half-edges of an edge: each takes the face of the other and, reversed, its
- * neighbours. What this writes depends on this edge alone, so edges may be handled in any order. */
+/* Exchanges the two half-edges of an edge: each gets the face of the other and, reversed, its
+ * neighbours. What is written depends on the old links of this edge only, so the edges may be
+ * handled in any order. */
 static void turn_edge(he_mesh *m, he_edge e)
 {
     he_halfedge next[2], prev[2];

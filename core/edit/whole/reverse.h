@@ -4,9 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* reverse: V, E, F + 0. Every listed face, or every face for NULL, runs the other way round. No
- * element is made or deleted and edges keep their ends, so half-edge 2e starts where it did: the
- * two half-edges of an edge exchange their faces.
+/* reverse reverses the orientation of faces: V, E, F + 0. Every listed face, or every face if
+ * `faces` is NULL, runs the other way round. No element is made or deleted and edges keep their
+ * ends, so half-edge 2e starts where it did: the two half-edges of an edge exchange their faces.
  *
  *         c                        c
  *         o                        o
@@ -16,14 +16,15 @@
  *     o---h-->o                o<------o
  *     a       b                a       b
  *
- * Corner values stay in their corner: the value of a half-edge moves to the one that now leaves
- * that vertex in that face. Attributes `normal` of three floats or doubles, on the vertices and
- * corners of these faces and on the faces, change their sign. Reversing twice restores every bit.
+ * Corner values stay in their corner: the value of a half-edge moves to the half-edge that now
+ * leaves the vertex inside the face. Attributes `normal` of three floats or doubles, on the
+ * vertices and corners of these faces and on the faces, change their sign. Reversing twice restores
+ * every bit.
  *
- * Only whole components can be reversed: neighbours across an edge would run along it in one
- * direction, and the fans at a bow-tie chain their holes in one direction too.
+ * Only whole components can be reversed. Otherwise two faces would run along their common edge in
+ * the same direction, or two fans of a bow-tie would have different orientations.
  *
- * If it is refused, nothing changes. Locks do not matter, because locked elements keep their
+ * If the edit is refused, nothing changes. Locks do not matter, because locked elements keep their
  * corners and ends.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.

@@ -4,8 +4,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Checks that no half-edge or face of a fan is locked. `h` begins the fan, and is set to the
- * half-edge that ends it. */
+/* Checks that no half-edge or face of a fan is locked. *h is the half-edge with which the fan
+ * begins, and is set to the one with which it ends. */
 static he_status check_fan(const he_mesh *m, const he_marks *marks, he_halfedge *h, he_error *err)
 {
     he_status status = he_require_unlocked(marks, HE_EDGE, he_edge_of(*h).i, err);
@@ -36,7 +36,7 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
     return status;
 }
 
-/* Adds what separating the fans of v will write to `need`, and v to `ties` if it is a bow-tie. */
+/* If v is a bow-tie, adds v to `ties`, and to `need` what separating its fans will write. */
 static he_status plan(const he_mesh *m, he_vertex v, he_reservation *need, he_ids *ties,
                       he_error *err)
 {

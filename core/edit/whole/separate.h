@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* vertex_separate: V + (fans - 1) for each vertex, E + 0, F + 0.
+/* vertex_separate gives each fan of a bow-tie its own vertex: V + (fans - 1) for each listed
+ * vertex, E + 0, F + 0.
  *
  *        o-----o     o-----o             o-----o     o-----o
  *         \  f  \   /  g  /               \  f  \   /  g  /
@@ -12,12 +13,12 @@
  *           o-----v-----o       --->        o-----v u-----o      u lies where v does, and descends
  *          /     / \     /                 /     / \     /       from it.
  *
- * The fan of the half-edge that v stores keeps v; each other one gets a new vertex, in their order
- * around v. A vertex with one fan or none is not changed. Corners keep their values, and the new
- * vertices have those of v.
+ * The fan of the half-edge that v stores keeps v; each other fan gets a new vertex, in the order of
+ * the fans around v. A vertex with one fan or none is not changed. Corners keep their values, and
+ * the new vertices have those of v.
  *
  * vertex_weld is the inverse. The ids of the new vertices are appended to `made`, which may be
- * NULL. If it is refused, nothing changes.
+ * NULL. If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_LOCKED_ELEMENT if an edge or face of a fan that would get a new vertex is locked.

@@ -4,17 +4,17 @@
 
 #include "mesh/mesh.h"
 
-/* transform: no element is made or deleted. Each listed vertex p moves to the first three rows of
- * matrix * (p, 1); `matrix` is row-major and its last row must be 0 0 0 1. A NULL list means every
- * live vertex. Attributes `normal` are transformed too (normals.h), others are not, and a mirroring
- * matrix does not reverse faces.
+/* transform maps vertices affinely; no element is made or deleted. Each listed vertex p moves to
+ * the first three rows of matrix * (p, 1); `matrix` is row-major and its last row must be 0 0 0 1.
+ * A NULL list means every live vertex. Attributes `normal` are transformed, too (normals.h), other
+ * attributes are not. A matrix that mirrors does not reverse faces.
  *
  *     | m0  m1  m2  m3  |   | x |
  *     | m4  m5  m6  m7  | * | y |
  *     | m8  m9  m10 m11 |   | z |
  *     | 0   0   0   1   |   | 1 |
  *
- * All or nothing: a refusal changes nothing.
+ * If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_NOT_FINITE if a result is not finite.

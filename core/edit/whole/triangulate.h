@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* face_triangulate: for each face of n corners V + 0, E + (n - 3), F + (n - 3).
+/* face_triangulate cuts faces into triangles: for each face of n corners V + 0, E + (n - 3),
+ * F + (n - 3).
  *
  *        o-------o-------o               o-------o-------o
  *        |               |               | \     |     / |
@@ -20,10 +21,10 @@
  * that is a triangle is not changed.
  *
  * The ids of new elements are appended to `edges` and `faces`. A face that has no area or
- * intersects itself is triangulated too, but in its plane some triangle has no area or is flipped;
- * the ids of such faces are appended to `degenerate`. All three may be NULL.
+ * intersects itself is triangulated, too, but then some of its triangles have no area or are
+ * flipped; the ids of such faces are appended to `degenerate`. Each of the three lists may be NULL.
  *
- * All or nothing: a refusal changes nothing.
+ * If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_DOUBLED_EDGE if a face cannot be triangulated without a diagonal that exists as an

@@ -19,7 +19,7 @@ static bool exists(const char *path)
 /* --- files that no process writes to --- */
 
 /* Makes a URI that opens the file as immutable, so that SQLite makes neither a lock nor a -shm for
- * it; unless there is a -wal, which SQLite then has to read too. */
+ * it. If there is a -wal, the URI is not immutable, because SQLite has to read the -wal, too. */
 static bool uri_of(const char *file, char *out, size_t size)
 {
     static const char hex[] = "0123456789ABCDEF";
@@ -57,7 +57,7 @@ static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAG
     return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
 }
 
-/* Checks the structure of a database, and reports the first fault that SQLite finds. */
+/* Checks the structure of a database. If SQLite finds a fault, `message` has the first one. */
 static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     sqlite3_stmt *s = NULL;
@@ -166,7 +166,8 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
         file, "it would be replayed onto the backup; remove it, or name another file", message);
 }
 
-/* The free space that a backup leaves to the store, because the daemon goes on writing. */
+/* The free space that must be left beside a backup, because the daemon goes on writing to its
+ * store. */
 enum { SPARE_BYTES = 64 << 20 };
 
 static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESSAGE])
@@ -177,7 +178,7 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     st_folder_above(file, folder);
     if (st_db_number(from, "PRAGMA page_count", 0, &pages) != ST_SQL_DONE ||
         statvfs(folder, &system) != 0) {
-        return true; /* if there is too little space, the write will fail */
+        return true; /* the space is not known, and if it is too small, the write will fail */
     }
     const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
     const uint64_t there = (uint64_t)system.f_bavail * system.f_frsize;

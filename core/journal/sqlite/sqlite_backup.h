@@ -1,13 +1,13 @@
-/* sqlite_backup.h - stores as single files: a backup beside a running daemon, inspection of a file,
- * and restore.
+/* sqlite_backup.h - copies a store to a single file while a daemon runs, inspects such a file, and
+ * restores a store from it.
  *
- * A backup is the state of one moment. It has its name only when it is complete: it is written as
- * NAME.part, synced, checked, then renamed.
+ * A backup is the state of the store at one moment. It is written as NAME.part, synced, checked,
+ * and then renamed to NAME, so NAME is always complete.
  *
- * A RESTORE puts a store back in time, so every mesh gets a new incarnation: ETags and event ids
- * that clients got of the states that are gone must not match other states. It takes the lock of
- * the folder. It can be interrupted at any step: once the file `restoring` exists, the next start,
- * or the next restore, finishes it.
+ * A RESTORE puts the store back to an earlier state. Every mesh then gets a new incarnation,
+ * because ETags and event ids that clients got for states that no longer exist must not match other
+ * states. It takes the lock of the folder. It can be interrupted at any step: once the file
+ * `restoring` exists, the next start, or the next restore, finishes it.
  *
  *     restored.db    the copy of the backup, checked, with new incarnations
  *     restoring      names the folder for the old store; then, in this order:
@@ -21,28 +21,30 @@
 
 /* All functions return false with a sentence in `message` on failure. */
 
-/* Writes the store of a folder, which a daemon may have open, to a file, replacing one of that
- * name. Refuses to replace a file of this or another store, or one with a -wal or -journal beside
- * it. */
+/* Writes the store of a folder to a file, and replaces a file of that name; a daemon may be running
+ * on the store. Refuses to replace a file of this or another store, or a file that has a -wal or
+ * -journal beside it. */
 bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLITE_MESSAGE]);
-/* Replaces the store of the folder, if there is one; `before` is where the old one is kept. Refuses
- * a file with a -wal or -journal beside it, because its contents would be lost. */
+/* Replaces the store of the folder, if there is one, by the backup `file`. `before` is the folder
+ * where the old store is kept. Refuses a backup with a -wal or -journal beside it, because the
+ * changes in that would be left out. */
 bool st_sqlite_restore(const char *folder, const char *file, char before[ST_SQLITE_MESSAGE],
                        char message[ST_SQLITE_MESSAGE]);
 /* Checks that the structure of the file is intact, and that it is a store of a version that this
  * release knows. Its meshes and their records are not checked. */
 bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE]);
 
-/* Makes a journal that only reads: the store of a folder, which a daemon may have open, or a file.
- * It refuses every append, stores no finding of damage, and reads meshes even if their card says
- * that they are damaged. It has no keys. Only one thread may use it. */
+/* Makes a journal that only reads. `path` is the folder of a store, which a daemon may have open,
+ * or a file. The journal refuses every append, stores no finding of damage, and reads meshes even
+ * if their card says that they are damaged. It has no keys. Only one thread may use it. */
 bool st_sqlite_look(const char *path, st_sqlite_opened *out);
 
 typedef void st_say(void *context, const char *what);
 /* Checks the structure of the file of a journal that st_sqlite_look has made, and passes what is
  * wrong with it to `say`, one line for each of the first hundred faults; returns their number. If
- * there are any, `list` gives from then on the meshes that can be reached, in the order in which
- * they were made; its `after` is the last id that was listed, or "". */
+ * there are any, the journal's `list` from then on lists the meshes that can be reached, in the
+ * order in which they were created; its parameter `after` must be the last id that was listed, or
+ * "". */
 unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context);
 
 #endif

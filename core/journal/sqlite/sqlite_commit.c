@@ -1,4 +1,5 @@
-/* sqlite_commit.c - the commit thread, which writes what is queued to the database, and its states:
+/* sqlite_commit.c - the commit thread, which writes the queue to the database. It is in one of
+ * three states:
  *
  *     WRITES   everything queued is taken as one group (take_group) and committed (commit_group),
  *              with a slice of background work. commit_group leads to the states below
@@ -15,14 +16,17 @@
 enum {
     GROUP_RECORDS = 4096,
     GROUP_BYTES = 8 << 20,
-    SLICE_BESIDE = 64 << 10, /* bytes of background work while records wait */
-    SLICE_ALONE = 256 << 10, /* bytes otherwise: records that come meanwhile wait for it */
-    /* The number of pages of the log after which a checkpoint is made. Records wait for a
-     * checkpoint, the longer the more pages it writes. While slices of background work fill the
-     * log, checkpoints come more often, so that one is as short as a slice. */
+    SLICE_BESIDE = 64 << 10, /* bytes of background work in one transaction, if records wait, too */
+    /* Bytes of background work in one transaction, if no record waits; one that comes has to wait
+     * for it. */
+    SLICE_ALONE = 256 << 10,
+    /* A checkpoint is made when the write-ahead log has this many pages. Records wait for a
+     * checkpoint, the longer the more pages it copies. While background work fills the log,
+     * checkpoints are made more often, so that each takes no longer than a slice of that work. */
     CHECKPOINT_PAGES = 1000,
     CHECKPOINT_PAGES_BESIDE = 256,
-    LONG_LOG = 64 << 20, /* bytes of the -wal from which loads wait for a checkpoint */
+    /* Bytes of the write-ahead log from which on loads wait for a checkpoint. */
+    LONG_LOG = 64 << 20,
     SECOND = 1000000,
     RETRY_MICROS = 20000,
     CLOSING_TRIES = 50
@@ -31,14 +35,15 @@ enum {
 /* The items of the queue that are written in one transaction. */
 typedef struct group {
     st_item *first, *last;
-    uint64_t records /* records and notes */, position, made, removed;
+    uint64_t records /* number of records and notes */, position, made, removed;
     bool freeing;
-    st_stage *stage; /* the stage whose slice is written too; NULL: something is purged */
-    size_t slice;    /* bytes of background work; 0: none */
-    bool purged;     /* after this transaction nothing is left to be purged */
+    /* The stage of which a slice is written, too; NULL: the background work is a purge. */
+    st_stage *stage;
+    size_t slice; /* bytes of background work in this transaction; 0: none */
+    bool purged;  /* when this transaction is committed, nothing is left to be purged */
 } group;
 
-/* --- taking from the queue; the caller holds the lock --- */
+/* --- taking items from the queue; the caller holds the lock --- */
 
 static void count_room(group *g, const st_sqlite_room *room)
 {
@@ -140,8 +145,8 @@ static uint64_t charge_of(const st_item *item)
     return charge;
 }
 
-/* Ends a slice of a stage (a content written in advance), which was written or never will be. The
- * caller holds the lock. */
+/* Ends the writing of a slice of a stage (a content written in advance): it was written, or never
+ * will be. The caller holds the lock. */
 static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
 {
     st_stage **at = &self->stages;
@@ -154,8 +159,8 @@ static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
     pthread_cond_broadcast(&self->moved);
 }
 
-/* Sets the position of the journal up to which everything is durable or reported as lost. The
- * caller holds the lock. */
+/* Sets the position up to which every record is durable or was reported as lost. The caller holds
+ * the lock. */
 static void move(st_sqlite *self, uint64_t position)
 {
     self->told = position;
@@ -184,8 +189,8 @@ static void stop_writing(st_sqlite *self, st_write_mode mode)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Takes the lost items from the queue: the rooms (groups of records), and in the state FAILED all
- * others, too. The caller holds the lock. */
+/* Takes the lost items from the queue: all rooms (groups of records), and in the state FAILED all
+ * other items, too. The caller holds the lock. */
 static st_item *take_lost(st_sqlite *self)
 {
     st_item *lost = NULL, **lost_end = &lost, **at = &self->first;
@@ -214,8 +219,8 @@ static bool has_room(const st_sqlite *self)
     return false;
 }
 
-/* Deletes the contents that were written in advance for records that are lost. The caller holds the
- * lock. */
+/* Deletes the contents that were written in advance for the lost records of a room. The caller
+ * holds the lock. */
 static void unstage(st_sqlite *self, st_sqlite_room *room)
 {
     for (size_t i = 0; i < room->count; i++) {
@@ -228,8 +233,8 @@ static void unstage(st_sqlite *self, st_sqlite_room *room)
     }
 }
 
-/* Loses everything that is queued; rooms that are still reserved are lost when they are appended.
- * The caller holds the lock, which is released meanwhile. */
+/* Drops all queued records and reports them as lost. Rooms that are still reserved are lost when
+ * records are appended to them. The caller holds the lock; it is released during the report. */
 static void lose(st_sqlite *self)
 {
     st_item *lost = take_lost(self);
@@ -294,7 +299,7 @@ static st_sql put_progress(st_sqlite *self, const st_progress *progress)
                     progress->meshes, (uint64_t)st_progress_sum(progress));
 }
 
-/* Copies SQLite's message now, because the next statement replaces it. */
+/* Copies SQLite's message about a failure, because the next statement replaces it. */
 static void note_refusal(st_sqlite *self, st_sql outcome)
 {
     if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
@@ -340,7 +345,8 @@ static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
     return outcome;
 }
 
-/* Waits a moment, until other threads free memory or another program releases its lock. */
+/* Waits a moment, so that other threads can free memory, or another program can release its
+ * lock. */
 static void rest(st_sqlite *self)
 {
     sqlite3_db_release_memory(self->db.handle);
@@ -359,9 +365,9 @@ static bool is_closing(st_sqlite *self)
     return closing;
 }
 
-/* Tries to commit a group until the disk has accepted or refused it. A group that does not fit is
- * tried without background work; a purge alone is not tried again, because it would be due again at
- * once. */
+/* Tries to commit a group until the disk has accepted or refused it. If the disk is full, the group
+ * is tried again without background work; if it is a purge alone, it is not tried again, because it
+ * comes again anyway. */
 static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 {
     for (unsigned tries = 1;; tries++) {
@@ -382,8 +388,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 
 static void write_mark(st_sqlite *self)
 {
-    /* If the mark cannot be written, it names an older commit. Such a mark reveals less lost data,
-     * but it is never wrong. */
+    /* If the mark cannot be written, it still names an older commit. Then it cannot reveal the loss
+     * of newer commits, but what it says is true. */
     (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
                                                   self->progress.position});
 }
@@ -402,7 +408,8 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
     self->charged -= charge_of(g->first);
     move(self, g->position);
     pthread_mutex_unlock(&self->lock);
-    /* A thread that was refused memory waits for the listener to be told, then tries again. */
+    /* Memory of the items is freed first: the listener may wake a thread that was refused
+     * memory. */
     free_items(g->first);
     if (g->records > 0) {
         tell(self, NULL, g->position);
@@ -411,7 +418,8 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
 
 static void count_commit(st_sqlite *self, const group *g, uint64_t micros)
 {
-    if (g->records > 0) { /* otherwise it is background work alone, which no client waits for */
+    /* Otherwise the group is background work alone, for which no client waits. */
+    if (g->records > 0) {
         st_histogram_add(&self->commits, st_scale_micros, micros);
         st_histogram_add(&self->groups, st_scale_counts, g->records);
     }
@@ -444,7 +452,7 @@ static bool log_is_long(const st_sqlite *self)
     return self->log_pages * ST_LOG_PAGE_BYTES > LONG_LOG;
 }
 
-/* Writes the log back into the database, as far as readers allow. Returns false if the disk
+/* Copies the write-ahead log into the database, as far as readers allow. Returns false if the disk
  * failed. */
 static bool checkpoint(st_sqlite *self, int how)
 {
@@ -454,16 +462,16 @@ static bool checkpoint(st_sqlite *self, int how)
     st_histogram_add(&self->checkpoints, st_scale_micros, st_clock_micros() - begun);
     self->log_tried = self->log_pages;
     pthread_mutex_lock(&self->lock);
-    /* Loads of meshes go on waiting if loads under way may have kept this checkpoint from writing
-     * everything back. After a complete checkpoint, new loads read nothing from the log, and the
-     * next commit starts the log anew. */
+    /* New loads of meshes still have to wait if running loads may have kept this checkpoint from
+     * copying the whole log. After a complete checkpoint, new loads read nothing from the log, and
+     * the next commit overwrites it from the start. */
     self->log_is_long = self->mode == ST_WRITES && log_is_long(self) && self->loads_taken > 0;
     if (!self->log_is_long) {
         pthread_cond_broadcast(&self->moved);
     }
     pthread_mutex_unlock(&self->lock);
     note_refusal(self, outcome);
-    /* A full disk is no failure of a checkpoint, because the log is intact. */
+    /* If the disk is full, the checkpoint has not failed, because the log is intact. */
     return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
            (stop_writing(self, ST_WRITES_FAILED), false);
 }
@@ -472,7 +480,7 @@ static void checkpoint_when_due(st_sqlite *self, const group *g)
 {
     const uint64_t pages = g->slice > 0 ? CHECKPOINT_PAGES_BESIDE : CHECKPOINT_PAGES;
     if (self->log_pages < self->log_tried) {
-        self->log_tried = 0; /* the next commit starts the log anew */
+        self->log_tried = 0; /* the next commit overwrites the log from the start */
     }
     if (self->log_pages >= self->log_tried + pages) {
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
@@ -490,8 +498,9 @@ int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
 
 /* --- the disk is full --- */
 
-/* Makes space on a full disk with what can be done with little space: purges rows, and returns
- * pages. The caller holds the lock, which is released meanwhile. */
+/* Frees space on a full disk, by steps that need little space themselves: deletes rows that are not
+ * needed and returns free pages to the file system. The caller holds the lock; it is released
+ * meanwhile. */
 static bool make_space(st_sqlite *self)
 {
     bool good, closing;
@@ -527,7 +536,8 @@ static bool make_space(st_sqlite *self)
     return good;
 }
 
-/* Truncates the log if no connection reads it, so that its space is free for other files. */
+/* Truncates the write-ahead log if no connection reads it, so that its space is free for other
+ * files. */
 static bool cut_log(st_sqlite *self)
 {
     pthread_mutex_lock(&self->lock);
@@ -536,9 +546,9 @@ static bool cut_log(st_sqlite *self)
     return is_read || checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);
 }
 
-/* Ends the FULL state if the ballast can be made again and there is space beside it: with less, the
- * next few changes would fill the disk again. The caller holds the lock, which is released
- * meanwhile. */
+/* Ends the state FULL if the ballast (reserved disk space) can be made again and there is more free
+ * space. With less, the next few changes would fill the disk again. The caller holds the lock; it
+ * is released meanwhile. */
 static void seek_space(st_sqlite *self)
 {
     pthread_mutex_unlock(&self->lock);
@@ -572,7 +582,7 @@ static bool has_work(const st_sqlite *self)
     return self->first != NULL || (self->losing && self->old_rooms == 0);
 }
 
-/* Does the next piece of work. The caller holds the lock, which is released meanwhile. */
+/* Does one step of the thread's work. The caller holds the lock; it is released meanwhile. */
 static void work_once(st_sqlite *self)
 {
     if (self->mode == ST_WRITES_FAILED || self->losing) {
@@ -588,7 +598,8 @@ static void work_once(st_sqlite *self)
         (void)st_ballast_drop(&self->folder);
     }
     if (g.first == NULL && g.slice == 0) {
-        (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE); /* loads wait for it */
+        /* Loads of meshes wait for this checkpoint. */
+        (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
     } else if (commit_group(self, &g)) {
         checkpoint_when_due(self, &g);
     }
@@ -618,7 +629,8 @@ void *st_commit_thread(void *context)
         }
         self->idle = false;
     }
-    /* On a full disk some deletions are still queued when the thread ends. */
+    /* If the disk is full, some items that delete something are still queued when the thread
+     * ends. */
     free_items(self->first);
     self->first = NULL;
     self->end = &self->first;

@@ -12,8 +12,8 @@
 
 /* --- memory --- */
 
-/* SQLite asks for the size of its blocks, which base/mem.h does not know, so the size is stored
- * before each block. */
+/* SQLite asks for the size of its blocks, which base/mem.h does not know. So the size is stored in
+ * HEADER bytes before each block. */
 enum { HEADER = 16, ROUND = 8 };
 
 static void *block_resize(void *memory, int size)
@@ -102,8 +102,8 @@ st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *tex
     }
     sqlite3_extended_result_codes(db->handle, 1);
     sqlite3_busy_timeout(db->handle, BUSY_MILLIS);
-    /* SQLite does not report errors of the checkpoint that it makes while closing, so that is
-     * switched off and the checkpoint is made before. */
+    /* SQLite does not report errors of the checkpoint that it makes when it closes a database, so
+     * that checkpoint is switched off, and one is made before closing. */
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
@@ -121,7 +121,7 @@ st_sql st_db_set_cache(st_db *db, unsigned kib)
         budget == 0 || budget >= FULL_CACHE_BUDGET ? kib : kib * budget / FULL_CACHE_BUDGET;
     char text[64];
     share = share < LEAST_CACHE_KIB ? LEAST_CACHE_KIB : share;
-    /* In this pragma a negative number counts KiB, a positive one pages. */
+    /* In this pragma a negative number counts KiB, a positive number counts pages. */
     (void)snprintf(text, sizeof text, "PRAGMA cache_size = -%u", (unsigned)share);
     return st_db_run(db, text);
 }
@@ -163,9 +163,9 @@ st_sql st_db_outcome(const st_db *db, int code)
         if (code == SQLITE_IOERR_NOMEM) {
             return ST_SQL_NO_MEMORY;
         }
-        /* SQLite distinguishes only ENOSPC among the errors of a full disk, and not while it
-         * extends the -shm, so the system's error is looked at. A sync that fails with ENOSPC
-         * counts as failed like any other. */
+        /* SQLite reports a full disk only for ENOSPC, and not when it extends the -shm. So the
+         * error of the system is examined here. A sync that fails with ENOSPC is not a full disk
+         * but a failure. */
         if (code == SQLITE_IOERR_WRITE || code == SQLITE_IOERR_SHMSIZE) {
             const int reason = sqlite3_system_errno(db->handle);
             return reason == EDQUOT || reason == ENOSPC ? ST_SQL_FULL : ST_SQL_FAILED;

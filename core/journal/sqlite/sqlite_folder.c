@@ -37,7 +37,8 @@ static bool write_owner(st_folder *folder)
     int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
-           /* The lock is held even if writing fails; other processes then cannot name its owner. */
+           /* Even if the owner cannot be written, the process has the lock. Other processes then
+            * cannot name its owner. */
            errno == ENOSPC || errno == EDQUOT || st_folder_fail(folder, "cannot write", "lock");
 }
 
@@ -47,7 +48,8 @@ static bool take_lock(st_folder *folder)
     if (folder->lock < 0) {
         return st_folder_fail(folder, "cannot open", "lock");
     }
-    /* Unlike a lock of fcntl, this one is not dropped when any descriptor of the file is closed. */
+    /* A lock of flock, unlike one of fcntl, is not released when another descriptor of the file is
+     * closed. */
     if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0) {
         return write_owner(folder);
     }
@@ -60,7 +62,7 @@ static bool take_lock(st_folder *folder)
                      who[0] == '\0' ? "another process" : who);
 }
 
-/* --- the folder --- */
+/* --- the folder of the store --- */
 
 static void close_file(int file)
 {
@@ -103,7 +105,7 @@ bool st_folder_open(st_folder *folder, const char *path)
     }
     if (made && !sync_above(path)) {
         (void)st_folder_fail(folder, "cannot sync the folder above", "");
-        (void)rmdir(path); /* so that the next start tries again */
+        (void)rmdir(path); /* the folder is removed, so that the next start tries again */
         return false;
     }
     folder->folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -173,9 +175,10 @@ bool st_folder_sync(st_folder *folder)
     return fsync(folder->folder) == 0 || st_folder_fail(folder, "cannot sync", "");
 }
 
-/* --- the mark --- */
+/* --- the mark of the last commit --- */
 
-/* The layout of a slot of the mark: store, commits, position, 4 zeros, CRC-32C of all before. */
+/* The layout of a slot of the mark: number of the store, commits, position, 4 bytes of zeros,
+ * CRC-32C of all these. */
 enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
 
 bool st_mark_open(st_folder *folder)
@@ -229,7 +232,7 @@ bool st_mark_sync(st_folder *folder)
     return fdatasync(folder->mark) == 0 || st_folder_fail(folder, "cannot sync", "hedge.mark");
 }
 
-/* --- the ballast --- */
+/* --- the ballast, a file that reserves disk space --- */
 
 bool st_ballast_make(st_folder *folder)
 {
@@ -250,8 +253,8 @@ bool st_ballast_make(st_folder *folder)
     return made;
 }
 
-/* Returns true if the file system reports free blocks and they can be allocated. Only allocation
- * shows whether a quota is exhausted. */
+/* Returns true if the file system reports enough free blocks and they can be allocated. Only
+ * allocation shows whether a quota is exhausted. */
 bool st_folder_has_space(st_folder *folder)
 {
     struct statvfs space;

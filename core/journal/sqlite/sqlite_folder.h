@@ -6,9 +6,10 @@
  *     ballast    space that is freed when the disk is full, so that meshes can be deleted
  *     fresh      exists from before the database is made until the first start is over
  *
- * THE MARK. A damaged byte in the -wal makes SQLite silently drop all commits from there on. The
- * mark reveals that: it names the last commit and is written after each one, in two slots in turn
- * so that one is always intact. A database at an earlier commit has lost its end. */
+ * THE MARK. A damaged byte in the write-ahead log (-wal) makes SQLite silently drop that commit and
+ * all after it. The mark reveals that: it names the last commit and is written after each commit,
+ * alternately in two slots, so that one slot is always intact. A database at an earlier commit has
+ * lost its end. */
 #ifndef HE_JOURNAL_SQLITE_FOLDER_H
 #define HE_JOURNAL_SQLITE_FOLDER_H
 
@@ -21,7 +22,8 @@
 
 typedef struct st_folder {
     char path[PATH_MAX];
-    int folder, lock, mark;          /* descriptors, -1 if not open */
+    /* Descriptors of the folder, the lock and the mark; -1 if not open. */
+    int folder, lock, mark;
     char message[ST_SQLITE_MESSAGE]; /* a sentence about the last failure */
 } st_folder;
 
@@ -29,21 +31,21 @@ typedef struct st_mark {
     uint64_t store, commits, position;
 } st_mark;
 
-/* Makes the folder if it is missing, and locks it. The caller must close it in any case. Returns
- * false if another process has the lock, or the system refuses. */
+/* Makes the folder if it is missing, and locks it. The caller must call st_folder_close even after
+ * a failure. Returns false if another process has the lock, or the system refuses. */
 bool st_folder_open(st_folder *folder, const char *path);
 void st_folder_close(st_folder *folder); /* also releases the lock */
 /* Returns a warning if the file system of the folder has locks or syncs that are not reliable; ""
  * otherwise. */
 const char *st_folder_doubt(const st_folder *folder);
 
-/* Writes a message that `what`, such as "cannot make", failed with errno for a file of the folder
- * ("" names the folder itself). Returns false. */
+/* Writes a sentence to folder->message: that an action, such as `what` = "cannot make", failed with
+ * errno for the file `name` of the folder ("" names the folder itself). Returns false. */
 bool st_folder_fail(st_folder *folder, const char *what, const char *name);
 
-/* Finds the folder that contains a file or folder. */
+/* Writes the path of the folder that contains the file or folder `path` to `out`. */
 void st_folder_above(const char *path, char out[PATH_MAX]);
-/* Makes the path of a file in the folder. Returns false if it is too long. */
+/* Makes the path of the file `name` in the folder. Returns false if it is too long. */
 bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX]);
 bool st_folder_has(const st_folder *folder, const char *name);
 /* Makes an empty file that only its owner may read, unless the file exists. */
@@ -55,23 +57,24 @@ bool st_folder_drop(st_folder *folder, const char *name);
 /* Makes the creations, renames and removals in the folder durable. */
 bool st_folder_sync(st_folder *folder);
 
-/* Opens the mark, or makes an empty one. Must be called before the other functions of the mark. */
+/* Opens the file of the mark, or makes an empty one. Must be called before the other functions
+ * whose names begin with st_mark. */
 bool st_mark_open(st_folder *folder);
-/* Reads the newest mark (the record of the last commit) that is intact. Returns false if there is
- * none. */
+/* Reads the newest mark that is intact. Returns false if there is none. */
 bool st_mark_read(st_folder *folder, st_mark *out);
 /* Writes the mark without waiting for the disk. */
 bool st_mark_write(st_folder *folder, const st_mark *mark);
 bool st_mark_sync(st_folder *folder);
 
-/* Returns true if the file system has some MiB of free space. */
+/* Returns true if the file system has enough free space for writes to be worth trying again. */
 bool st_folder_has_space(st_folder *folder);
 /* Makes the ballast (space that is freed when the disk is full) unless it exists. Returns false if
  * there is no space for it. */
 bool st_ballast_make(st_folder *folder);
 /* Removes the ballast. Returns false if there was none. */
 bool st_ballast_drop(st_folder *folder);
-/* Removes the ballast if the disk is too full to start; returns false if the disk is not. */
+/* Removes the ballast if the disk is too full for the daemon to start. Returns false if the disk is
+ * not that full. */
 bool st_ballast_drop_for_start(st_folder *folder);
 
 #endif

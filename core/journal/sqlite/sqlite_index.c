@@ -1,10 +1,11 @@
 /* sqlite_index.c - compares the table of meshes with its indexes. A mesh whose index entry is
- * damaged would seem not to exist, and another could be made under its id.
+ * damaged would seem not to exist, and another mesh could be created with its id.
  *
- * SQLite's integrity_check looks up each row in each index, at random places of the file: half a
- * minute for a million meshes. Here table and indexes are read sequentially. They are equal if
- * their structure is intact (quick_check), the entries of each index are in order, so that lookups
- * find what is there, and the sums of hashes of all entries equal those of the rows. */
+ * SQLite's integrity_check looks up each row in each index, at random places of the file: that
+ * takes half a minute for a million meshes. Here the table and its indexes are read sequentially.
+ * They agree if their structure is intact (quick_check), the entries of each index are in order, so
+ * that a lookup finds every entry, and the sum of the hashes of all entries equals that of all
+ * rows. */
 #include "base/siphash.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -18,7 +19,7 @@ static const char *const texts[STATEMENTS] = {
                      "ORDER BY incarnation",
 };
 
-/* Sums over all ids and over all incarnations, each hashed with the key of its row. */
+/* Sums of hashes over all ids and over all incarnations; each hash includes the key of the row. */
 typedef struct sums {
     uint64_t ids, incarnations;
 } sums;

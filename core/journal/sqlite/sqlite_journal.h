@@ -1,16 +1,17 @@
 /* sqlite_journal.h - the journal that stores meshes in a folder, by SQLite.
  *
- * One thread and one connection write and checkpoint. The thread commits everything queued as one
- * group, waits for the disk once, calls the listener, and takes the next group: a group collects
- * while the sync of the one before runs. Other connections only read. (SQLite 3.7.0 to 3.51.2 can
- * lose pages when one connection commits while another checkpoints; so there is no other that
- * does.)
+ * One thread, the commit thread, writes and checkpoints through one connection. It commits
+ * everything queued as one group, waits for the disk once, calls the listener, and takes the next
+ * group, which has collected during the sync of the group before. Other connections only read.
+ * (SQLite 3.7.0 to 3.51.2 can lose pages when one connection commits while another checkpoints; so
+ * no other connection commits or checkpoints.)
  *
- * FAULTS OF THE DISK. A group that finds the disk full is tried again without background work; then
- * it is lost, with everything queued, and the journal is FULL: it accepts only removals, frees its
- * ballast for them, and checks each second whether there is space again for the ballast and some
- * more. After any other failed write or sync it is FAILED until a restart, because the state of the
- * pages on the disk is then unknown. Reads go on in both states. */
+ * FAULTS OF THE DISK. If the disk is full, the group is tried again without background work. If it
+ * still does not fit, it is lost, with everything queued, and the journal is FULL: it accepts only
+ * removals, frees its ballast (a file that reserves disk space) for them, and checks each second
+ * whether there is space again for the ballast and some more. After any other failed write or sync
+ * it is FAILED until a restart, because the state of the pages on the disk is then unknown. Reads
+ * go on in both states. */
 #ifndef HE_JOURNAL_SQLITE_JOURNAL_H
 #define HE_JOURNAL_SQLITE_JOURNAL_H
 
@@ -18,7 +19,7 @@
 #include "journal/sqlite/sqlite_message.h"
 
 typedef struct st_sqlite_options {
-    const char *folder;   /* made if it is missing */
+    const char *folder;   /* the folder of the store; made if it is missing */
     const char *release;  /* name of this release, for messages */
     uint64_t queue_bytes; /* most bytes queued or reserved; 0: ST_SQLITE_QUEUE */
     uint64_t keys;        /* most keys of all meshes together; 0: ST_SQLITE_KEYS */
@@ -28,15 +29,17 @@ enum { ST_SQLITE_QUEUE = 64 << 20, ST_SQLITE_KEYS = 1 << 20 };
 
 typedef struct st_sqlite_opened {
     st_journal journal;
-    /* Whether the store is new: the start that made it, this one or an earlier one that was killed,
-     * is not over. The store then contains only what that start has put into it. */
+    /* True if the store is new: the start of the daemon that made it, this one or an earlier one
+     * that was killed, has not ended. The store then contains only what such a start has put into
+     * it. */
     bool made;
-    char message[ST_SQLITE_MESSAGE]; /* a warning, "" for none; after a failure the reason */
+    /* A warning, "" if there is none; if opening failed, the reason. */
+    char message[ST_SQLITE_MESSAGE];
 } st_sqlite_opened;
 
 /* Opens the store. Returns false with the reason in `message` if another daemon has the folder, if
- * the file is no store or one of a newer release, if commits that were acknowledged are missing, or
- * if the system refuses. */
+ * the file is no store, if a newer release wrote it, if commits that were acknowledged are missing,
+ * or if the system refuses. */
 bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out);
 
 /* Returns the version of the SQLite library in use; static. */

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Selects the newest keys, from the day before the newest one. */
+/* Selects the newest keys that belong to the store: those at most ?1 seconds older than the newest
+ * one. */
 static const char of_store[] =
     "SELECT * FROM (SELECT " ST_KEPT_COLUMNS
     " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
@@ -52,7 +53,7 @@ st_sql st_kept_count_damaged(st_db *db, uint64_t *out)
     return outcome;
 }
 
-/* Passes a key on. A damaged key is passed on, too, so that a repeated request is not executed
+/* Passes a key to `take`. A damaged key is passed, too, so that a repeated request is not executed
  * again. */
 static bool give(const st_kept_row *row, bool good, st_take_key *take, void *to)
 {
@@ -78,7 +79,8 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     bool taken = true;
     uint64_t damaged = 0;
     if (self->only_reads) {
-        /* A journal that only reads answers no requests, and damaged keys must not hide a mesh. */
+        /* A journal that only reads needs no keys, and damaged keys must not prevent reading the
+         * mesh. */
         return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);

@@ -1,6 +1,6 @@
-/* sqlite_notes.c - notes: the state of jobs, and keys of requests that changed nothing. A note is a
- * room (a queued group) without records, so that it has a position among them: if it is lost, so is
- * everything after it.
+/* sqlite_notes.c - notes: the state of jobs, and keys of requests that changed nothing. A note is
+ * stored in a room (memory of a queued group) without records. So it has a position in the order of
+ * records, and if it is lost, so are all records after it.
  *
  *     accepted ----> done             by the room of the record that is the job's work: both or
  *         |            |              neither
@@ -13,7 +13,7 @@
 
 enum { JOB_TEXTS = 5 + ST_JOB_HEADERS };
 
-/* Lists the text members of a job. */
+/* Lists the members of a job that are texts. */
 static void texts_of(st_job *job, const char **out[JOB_TEXTS])
 {
     out[0] = &job->operation;
@@ -26,7 +26,7 @@ static void texts_of(st_job *job, const char **out[JOB_TEXTS])
     }
 }
 
-/* Returns the bytes that a copy of all that the job points to takes. */
+/* Returns the bytes that a copy of the job's texts and body takes. */
 static size_t bytes_of(const st_job *job)
 {
     st_job copy = *job;
@@ -90,12 +90,12 @@ static st_sql make_row(st_sqlite *self, const st_job *job)
                  (int64_t)job->status, (uint64_t)job->shown, job->headers[ST_JOB_TYPE],
                  job->headers[ST_JOB_DISPOSITION], job->headers[ST_JOB_TAG],
                  job->headers[ST_JOB_WARNINGS], job->body, job->length, (uint64_t)st_job_sum(job));
-    /* Each new job deletes up to two expired ones. */
+    /* When a job is stored, up to two expired ones are deleted. */
     return outcome == ST_SQL_DONE ? st_db_do(&self->db, ST_SQL_JOBS_TRIM, "d", now - ST_JOB_SECONDS)
                                   : outcome;
 }
 
-/* Marks a job as done, because the records of this transaction are its work. A job that is not
+/* Marks a job as done in the transaction that writes the records of its work. A job that is not
  * stored, or is damaged, is skipped. */
 static st_sql end_row(st_sqlite *self, const st_job *work)
 {

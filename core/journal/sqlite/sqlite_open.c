@@ -1,4 +1,5 @@
-/* sqlite_open.c - opens and closes the store: folder, lock, database, checks, mark. */
+/* sqlite_open.c - opens and closes the store: locks the folder, opens and checks the database, and
+ * compares it with the mark of the last commit. */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_journal.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -8,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns SQLite's message; a wrong checksum or value of a row has none, so it gets one here. */
+/* Returns SQLite's message about damage. If SQLite found no error, a checksum or value in a row was
+ * wrong, and the message says that. */
 static const char *damage_of(const st_db *db)
 {
     const int code = db->handle == NULL ? SQLITE_OK : sqlite3_errcode(db->handle);
@@ -49,7 +51,7 @@ enum { CACHE_KIB = 8 << 10 };
 static st_sql set_up(st_db *db)
 {
     static const char *const pragmas[] = {
-        /* These two pragmas take effect only before the first table is made. */
+        /* page_size and auto_vacuum take effect only before the first table is made. */
         "PRAGMA page_size = 4096",
         "PRAGMA auto_vacuum = INCREMENTAL",
         "PRAGMA journal_mode = WAL",
@@ -57,7 +59,8 @@ static st_sql set_up(st_db *db)
         "PRAGMA wal_autocheckpoint = 0",
         "PRAGMA journal_size_limit = 67108864",
         "PRAGMA cell_size_check = ON",
-        "PRAGMA mmap_size = 0", /* with a mapping a bad sector would raise SIGBUS */
+        /* If the file were mapped into memory, a bad sector would raise SIGBUS. */
+        "PRAGMA mmap_size = 0",
     };
     st_sql outcome = st_db_set_cache(db, CACHE_KIB);
     for (size_t i = 0; i < sizeof pragmas / sizeof *pragmas && outcome == ST_SQL_DONE; i++) {
@@ -109,7 +112,7 @@ static bool make_store(st_sqlite *self, const char *path, const char *release,
     return true;
 }
 
-/* Checks that the database has every commit that the mark names. */
+/* Checks that the database has every commit up to the one that the mark names. */
 static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
 {
     st_mark mark;
@@ -139,9 +142,9 @@ static bool check_meshes(st_sqlite *self, const char *path, st_sqlite_opened *ou
 }
 
 /* Tables that all meshes share are checked at the start: a mesh whose index entry is damaged would
- * seem not to exist, and damage in the others would make the first change fail. Records and parts
- * concern one mesh each and are checked when it is loaded. A table with more rows than this takes
- * too long to check at a start. */
+ * seem not to exist, and damage in another shared table would make the first change fail. Each
+ * record and part belongs to one mesh and is checked when that mesh is loaded. A table with more
+ * rows than CHECKED_ROWS takes too long to check at a start. */
 enum { CHECKED_ROWS = 200000 };
 
 static bool check_table(st_sqlite *self, const char *table, const char *path, st_sqlite_opened *out)
@@ -191,8 +194,8 @@ static bool check_keys(st_sqlite *self, const char *path, st_sqlite_opened *out)
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* Finds the highest key that was ever given to a row of a table. Numbering must go on from it, or a
- * key would be given again. */
+/* Finds the highest key that a row of a table ever had. New keys must be higher, or a key would be
+ * used again. */
 static st_sql last_key(st_db *db, const char *table, int64_t *out)
 {
     char text[96];
@@ -206,7 +209,7 @@ static st_sql last_key(st_db *db, const char *table, int64_t *out)
     return outcome == ST_SQL_DONE && *out < most ? ST_SQL_DAMAGED : outcome;
 }
 
-/* Reads the numbers from which the commit thread counts on. */
+/* Reads the numbers from which the commit thread continues to count. */
 static st_sql read_counts(st_sqlite *self)
 {
     int64_t keys = 0;
@@ -233,8 +236,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
             "`hedged --restore`; to begin an empty store remove hedge.mark",
             self->folder.path);
     }
-    /* SQLite gives the -wal and -shm that it makes the permissions of the database, so that is made
-     * first. */
+    /* SQLite gives the -wal and -shm that it makes the permissions of the database file, so that
+     * file is made first, with the right permissions. */
     if (!st_folder_has(&self->folder, "hedge.db") && !st_folder_make(&self->folder, "hedge.db")) {
         return st_refuse(out->message, "%s", self->folder.message);
     }
@@ -271,7 +274,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
            check_tables(self, path, out) && check_keys(self, path, out);
 }
 
-/* Cleans up after the last process: writes its log back and deletes what it was staging. */
+/* Cleans up after the last process: copies its write-ahead log into the database and deletes
+ * contents that it was writing in advance. */
 static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     int code =
@@ -290,7 +294,7 @@ static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
         return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
     const st_mark mark = {self->identity.store, self->progress.commits, self->progress.position};
-    /* The folder, and files in it, may be new, so they are synced. */
+    /* The folder and files in it may be new, so the folder is synced. */
     return (st_mark_write(&self->folder, &mark) && st_mark_sync(&self->folder) &&
             st_folder_sync(&self->folder)) ||
            st_refuse(out->message, "%s", self->folder.message);
@@ -383,8 +387,9 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
     if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
     }
-    /* The store works without a ballast (reserved space), too. But if the ballast was freed to be
-     * able to start, the disk counts as full, and the space is for removals. */
+    /* The store also works without a ballast, the file that reserves disk space. But if the ballast
+     * was removed so that the daemon could start, the disk counts as full: the freed space is for
+     * removals. */
     if (!st_ballast_make(&self->folder) && full) {
         self->mode = ST_WRITES_FULL;
         self->fulls = 1;

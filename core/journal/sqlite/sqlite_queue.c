@@ -16,7 +16,7 @@ st_sqlite_room *st_room_of(st_item *item)
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
-    /* There is one head more than records, because the head of the record with the body is written
+    /* There is one head more than records, because the frame of the record with the body is written
      * directly before the body. */
     return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
@@ -76,7 +76,7 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
     return ST_OK;
 }
 
-/* Counts one reserved room less. The caller holds the lock. */
+/* Counts a room as no longer reserved. The caller holds the lock. */
 static void come_back(st_sqlite *self, const st_sqlite_room *room)
 {
     self->rooms--;
@@ -146,8 +146,8 @@ void st_room_key(st_sqlite_room *room, const st_kept_key *kept)
                               .made = key->of_store};
 }
 
-/* Fills in what the room says about a job. The answer of the job does not exist yet: until it is
- * noted, the status is the one that the record implies. */
+/* Fills in the room's facts about the job that made the change. The answer of the job does not
+ * exist yet, so its HTTP status is the one that follows from the record, until a note states it. */
 static void fill_job(st_sqlite_room *room, const st_record *record, bool made)
 {
     enum { CREATED = 201, NO_CONTENT = 204 };

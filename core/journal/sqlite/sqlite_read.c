@@ -21,11 +21,11 @@ static const char *const texts[STATEMENTS] = {
     [COMMIT] = "COMMIT",
 };
 
-/* How far the load of a mesh is. */
+/* The state of the load of a mesh: what is read next. */
 typedef enum stage_of_load {
     AT_BASE,
-    AT_BASE_PARTS,   /* parts of a base in rows of their own */
-    AT_INLINE_PARTS, /* parts inside the record that is the base */
+    AT_BASE_PARTS,   /* parts of the base's content, which have rows of their own */
+    AT_INLINE_PARTS, /* parts of the base's content, which are inside its record */
     AT_RECORDS,
     AT_RECORD_PARTS /* parts of the stage of the last record */
 } stage_of_load;
@@ -36,13 +36,13 @@ struct st_reader {
     st_mesh_row row;
     stage_of_load at;
     st_frame frame;
-    uint64_t number, chain; /* number of the last record read; chain of the next one */
+    uint64_t number, chain; /* number of the last record read; chain of hashes of the next one */
     sqlite3_stmt *records, *parts, *base;
     int64_t snapshot;
     uint64_t part, parts_left;
     he_cursor inline_parts;
-    st_unpacker *unpacker; /* NULL before the first compressed part */
-    char why[ST_DAMAGE];   /* why there is no next piece */
+    st_unpacker *unpacker; /* decompresses parts; NULL before the first compressed part */
+    char why[ST_DAMAGE];   /* why reading failed */
 };
 
 static st_status status_of(st_sql outcome)
@@ -50,7 +50,7 @@ static st_status status_of(st_sql outcome)
     return outcome == ST_SQL_NO_MEMORY ? ST_NO_MEMORY : ST_FAILED;
 }
 
-/* --- connections --- */
+/* --- connections to the database --- */
 
 enum { CACHE_KIB = 2 << 10 };
 
@@ -67,7 +67,7 @@ static st_sql open_one(st_db *db, const char *path)
     return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
 }
 
-/* Prepares both statements, so that the end of a load takes no memory. */
+/* Prepares the statements that begin and end a load, so that ending one needs no memory. */
 static st_sql open_loader(st_db *db, const char *path)
 {
     st_sql outcome = open_one(db, path);
@@ -95,7 +95,7 @@ bool st_readers_close(st_sqlite *self)
     return closed;
 }
 
-/* Waits until a connection for loading is free and the write-ahead log is short enough. */
+/* Waits until a connection for loading is free and the write-ahead log is not too long. */
 static st_load_slot *take_slot(st_sqlite *self)
 {
     pthread_mutex_lock(&self->lock);
@@ -137,7 +137,7 @@ st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row)
     return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
 }
 
-/* Finds the card of a mesh. A journal that only reads also gives damaged meshes. */
+/* Finds the card of a mesh. A journal that only reads returns damaged meshes, too. */
 static st_status find_card(st_sqlite *self, st_db *db, const char *id, st_mesh_row *row)
 {
     sqlite3_stmt *s;
@@ -186,7 +186,8 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
     sqlite3_stmt *s;
     bool taken = true;
     if (self->only_reads) {
-        return ST_OK; /* a journal that only reads makes no mesh, so the number is not needed */
+        /* A journal that only reads creates no mesh, so the limits of holders do not matter. */
+        return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);
     st_sql outcome = st_db_find(&self->cards, HOLDINGS, &s, "");
@@ -204,10 +205,10 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
     return !taken ? ST_NO_MEMORY : outcome == ST_SQL_DONE ? ST_OK : status_of(outcome);
 }
 
-/* --- damage --- */
+/* --- damage found by loads --- */
 
-/* Finds damage of a mesh that was found by a load. Returns NULL if there is none. The caller holds
- * the lock. */
+/* Returns what an earlier load has found damaged in a mesh; NULL if it found nothing. The caller
+ * holds the lock. */
 static st_finding *find_finding(st_sqlite *self, uint64_t incarnation, uint64_t base)
 {
     for (size_t i = 0; i < ST_FINDINGS; i++) {
@@ -229,7 +230,7 @@ static void note_finding(st_sqlite *self, const st_finding *noted)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Adds to a card the damage that was found after its row was written. */
+/* Marks a card as damaged if a load found damage that is not in the mesh's row yet. */
 static st_status add_finding(st_sqlite *self, st_mesh_row *row)
 {
     st_card *card = &row->card;
@@ -250,7 +251,7 @@ void st_sqlite_condemn(st_reader *reader, const char *damage)
     note_finding(self, &finding);
     st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
-        return; /* the next load finds it again */
+        return; /* if memory is out, the next load will find the damage again */
     }
     condemned->item.kind = ST_ITEM_CONDEMN;
     condemned->finding = finding;
@@ -269,7 +270,7 @@ __attribute__((format(printf, 2, 3))) static st_status damaged(st_reader *reader
     return ST_DAMAGED;
 }
 
-/* Turns the outcome of a statement that gave no row, or an unreadable one, into a status. */
+/* Turns the outcome of a statement that returned no row, or an unreadable row, into a status. */
 static st_status failed(st_reader *reader, st_sql outcome, const char *what)
 {
     return outcome == ST_SQL_DAMAGED
@@ -378,7 +379,7 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
     return ST_OK;
 }
 
-/* Finds the snapshot with the content of record `number`, to read it part by part.
+/* Finds the row of the snapshot that has the content of record `number`, whose parts are read next.
  * Returns ST_ABSENT if there is none. */
 static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
 {
@@ -407,8 +408,8 @@ static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
     return ST_OK;
 }
 
-/* Decompresses a part. A coding that this release does not know is left for core/stored, which
- * reports it. */
+/* Decompresses a part. A part with a coding that this release does not know stays as it is, because
+ * core/stored reports that. */
 static st_status unpack(st_reader *reader, st_piece *piece)
 {
     const char *why = "";
@@ -475,8 +476,8 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
     return status;
 }
 
-/* Reads the next part of a content that is stored as one block: each part comes after its coding
- * and length (stored.h). */
+/* Reads the next part of a content that is stored as one block, in which the coding and the length
+ * of each part come before the part (stored.h). */
 static st_status read_inline_part(st_reader *reader, bool *got, st_piece *out)
 {
     he_cursor *c = &reader->inline_parts;
@@ -509,7 +510,7 @@ static uint64_t parts_in(he_cursor c)
     return parts;
 }
 
-/* Reads a base (the record from which a mesh is loaded) that has the content in its own row. */
+/* Reads a base (the record from which a mesh is loaded) whose content is in the record itself. */
 static st_status read_inline_base(st_reader *reader)
 {
     const uint64_t number = reader->row.base;
@@ -544,8 +545,7 @@ static st_status read_base(st_reader *reader, st_piece *out)
 {
     st_status status = find_snapshot(reader, reader->row.base, true);
     reader->at = AT_BASE_PARTS;
-    /* If the table of snapshots cannot be read, the record may still have its content in its own
-     * row. */
+    /* If the table of snapshots cannot be read, the content may still be in the record itself. */
     if (status == ST_ABSENT || (status == ST_DAMAGED && reader->journal->salvage.on)) {
         status = read_inline_base(reader);
         reader->at = AT_INLINE_PARTS;
@@ -560,8 +560,7 @@ static st_status read_base(st_reader *reader, st_piece *out)
     return status;
 }
 
-/* Ends the load after the last record: checks that it is the one that the card names as the
- * last. */
+/* Ends the load: checks that the last record read is the last one that the card counts. */
 static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;

@@ -13,7 +13,7 @@
 
 enum { COPY_BYTES = 1 << 16, NAME_BYTES = 64 };
 
-/* --- the copy --- */
+/* --- the copy of the backup --- */
 
 static bool cannot_read(st_folder *folder, const char *file)
 {
@@ -35,8 +35,8 @@ static bool copy_bytes(st_folder *folder, const char *file, int from, int to)
     return got == 0 || cannot_read(folder, file);
 }
 
-/* Removes the copy that a killed restore left, because SQLite would replay its journal into the
- * next copy. */
+/* Removes the copy of a backup that a killed restore has left. Otherwise SQLite would replay the
+ * journal of that copy into the next one. */
 static bool remove_copy(st_folder *folder)
 {
     static const char *const names[] = {"restored.db-journal", "restored.db-wal", "restored.db-shm",
@@ -102,7 +102,8 @@ static st_sql draw_incarnations(st_db *db)
     }
 }
 
-/* Removes the ETags of kept answers: the states that they name may be gone. */
+/* Removes the ETags of stored answers to keyed requests, because the states that they name may no
+ * longer exist. */
 static st_sql take_tags_of_keys(st_db *db)
 {
     st_kept_texts row_texts;
@@ -128,7 +129,7 @@ static st_sql take_tags_of_keys(st_db *db)
     }
 }
 
-/* Removes the ETags of jobs' answers: the states that they name may be gone. */
+/* Removes the ETags of jobs' answers, because the states that they name may no longer exist. */
 static st_sql take_tags_of_jobs(st_db *db)
 {
     char last[ST_JOB_ID + 1] = "";
@@ -157,7 +158,7 @@ static st_sql take_tags_of_jobs(st_db *db)
 
 static st_sql renew(st_db *db)
 {
-    /* The copy leaves WAL mode, so that no part of it is in a file beside it. */
+    /* The copy leaves WAL mode, so that all of it is in one file. */
     st_sql outcome = st_db_run(db, "PRAGMA journal_mode = DELETE");
     if (outcome == ST_SQL_DONE) {
         outcome = st_schema_raise(db);
@@ -284,15 +285,15 @@ bool st_sqlite_finish_restore(st_folder *folder)
 
 static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES])
 {
-    /* An interrupted restore is finished before this one begins, because its file `restoring` names
-     * a copy. */
+    /* An interrupted restore is finished before this one begins, because its file `restoring` says
+     * that the file restored.db is complete. */
     bool good = st_folder_open(folder, path);
     if (good && st_folder_finds(folder, "restoring") && st_folder_finds(folder, "restored.db") &&
         !read_note(folder, before)) {
         /* The file `restoring` was not written completely, so nothing was moved. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
-    /* Only the file itself is copied: changes in a log beside it would be left out. */
+    /* Only the file itself is copied, so changes in a log beside it would be left out. */
     good = good && st_sqlite_finish_restore(folder) &&
            st_sqlite_has_no_log(
                file, "what is in it is not written back; restore a file that --backup made",

@@ -1,4 +1,5 @@
-/* sqlite_rows.c - applies records to the tables, within the commit thread's transaction. */
+/* sqlite_rows.c - writes records to the tables of the database, within a transaction of the commit
+ * thread. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
@@ -95,8 +96,8 @@ static bool holds(const st_head *head, uint64_t incarnation)
     return head->row.key != 0 && head->row.card.incarnation == incarnation;
 }
 
-/* Finds the slot of the cache for a mesh; if it holds the changed row of another mesh, that is
- * written first. */
+/* Finds the slot of the cache for a mesh; if the slot has the changed row of another mesh, that row
+ * is written first. */
 static st_sql place_of(st_sqlite *self, uint64_t incarnation, st_head **out)
 {
     *out = &self->heads.slots[incarnation % ST_HEADS];
@@ -187,7 +188,7 @@ static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
     if (outcome == ST_SQL_DONE) {
         head->row.key = 0;
         outcome = read_row(self, incarnation, &row, &good);
-        /* A removal must follow other records of its mesh, so a missing row is a failure. */
+        /* A removal must come after the first record of its mesh, so a missing row is a failure. */
         outcome = outcome == ST_SQL_DONE ? ST_SQL_FAILED : outcome;
     }
     if (outcome == ST_SQL_ROW) {
@@ -217,13 +218,14 @@ static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
     return outcome;
 }
 
-/* Writes the row of a record, and the row of its staged content. */
+/* Writes the row of a record, and makes its stage a content or an edit of the mesh. */
 static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
 {
     const bool is_base = entry->barrier && !entry->staged_edit &&
                          (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
     st_sql outcome = ST_SQL_DONE;
-    /* The row of a snapshot repeats the facts of its record, because the record may be purged. */
+    /* The row of a snapshot has the facts of its record, so the record itself need not be
+     * written. */
     if (!is_base || entry->stage == NULL) {
         outcome = st_db_do(&self->db, ST_SQL_RECORD_MAKE, "iib", head->row.key, entry->number,
                            entry->frame, entry->size);
@@ -241,7 +243,7 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     }
     if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
         head->row.base = entry->number;
-        head->row.card.damage[0] = '\0'; /* it was about records that are purged now */
+        head->row.card.damage[0] = '\0'; /* the damage was in records that are purged now */
         outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
     }
     return outcome;
@@ -259,7 +261,7 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
         return outcome;
     }
     if (head == NULL || head->row.card.record + 1 != entry->number) {
-        return ST_SQL_FAILED; /* the store has counted differently from the disk */
+        return ST_SQL_FAILED; /* the store has numbered the records differently from the disk */
     }
     uint64_t chain = st_frame_seal(entry->frame, entry->size, head->row.chain);
     outcome = add_frame(self, head, entry, chain);
@@ -269,8 +271,8 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
     return outcome;
 }
 
-/* Each new key deletes up to two expired ones. The keys of one mesh are counted only at
- * about one of CUT_EVERY new keys, by chance. */
+/* When a key is stored, up to two expired keys are deleted. The keys of a mesh are counted, and cut
+ * to the limit, only for about one of CUT_EVERY new keys, chosen by chance. */
 enum { CUT_EVERY = 64, CUT_MOST = 16 * CUT_EVERY };
 
 static st_sql trim_keys(st_sqlite *self, const st_kept_row *row, uint32_t sum)
@@ -293,7 +295,7 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
 {
     st_kept_row row = room->key;
     if (row.mesh != 0 && head == NULL) {
-        return ST_SQL_DONE; /* keys of a mesh are deleted with it */
+        return ST_SQL_DONE; /* the mesh was removed, and its keys with it */
     }
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
     const uint32_t sum = st_kept_row_sum(&row);
@@ -301,7 +303,7 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
         st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiiit", row.mesh, row.text, row.digest,
                  sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
                  row.position, (uint64_t)row.made, (uint64_t)sum, row.holder);
-    self->keys++; /* a key that replaces another is counted twice until the next start */
+    self->keys++; /* a key that replaces an equal one is counted twice until the next start */
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 
@@ -315,7 +317,7 @@ static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
         outcome = st_head_find(self, room->key.incarnation, &head);
     }
     if (outcome == ST_SQL_DAMAGED) {
-        return ST_SQL_DONE; /* a damaged row is deleted with its mesh */
+        return ST_SQL_DONE; /* a key is not stored for a mesh whose row is damaged */
     }
     return outcome == ST_SQL_DONE && room->has_key ? keep_key(self, room, head) : outcome;
 }
@@ -354,7 +356,7 @@ st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned)
     st_head *head;
     st_sql outcome = st_head_find(self, finding->incarnation, &head);
     if (outcome == ST_SQL_DAMAGED) {
-        return ST_SQL_DONE; /* the row shows the damage already */
+        return ST_SQL_DONE; /* the row shows damage already */
     }
     if (outcome == ST_SQL_DONE && head != NULL && head->row.base == finding->base &&
         head->row.card.damage[0] == '\0') {

@@ -1,6 +1,7 @@
 /* sqlite_salvage.c - reads files whose structure is damaged: reports the faults, and finds meshes
- * without indexes. The table of meshes is searched by its keys; if a page of it cannot be read,
- * each following key is tried until one is in a page that can be read. */
+ * without using indexes. The rows of the table of meshes are read in the order of their keys; if a
+ * page of it cannot be read, each following key is tried until one is in a page that can be
+ * read. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -14,9 +15,9 @@ static const char *const texts[STATEMENTS] = {
     [LAST] = "SELECT max(key) FROM mesh NOT INDEXED",
 };
 
-/* --- what is wrong --- */
+/* --- faults of the file --- */
 
-/* Passes each line of what SQLite found on to `say`. */
+/* Passes each line of the text that SQLite returned to `say`. Returns the number of lines. */
 static unsigned tell_lines(const char *text, st_say *say, void *context)
 {
     unsigned told = 0;
@@ -84,7 +85,7 @@ unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context)
     return told;
 }
 
-/* --- meshes by their keys --- */
+/* --- meshes by the keys of their rows --- */
 
 static st_sql find_row(st_db *db, unsigned which, int64_t key, st_mesh_row *out)
 {
@@ -111,7 +112,7 @@ static int64_t last_key(st_db *db)
 }
 
 /* Reads the next row of a mesh that can be read.
- * Returns ST_SQL_DONE after the last. */
+ * Returns ST_SQL_DONE after the last one. */
 static st_sql next_row(st_db *db, int64_t after, st_mesh_row *out)
 {
     st_sql outcome = find_row(db, NEXT, after, out);

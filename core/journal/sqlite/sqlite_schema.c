@@ -8,8 +8,8 @@ static const char *const tables[] = {
     "CREATE TABLE meta(name TEXT PRIMARY KEY, value, sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), commits INTEGER NOT NULL, "
     "position INTEGER NOT NULL, meshes INTEGER NOT NULL, sum INTEGER NOT NULL)",
-    /* The key of a mesh's row belongs to one incarnation and is never used again. The columns
-     * `fence` and `node` always have the values given here. */
+    /* The key of a row of `mesh` belongs to one incarnation of a mesh and is never used again. The
+     * columns `fence` and `node` always have their default values. */
     "CREATE TABLE mesh(key INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, "
     "name TEXT NOT NULL, incarnation INTEGER NOT NULL UNIQUE, origin INTEGER NOT NULL, "
     "metadata INTEGER NOT NULL, revision INTEGER NOT NULL, record INTEGER NOT NULL, "
@@ -45,7 +45,7 @@ static const char *const tables[] = {
 };
 enum { TABLES = sizeof tables / sizeof *tables };
 
-/* How many of the tables above each version has. */
+/* How many of the tables above exist in each version of the schema. */
 static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {
     [1] = TABLES - 2, [2] = TABLES, [3] = TABLES};
 
@@ -66,8 +66,8 @@ static uint32_t add_time(uint32_t sum, double time)
     return st_crc32c(sum, &time, sizeof time);
 }
 
-/* Adds a text to a checksum, with its NUL, so that two texts never give the same bytes as another
- * two. */
+/* Adds a text to a checksum, with its NUL, so that different pairs of texts never have the same
+ * bytes. */
 static uint32_t add_text(uint32_t sum, const char *text)
 {
     return st_crc32c(sum, text, strlen(text) + 1);
@@ -91,7 +91,8 @@ uint32_t st_mesh_row_sum(const st_mesh_row *row)
     sum = add_word(add_word(sum, card->counts.faces), card->counts.boundary);
     sum = add_word(add_word(sum, card->bytes), row->base);
     sum = add_text(sum, card->damage);
-    /* Meshes from before version 3 have no holder, and checksums of rows without that column. */
+    /* If a mesh has no holder, the checksum does not include that column, as in rows from before
+     * version 3. */
     return card->holder[0] == '\0' ? sum : add_text(sum, card->holder);
 }
 
@@ -112,7 +113,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row)
 uint32_t st_kept_row_sum(const st_kept_row *row)
 {
     uint32_t sum = add_text(add_word(begin("kept"), (uint64_t)row->mesh), row->text);
-    /* Stores from before keys had holders have checksums of rows without that column. */
+    /* If a key has no holder, the checksum does not include that column, as in rows from before
+     * keys had holders. */
     sum = row->holder[0] == '\0' ? sum : add_text(sum, row->holder);
     sum = add_time(add_word(add_word(sum, row->digest[0]), row->digest[1]), row->time);
     sum = add_word(add_text(sum, row->id), row->incarnation);
@@ -196,7 +198,7 @@ bool st_purge_row_read(sqlite3_stmt *s, st_purge_row *out)
     return sum_is(s, 3, st_purge_row_sum(out));
 }
 
-/* Never returns NULL. */
+/* Returns the text of a column, "" if it has none; never NULL. */
 static const char *text_of(sqlite3_stmt *s, int column)
 {
     const unsigned char *text = sqlite3_column_text(s, column);
@@ -244,7 +246,7 @@ static const char *const texts[STATEMENTS] = {
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
-/* Returns the connection with this file's statements in place of its own. */
+/* Returns the connection `db` with the statements of this file in place of its own. */
 static st_db borrowed(const st_db *db)
 {
     return (st_db){.handle = db->handle, .texts = texts};
@@ -353,7 +355,7 @@ st_sql st_schema_check(st_db *db)
     return outcome;
 }
 
-/* Reads a value of the table of facts by its name: a number, or, if `text` is not NULL, a text. */
+/* Reads a value of the table `meta` by its name: a number, or, if `text` is not NULL, a text. */
 static st_sql get_meta(st_db *db, const char *name, uint64_t *word, char *text)
 {
     sqlite3_stmt *s;

@@ -1,8 +1,8 @@
 /* sqlite_schema.h - the tables of hedge.db, version 3, and the checksums of their rows.
  *
  * Every row has a column `sum`: CRC-32C over its table's name and its values, keys included. Rows
- * of record and part have none, because their bytes contain checksums. Without them a flipped bit
- * in a number would silently load or delete the wrong thing. */
+ * of the tables record and part have no such column, because their bytes contain checksums. Without
+ * checksums a flipped bit in a number would silently load or delete the wrong data. */
 #ifndef HE_JOURNAL_SQLITE_SCHEMA_H
 #define HE_JOURNAL_SQLITE_SCHEMA_H
 
@@ -14,23 +14,24 @@ enum {
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
     ST_KEY_TEXT = 255,                  /* most bytes of an Idempotency-Key */
-    ST_KEY_HOLDER = 64                  /* most bytes of the name of its client */
+    ST_KEY_HOLDER = 64                  /* most bytes of the name of the client that sent the key */
 };
 
-/* The identity of the store, which never changes. */
+/* The identity of the store, which is drawn when the store is made and never changes. */
 typedef struct st_identity {
     uint64_t store, secret[2];
     char made_by[ST_RELEASE];
 } st_identity;
 
-/* The last commit and position of the database, written with each commit. */
+/* How far the database is: its last commit, the position of its last record, and its number of
+ * meshes. Written with each commit. */
 typedef struct st_progress {
     uint64_t commits, position, meshes;
 } st_progress;
 
-/* The row of a mesh. The card has the mesh's facts; `origin` is the number that its chain of hashes
- * began with, `chain` is the chain of the next record, `base` is the number of the record from
- * which the mesh is loaded. */
+/* The row of a mesh. The card has the mesh's facts; `origin` is the number with which the chain of
+ * hashes of its records began (record_bytes.h), `chain` is the chain of the next record, and `base`
+ * is the number of the record from which the mesh is loaded. */
 typedef struct st_mesh_row {
     int64_t key;
     st_card card;
@@ -38,8 +39,9 @@ typedef struct st_mesh_row {
 } st_mesh_row;
 
 /* The row of a snapshot: a whole content in parts, of the mesh after record `number`. If it belongs
- * to no mesh yet, `process` is the process that is writing it. `facts` is a frame (record_bytes.h),
- * `chain` is the chain of the record after it. */
+ * to no mesh yet, `process` is the process that is writing it. `facts` is the frame
+ * (record_bytes.h) of record `number` without a body, `chain` is the chain of the record after
+ * that. */
 typedef struct st_snapshot_row {
     int64_t key, mesh;
     uint64_t number, revision, parts, process, chain;
@@ -47,7 +49,7 @@ typedef struct st_snapshot_row {
     size_t facts_size;
 } st_snapshot_row;
 
-/* The kinds of work in the table `purge`. */
+/* The kinds of rows in the table `purge`, which lists what is to be deleted. */
 typedef enum st_purge_kind {
     ST_PURGE_MESH = 1,    /* the records of a mesh that was removed */
     ST_PURGE_RECORDS = 2, /* the records of a mesh before number `before` */
@@ -60,17 +62,17 @@ typedef struct st_purge_row {
     uint64_t before;
 } st_purge_row;
 
-/* The row of a stored key; its mesh is 0 if the key belongs to the store. */
+/* The row of a stored Idempotency-Key; `mesh` is 0 if the key belongs to the store. */
 typedef struct st_kept_row {
     int64_t mesh;
     const char *holder, *text, *id;
     uint64_t digest[2];
     double time;
     uint64_t incarnation, revision, metadata, position;
-    bool made; /* the request made the mesh: its answer was 201 */
+    bool made; /* the request created the mesh, so its answer was 201 */
 } st_kept_row;
 
-/* Memory for the texts of a row that was read. */
+/* Memory for the texts of a stored key's row that was read. */
 typedef struct st_kept_texts {
     char id[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1], holder[ST_KEY_HOLDER + 1];
 } st_kept_texts;
@@ -84,8 +86,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row);
 uint32_t st_kept_row_sum(const st_kept_row *row);
 uint32_t st_job_sum(const st_job *job);
 
-/* The bytes of a part's row before the part itself: checksum (4), coding (1). The checksum also
- * covers the numbers of the snapshot and of the part. */
+/* The number of bytes before the part itself in the row of a part: 4 of the checksum, 1 of the
+ * coding. The checksum also covers the numbers of the snapshot and of the part. */
 enum { ST_PART_HEAD = 5 };
 uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size);
 
@@ -98,12 +100,12 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
 #define ST_PURGE_COLUMNS    "kind, key, before, sum"
 #define ST_KEPT_COLUMNS \
     "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum, holder"
-enum { ST_KEPT_COUNT = 12 }; /* columns above */
+enum { ST_KEPT_COUNT = 12 }; /* number of the columns above */
 #define ST_JOB_COLUMNS                                                                          \
     "id, number, state, operation, phase, mesh, location, holder, progress, created, started, " \
     "finished, status, shown, type, disposition, tag, warnings, body, sum"
 
-/* Reads a mesh's row. Returns false if the checksum is wrong; the row is filled in then too. */
+/* Reads a mesh's row. Returns false if the checksum is wrong; *out is filled in even then. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);
 /* Reads the row of a snapshot; `facts` is borrowed from the statement. Returns false if the
  * checksum is wrong. */

@@ -1,6 +1,6 @@
 /* sqlite_stage.c - stages contents and large edits: writes them to disk in parts before they are
- * published. The thread that stages codes one slice of parts at a time, and waits while the commit
- * thread writes the slice beside the records of other threads. */
+ * published. The thread that stages encodes a slice of parts, and waits until the commit thread has
+ * written it together with the records of other threads; then it encodes the next slice. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -10,14 +10,15 @@
 
 /* --- the thread that stages --- */
 
-/* What is being staged: a content, or the rest of a coded edit. */
+/* The data being staged: a content, or the rest of an encoded edit. */
 typedef struct source {
     he_stored_writer *content;
     const unsigned char *edit;
     size_t left;
 } source;
 
-/* Codes the next part of what is staged. Returns the number of its bytes, 0 after the last part. */
+/* Encodes the next part of the data being staged. Returns its number of bytes, 0 after the last
+ * part. */
 static size_t next_part(source *from, unsigned char *to, unsigned *coding)
 {
     if (from->content != NULL) {
@@ -31,7 +32,8 @@ static size_t next_part(source *from, unsigned char *to, unsigned *coding)
     return size;
 }
 
-/* Fills a slice with parts. Returns false after the last part. */
+/* Fills a slice with the next parts. Returns false if the parts ran out before the slice was
+ * full. */
 static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
@@ -49,7 +51,7 @@ static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
     return true;
 }
 
-/* Returns why the journal refuses to stage now, or ST_OK. The caller holds the lock. */
+/* Returns why the journal refuses to stage now, or ST_OK. The caller holds self->lock. */
 static st_status refusal(const st_sqlite *self)
 {
     return self->mode == ST_WRITES ? ST_OK : self->mode == ST_WRITES_FULL ? ST_FULL : ST_FAILED;
@@ -89,7 +91,7 @@ static st_status stage_parts(st_sqlite *self, source *from, uint64_t parts, st_s
         he_mem_free(slice);
         return ST_NO_MEMORY;
     }
-    /* An edit is not compressed, because it is read back as it was coded. */
+    /* An edit is not compressed, because it is loaded as one block of plain bytes. */
     st_packer *packer = from->content == NULL ? NULL : st_packer_new();
     stage->slice = slice;
     stage->parts = parts;
@@ -134,7 +136,7 @@ static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
 void st_sqlite_unstage(void *context, st_stage *stage)
 {
     if (stage != NULL && stage->key == 0) {
-        he_mem_free(stage); /* nothing of it is on the disk */
+        he_mem_free(stage); /* no part of the stage is on the disk */
     } else if (stage != NULL) {
         queue(context, stage, ST_ITEM_UNSTAGE);
     }
@@ -185,7 +187,7 @@ st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most)
         (void)he_put_u32(bytes, st_part_sum(key, part, bytes + 4, size - 4));
         outcome = st_db_do(&self->db, ST_SQL_PART_MAKE, "iib", key, part, bytes, size);
     }
-    /* The parts count as written only after the transaction was committed: st_stage_written. */
+    /* The parts count as written only after the transaction was committed (st_stage_written). */
     stage->writing = outcome == ST_SQL_DONE ? count : 0;
     stage->new_key = key;
     return outcome;
@@ -216,8 +218,8 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
 /* The record after which a stage is the content of the mesh. If that record was lost, another one
  * may have its number. */
 typedef struct staged_record {
-    bool same;            /* it is the right one */
-    uint64_t chain, next; /* its chain, and that of the record after it */
+    bool same;            /* whether the record is the right one */
+    uint64_t chain, next; /* its chain (record_bytes.h), and that of the record after it */
 } staged_record;
 
 static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head,
@@ -241,8 +243,8 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     return ST_SQL_DONE;
 }
 
-/* Returns true if the row of a snapshot is a content. A large edit also has a row among the
- * snapshots, which is no content. */
+/* Returns true if a row of the table of snapshots is a content. A large edit also has a row in that
+ * table. */
 static bool is_content(const st_snapshot_row *row)
 {
     st_frame frame;
@@ -250,8 +252,8 @@ static bool is_content(const st_snapshot_row *row)
            !frame.record.staged_edit;
 }
 
-/* Finds the newest base (record that a mesh can be loaded from) whose revision is not after
- * `needed`; 0 if that is the present one. */
+/* Finds the newest base (record that a mesh can be loaded from) that is newer than the present base
+ * and whose revision is not after `needed`; *out is 0 if there is none. */
 static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, uint64_t *out)
 {
     sqlite3_stmt *s;
@@ -281,7 +283,7 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     } else if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    /* A mesh can be loaded only from its base or a later record, so an older stage is useless. */
+    /* A mesh is loaded from its base, so a stage of an older record is useless. */
     if (head != NULL && stage->number > head->row.base) {
         outcome = read_record(self, stage, head, &record);
     }
@@ -304,7 +306,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
-        /* Records that were found damaged before are read and checked again. */
+        /* The damage that was found may be in records that are purged now, so the mark is removed;
+         * the next load checks the others again. */
         head->row.card.damage[0] = '\0';
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);

@@ -1,7 +1,7 @@
-/* sqlite_state.h - the private structs and functions of core/journal/sqlite. A ROOM is the reserved
- * memory for one group of records, a STAGE a content that is written to disk before it is
- * published, a SLICE a piece of background work that fits beside a commit, a HEAD a cached row of a
- * mesh, to PURGE is to delete what is no longer needed.
+/* sqlite_state.h - the private structs and functions of core/journal/sqlite. WORDS: a room is the
+ * memory reserved for one group of records. A stage is a content that is written to the disk before
+ * it is published. A slice is a piece of background work that is done together with a commit. A
+ * head is a cached row of a mesh. To purge is to delete what is no longer needed.
  *
  *     sqlite_queue.c    reserve, append: rooms on their way to the commit thread
  *     sqlite_commit.c   the commit thread: groups, checkpoints, faults of the disk
@@ -14,8 +14,8 @@
  *     sqlite_index.c    compares the table of meshes with its indexes at the start
  *     sqlite_open.c     opens and closes the store
  *
- * One mutex guards what threads share (`shared` below); the writing connection and its state belong
- * to the commit thread. */
+ * One mutex guards the members that threads share (`shared` below). The connection that writes and
+ * its state belong to the commit thread. */
 #ifndef HE_JOURNAL_SQLITE_STATE_H
 #define HE_JOURNAL_SQLITE_STATE_H
 
@@ -33,7 +33,7 @@ typedef struct st_sqlite st_sqlite;
 
 enum { ST_LOG_PAGE_BYTES = 4096 };
 
-/* --- what is queued --- */
+/* --- the queue of the commit thread --- */
 
 typedef enum st_item_kind {
     ST_ITEM_ROOM,    /* a group of records */
@@ -52,43 +52,46 @@ typedef struct st_queued {
     st_record_kind kind;
     bool barrier;
     uint64_t incarnation, number, revision;
-    unsigned char *frame; /* without its chain and checksum */
+    unsigned char *frame; /* the encoded record, without its chain and checksum (record_bytes.h) */
     size_t size;
     st_stage *stage;
     bool staged_edit;
 } st_queued;
 
-/* What a room (the memory of a group of records) says about a job. */
+/* What a room (memory of a group of records, or of a note) says about the job `job`. */
 typedef enum st_job_word {
     ST_JOB_UNNAMED,
-    ST_JOB_WORK,  /* its records are the work of the job */
-    ST_JOB_IS,    /* the state of the job */
-    ST_JOB_LEAVES /* the job is to be deleted */
+    ST_JOB_WORK,  /* the records of the room are the work of the job */
+    ST_JOB_IS,    /* the room is a note with the state of the job */
+    ST_JOB_LEAVES /* the room is a note that deletes the job */
 } st_job_word;
 
-/* A room, allocated as one block with its entries, the heads of frames and their bytes. A room
+/* A room: one block of memory with its entries, their heads of frames, and the bodies. A room
  * without records is a note. */
 typedef struct st_sqlite_room {
-    st_room room; /* the part that other files know */
+    st_room room; /* the members that callers of the journal see */
     st_item item;
-    uint64_t generation; /* the generation in which it was reserved */
-    size_t charge;       /* bytes that it takes of the queue */
+    uint64_t generation; /* value of st_sqlite.generation when the room was reserved */
+    size_t charge;       /* bytes that the room takes of the queue */
     bool freeing;
-    size_t most, count; /* most records, and records so far */
-    uint64_t last;      /* position of its last record, or of the note */
-    uint64_t meshes;    /* meshes that the records make, less those they remove */
-    st_card card;       /* card of the mesh after the records */
+    size_t most, count; /* most records that fit, and records so far */
+    uint64_t last;      /* position of the room's last record, or of the note */
+    /* Number of meshes that the records create, less the number that they remove. */
+    uint64_t meshes;
+    st_card card; /* card of the mesh after the records */
     bool has_key;
-    st_kept_row key; /* its texts are in this room */
+    st_kept_row key; /* its texts are in `key_text` and `key_holder` */
     char key_text[ST_KEY_TEXT + 1], key_holder[ST_KEY_HOLDER + 1];
     st_job_word job_word;
-    st_job job; /* its texts and body are in the room's bytes; for WORK, the facts that the records
-                   know */
-    unsigned char *heads; /* ST_FRAME_HEAD bytes for each record */
+    /* Its texts and body are in the room's bytes; with ST_JOB_WORK it has only the facts that the
+     * records state. */
+    st_job job;
+    /* Space for the frames without bodies: ST_FRAME_HEAD bytes for each record. */
+    unsigned char *heads;
     st_queued entries[];
 } st_sqlite_room;
 
-/* Damage that was found while a mesh was loaded from this base. */
+/* Damage that was found while a mesh was loaded from the record `base`. */
 typedef struct st_finding {
     uint64_t incarnation, base;
     char damage[ST_DAMAGE];
@@ -99,8 +102,8 @@ typedef struct st_condemned {
     st_finding finding;
 } st_condemned;
 
-/* The parts of a stage (a content written in advance) go to the disk in slices of this many
- * parts. */
+/* The parts of a stage (a content written in advance) are written to the disk in slices of this
+ * many parts. */
 enum { ST_SLICE_PARTS = 16 };
 
 typedef struct st_slice {
@@ -111,18 +114,19 @@ typedef struct st_slice {
 
 struct st_stage {
     st_item item;
-    int64_t key;    /* key of the snapshot's row, 0 before it exists */
-    uint64_t parts; /* parts in all, and parts written */
+    int64_t key;    /* key of the stage's row in the table of snapshots, 0 before the row exists */
+    uint64_t parts; /* number of all parts, and of those written */
     uint64_t written;
-    st_slice *slice; /* the slice being written or filled; NULL after the last */
-    /* The parts of the slice that are in the present transaction, in which the snapshot's key is
-     * new_key. */
+    st_slice *slice; /* the slice being filled or written; NULL after the last one */
+    /* Number of parts of the slice that the present transaction writes. In this transaction the row
+     * of the stage has the key new_key. */
     size_t writing;
     int64_t new_key;
-    bool waits; /* its slice waits to be written */
+    bool waits; /* the slice is full and waits for the commit thread */
     st_status status;
-    st_stage *next; /* the next stage that waits */
-    /* Set only if the item is a rebase, which makes a staged content the base of a mesh. */
+    st_stage *next; /* the next stage whose slice waits */
+    /* The members below are set only if the item is a rebase, which makes a staged content the base
+     * of a mesh. */
     uint64_t incarnation, number, revision, needed;
     double time;
     unsigned char facts[ST_FRAME_HEAD];
@@ -131,19 +135,19 @@ struct st_stage {
 
 /* --- the commit thread's cache of mesh rows --- */
 
-/* A mesh that was written to, cached so that its row need not be read for each record. */
+/* The cached row of a mesh, so that the row need not be read for each record. */
 typedef struct st_head {
     st_mesh_row row; /* key 0: the slot is empty */
-    bool dirty;      /* the row on the disk is older, */
-    bool made;       /* or does not exist yet */
+    bool dirty;      /* the row on the disk is older than this one */
+    bool made;       /* the row on the disk does not exist yet */
     bool listed;
-    struct st_head *next; /* list of all dirty heads, and some others */
+    struct st_head *next; /* list of all heads that are dirty, and some others */
 } st_head;
 
 enum { ST_HEADS = 512 };
 
 typedef struct st_heads {
-    st_head slots[ST_HEADS]; /* hashed by incarnation */
+    st_head slots[ST_HEADS]; /* a hash table by incarnation */
     st_head *dirty;
 } st_heads;
 
@@ -151,19 +155,21 @@ typedef enum st_write_mode { ST_WRITES, ST_WRITES_FULL, ST_WRITES_FAILED } st_wr
 
 /* --- connections that read --- */
 
-enum { ST_LOADS = 2 }; /* connections, and so loads at once */
+/* Number of connections that load meshes, and so of loads at the same time. */
+enum { ST_LOADS = 2 };
 
-/* Damage found by loads: the card shows it before it is committed to the mesh's row, and in a
- * journal that only reads it is never committed. The oldest findings are dropped. */
+/* How many findings of damage are remembered; the oldest are dropped. While a finding is
+ * remembered, the card shows the damage even before it is committed to the mesh's row. A journal
+ * that only reads never commits it. */
 enum { ST_FINDINGS = 64 };
 
-/* When a damaged file is searched by keys, this many of the meshes listed last are remembered with
- * their keys. */
+/* When a damaged file is searched by the keys of rows, the keys of this many meshes that were
+ * listed last are remembered. */
 enum { ST_SALVAGE_PAGE = 64 };
 
 typedef struct st_salvager {
     bool on;
-    int64_t last; /* the last key listed */
+    int64_t last; /* key of the mesh that was listed last */
     size_t count;
     struct {
         int64_t key;
@@ -179,9 +185,10 @@ typedef struct st_load_slot {
 struct st_sqlite {
     st_folder folder;
     st_identity identity;
-    uint64_t process;     /* random number of this process, for rows that it stages */
+    /* Random number of this process; it marks the rows that the process stages. */
+    uint64_t process;
     uint64_t queue_bytes; /* most bytes of the queue */
-    uint64_t most_keys;   /* most rows of `kept` */
+    uint64_t most_keys;   /* most rows of the table `kept`, which has the Idempotency-Keys */
     pthread_t thread;
     bool has_thread;
     bool only_reads; /* the journal only reads */
@@ -192,28 +199,32 @@ struct st_sqlite {
     pthread_cond_t moved; /* signalled for threads that wait for the commit thread */
     bool closing;
     st_write_mode mode;
-    uint64_t fulls;               /* how often the disk was full */
-    uint64_t damaged_keys;        /* damaged rows of `kept`, counted each time one is found */
+    uint64_t fulls; /* how often the disk was full */
+    /* Number of damaged rows of the table `kept`, counted each time one is found. */
+    uint64_t damaged_keys;
     char refusal[ST_HEALTH_TEXT]; /* the system's message when the disk failed */
     bool losing;                  /* something was lost, and not all losses are reported yet */
     uint64_t generation;
-    size_t rooms, old_rooms; /* rooms not given back; those of an older generation among them */
-    uint64_t charged;        /* bytes of rooms, reserved or queued */
-    st_item *first, **end;   /* the queue */
-    st_stage *stages;        /* stages that wait, the oldest first */
-    uint64_t newest;         /* newest position given */
-    uint64_t told;           /* up to this position everything is durable or reported as lost */
-    uint64_t meshes;         /* number of meshes, changes in the queue included */
-    uint64_t lost;           /* records and notes lost */
-    unsigned waiting;        /* threads that wait for `moved` */
-    bool idle;               /* the commit thread waits for work */
-    bool log_is_long;        /* loads wait until the log was written back */
+    /* Numbers of rooms that are reserved, and of those among them that are of an older
+     * generation. */
+    size_t rooms, old_rooms;
+    uint64_t charged;      /* bytes of rooms that are reserved or queued */
+    st_item *first, **end; /* the queue */
+    st_stage *stages;      /* list of stages that wait to be written, the oldest first */
+    uint64_t newest;       /* the newest position that was assigned */
+    /* Position up to which every record is durable or was reported as lost. */
+    uint64_t told;
+    uint64_t meshes;  /* number of meshes, changes in the queue included */
+    uint64_t lost;    /* number of records and notes that were lost */
+    unsigned waiting; /* number of threads that wait for `moved` */
+    bool idle;        /* the commit thread waits for work */
+    bool log_is_long; /* loads wait until the write-ahead log was copied into the database */
     st_load_slot loads[ST_LOADS];
     unsigned loads_taken;
     st_finding findings[ST_FINDINGS];
     unsigned last_finding;
 
-    /* Measurements that the commit thread writes and any thread reads. */
+    /* Measurements that the commit thread writes and any thread may read. */
     st_histogram syncs, commits, groups, checkpoints;
 
     pthread_mutex_t telling; /* held while the listener is called */
@@ -227,16 +238,20 @@ struct st_sqlite {
     /* --- used by the commit thread only --- */
     st_db db;
     st_heads heads;
-    st_progress progress;             /* the last commit */
-    int64_t last_mesh, last_snapshot; /* keys given last */
-    /* The pages of the write-ahead log after the last commit; other threads may read this. */
+    st_progress progress;             /* commits and positions as of the last commit */
+    int64_t last_mesh, last_snapshot; /* the keys that were given last to rows of these tables */
+    /* The number of pages of the write-ahead log after the last commit. Other threads may read
+     * it. */
     _Atomic uint64_t log_pages;
-    uint64_t log_tried; /* pages after the last checkpoint that did not write all of them back */
-    uint64_t keys;      /* rows of `kept`, at most */
-    bool purged;        /* nothing is left to be purged */
-    st_purge_row purging, stuck; /* kind 0: none; stuck: the purge that met damage */
-    bool purge_damaged;          /* the last slice of the purge met damage too */
-    bool purge_ended;            /* the table `purge` itself is damaged */
+    /* Pages of the write-ahead log after the last checkpoint that could not copy all of them. */
+    uint64_t log_tried;
+    uint64_t keys; /* most rows that the table `kept` can have now */
+    bool purged;   /* nothing is left to be purged */
+    /* purging: the row of `purge` that is worked on; stuck: the one that met damage; kind 0:
+     * none. */
+    st_purge_row purging, stuck;
+    bool purge_damaged; /* the last slice of the purge met damage, too */
+    bool purge_ended;   /* the table `purge` itself is damaged */
 };
 
 /* --- sqlite_queue.c --- */
@@ -247,22 +262,23 @@ uint64_t st_sqlite_count(void *self);
 void st_sqlite_health(void *self, st_health *out);
 void st_sqlite_measure(void *self, st_journal_measures *out);
 void st_sqlite_listen(void *self, const st_journal_listener *listener);
-/* Copies the Idempotency-Key of a request into the room. */
+/* Copies the Idempotency-Key of a request, with the state of its answer, into the room. */
 void st_room_key(st_sqlite_room *room, const st_kept_key *key);
-/* Queues the room, and gives it `positions` positions of the journal. Returns the last one. */
+/* Queues the room for the commit thread, and assigns it the next `positions` positions. Returns the
+ * last one. */
 uint64_t st_room_push(st_sqlite *self, st_sqlite_room *room, uint64_t positions);
-/* Appends an item to the queue of the commit thread. The caller holds the lock. */
+/* Appends an item to the queue of the commit thread. The caller holds self->lock. */
 void st_queue_put(st_sqlite *self, st_item *item);
 st_sqlite_room *st_room_of(st_item *item);
-/* Frees a room that was committed or lost, and its share of the queue. The caller holds the
- * lock. */
+/* Frees a room that was committed or lost, and its share of the queue's bytes. The caller holds
+ * self->lock. */
 void st_room_done(st_sqlite *self, st_sqlite_room *room);
 /* Waits until everything appended before is durable or was reported as lost. */
 void st_queue_settle(st_sqlite *self);
 
 /* --- sqlite_commit.c --- */
 void *st_commit_thread(void *self);
-/* SQLite's hook that reports the length of the log after a commit. */
+/* A hook by which SQLite reports the number of pages of the write-ahead log after a commit. */
 int st_commit_log_grew(void *self, sqlite3 *db, const char *name, int pages);
 
 /* --- sqlite_rows.c: functions to be called within a transaction --- */
@@ -301,10 +317,11 @@ enum st_writer_statement {
     ST_SQL_STATE_PUT,
     ST_WRITER_STATEMENTS
 };
-/* Finds the head (the cached row) of a mesh; *out is NULL if there is no such mesh.
+/* Finds the head (the cached row) of a mesh, or reads the row; *out is NULL if there is no such
+ * mesh.
  * Returns ST_SQL_DAMAGED if its row is damaged. */
 st_sql st_head_find(st_sqlite *self, uint64_t incarnation, st_head **out);
-/* Marks the row as changed. */
+/* Marks the head as changed, so that its row will be written. */
 void st_head_touch(st_sqlite *self, st_head *head);
 void st_heads_forget(st_sqlite *self);
 /* Writes all heads (cached rows of meshes) that have changed. */
@@ -315,7 +332,7 @@ st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned);
 /* --- sqlite_notes.c --- */
 st_status st_sqlite_note(void *self, const st_note *note, uint64_t *position);
 st_status st_sqlite_jobs(void *self, st_take_job *take, void *context);
-/* Stores what the room says about a job. It must be called within a transaction. */
+/* Stores what the room says about its job (st_job_word). It must be called within a transaction. */
 st_sql st_notes_add_job(st_sqlite *self, const st_sqlite_room *room);
 
 /* --- sqlite_stage.c --- */
@@ -324,26 +341,27 @@ st_status st_sqlite_stage_edit(void *self, const unsigned char *bytes, size_t si
 void st_sqlite_unstage(void *self, st_stage *stage);
 void st_sqlite_rebase(void *self, st_stage *stage, const st_record *facts, uint64_t needed);
 /* Makes a staged content the content of a record: the row of the stage, which has the key of `row`
- * and belongs to no mesh, is replaced by `row`. It must be called within a transaction. */
+ * and belongs to no mesh, is replaced by `row`, which belongs to a mesh. It must be called within a
+ * transaction. */
 st_sql st_stage_adopt(st_sqlite *self, const st_snapshot_row *row);
 st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage);
 st_sql st_stage_drop(st_sqlite *self, const st_stage *stage);
-/* Writes up to `most` parts of the stage's slice, at least one. */
+/* Writes up to `most` parts of the stage's present slice, at least one. */
 st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most);
-/* Counts the parts of a stage as written; called after the transaction was committed. */
+/* Counts the parts that the last transaction wrote; must be called after it was committed. */
 void st_stage_written(st_stage *stage);
 
 /* --- sqlite_purge.c: functions to be called within a transaction --- */
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before);
-/* Purges what is before record `base`, from which the mesh is loaded from now on. `is_inline` says
- * that the record itself contains the content. */
+/* Purges the records and snapshots of a mesh that are before record `base`, from which the mesh is
+ * loaded from now on. `is_inline` says that the record itself contains the whole content. */
 st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inline);
 /* Purges everything that belongs to a mesh that was removed. */
 st_sql st_purge_mesh(st_sqlite *self, int64_t mesh);
-/* Deletes about `bytes` bytes of what is to be purged. Sets *done when nothing is left. */
+/* Deletes about `bytes` bytes of what the table `purge` lists. Sets *done when nothing is left. */
 st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done);
-/* Called after a transaction that met damage. Returns true if the damage was in the slice of
- * purging; the next slice then skips it. */
+/* Must be called after a transaction that met damage. Returns true if the damage was in the rows
+ * being purged; the next slice then skips them. */
 bool st_purge_gives_up(st_sqlite *self);
 /* Deletes contents that an earlier process was writing in advance when it ended. */
 st_sql st_purge_dead_stages(st_sqlite *self);
@@ -358,48 +376,50 @@ st_status st_sqlite_holdings(void *self, st_take_holding *take, void *context);
 /* Reads the row of a mesh as a card.
  * Returns ST_DAMAGED if the card says that the mesh is damaged, or if its checksum is wrong. */
 st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row);
-/* --- sqlite_salvage.c: functions that the caller must call with the lock of `cards` --- */
-/* Lists the next meshes that can be reached, up to `limit` or ST_SALVAGE_PAGE; none after the
- * last. */
+/* --- sqlite_salvage.c: functions whose caller must hold cards_lock --- */
+/* Lists the next meshes of a damaged file that can be read, up to `limit` or ST_SALVAGE_PAGE; none
+ * after the last. */
 st_sql st_salvage_list(st_sqlite *self, bool from_start, st_card *out, size_t limit, size_t *count);
-/* Finds one of the meshes that were listed last.
+/* Finds the row of one of the meshes that st_salvage_list listed last.
  * Returns ST_SQL_DONE if it is none of them. */
 st_sql st_salvage_find(st_sqlite *self, st_db *reader, const char *id, st_mesh_row *out);
 /* --- sqlite_keys.c --- */
-/* Reads the row of a stored key; its texts are in `texts`. Returns false if the checksum is wrong:
- * the key then counts as damaged. */
+/* Reads the row of a stored Idempotency-Key into *row; the texts are copied to *texts. Returns
+ * false if the checksum is wrong: the key then counts as damaged. */
 bool st_kept_row_read(sqlite3_stmt *statement, st_kept_texts *texts, st_kept_row *row);
-/* Checks all stored keys and counts the damaged ones. */
+/* Checks all stored keys and counts in *out those that are damaged. */
 st_sql st_kept_count_damaged(st_db *db, uint64_t *out);
 st_status st_sqlite_keys(void *self, const char *id, st_take_key *take, void *context);
-/* Open and close the connections that read. */
+/* These open and close the connections that read. */
 st_sql st_readers_open(st_sqlite *self, const char *path);
 bool st_readers_close(st_sqlite *self);
 
 /* --- sqlite_open.c --- */
 void st_sqlite_begun(void *self);
 void st_sqlite_close(void *self);
-/* Makes the state of a store. Returns NULL if memory is out. Freeing it closes everything that was
- * opened for it. */
+/* Makes the state of an open store. Returns NULL if memory is out. Freeing it closes everything
+ * that was opened for it. */
 st_sqlite *st_sqlite_new(const st_sqlite_options *options);
 void st_sqlite_free(st_sqlite *self);
-st_journal st_sqlite_filled(st_sqlite *self); /* fills in its functions */
+/* Returns a journal with `self` and the functions of this room. */
+st_journal st_sqlite_filled(st_sqlite *self);
 /* Checks that the database is a store of a version that `release` knows. If not, `message` is a
  * sentence about `path`. *empty says that it has no tables yet. */
 bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
                              char message[ST_SQLITE_MESSAGE]);
-/* Writes a sentence about a statement that failed on the database at `path`; returns false. */
+/* Writes a sentence about a statement that failed on the database at `path` to `message`. Returns
+ * false. */
 bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
                        char message[ST_SQLITE_MESSAGE]);
 
 /* --- sqlite_backup.c --- */
 /* Checks that the file has no -wal or -journal beside it, which SQLite would replay into it. If it
- * has one, `message` says so and ends with `advice`. */
+ * has one, the function returns false, and `message` says so and ends with `advice`. */
 bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_SQLITE_MESSAGE]);
 
 /* --- sqlite_index.c --- */
-/* Compares the table of meshes with its indexes; reads each of them once.
- * Returns ST_SQL_DAMAGED if one of them is damaged, or they differ. */
+/* Compares the table of meshes with its indexes; reads the table and each index once.
+ * Returns ST_SQL_DAMAGED if the table or an index is damaged, or they differ. */
 st_sql st_index_check(st_sqlite *self);
 
 /* --- sqlite_restore.c --- */

@@ -22,7 +22,7 @@ void st_holders_clear(st_holders *holders)
     pthread_mutex_destroy(&holders->lock);
 }
 
-/* --- functions that need the lock --- */
+/* --- functions whose caller holds the lock --- */
 
 static st_holder **place_of(st_holders *holders, const char *name)
 {

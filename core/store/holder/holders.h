@@ -1,16 +1,17 @@
-/* holders.h - limits how many meshes and bytes each holder may have.
+/* holders.h - limits how many meshes and bytes each holder, a name of an access token, may have.
  *
  * The holder of a mesh is the name of the token that created it (st_cause). A mesh keeps its
- * holder, whichever client changes it, and counts for it in memory or not, with the bytes that its
- * content took in memory when it was changed last: those on its card. A mesh created without a
- * token counts for no holder.
+ * holder, whichever client changes it, and counts for that holder whether it is in memory or not.
+ * It counts with the bytes that its content took in memory when it was last changed, which its card
+ * (st_card) states. A mesh created without a token counts for no holder.
  *
  * Every change first reserves what the mesh will count for. If that is more than before and more
  * than the holder may have, the change is refused and nothing is changed. Two changes at the same
- * time never take more than is left. If a limit is lowered, what the holder has beyond it stays.
+ * time cannot together exceed the limit. If a limit is lowered, meshes beyond it stay.
  *
- * At the start, and after changes were lost, the counts are read from the journal. The lock is
- * taken after those of a mesh and of the table; under it only the journal's cards are read. */
+ * At the start, and after changes were lost, the counts are read from the journal. The lock of the
+ * holders is taken after those of a mesh and of the table of meshes. Under it only the cards in the
+ * journal are read. */
 #ifndef HE_STORE_HOLDERS_H
 #define HE_STORE_HOLDERS_H
 
@@ -24,7 +25,7 @@ enum { ST_HOLDER_HEADS = 256 };
 typedef struct st_holder {
     struct st_holder *next;
     uint64_t meshes, bytes;
-    uint64_t most_meshes, most_bytes; /* 0: any number */
+    uint64_t most_meshes, most_bytes; /* limits; 0: no limit */
     char name[ST_HOLDER + 1];
 } st_holder;
 
@@ -42,30 +43,30 @@ void st_holders_clear(st_holders *holders);
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_holders_find(st_holders *holders, const char *name, st_holder **out);
 
-/* What one mesh counts for; `holder` is NULL if it counts for none. */
+/* How much one mesh counts for a holder; `holder` is NULL if it counts for none. */
 typedef struct st_holding {
     st_holder *holder;
     uint64_t bytes;
 } st_holding;
 
-/* Changes what a mesh counts for from *gone to *come.
+/* Replaces what a mesh counted before, *gone, by what it counts now, *come.
  * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */
 st_status st_holders_move(st_holders *holders, const st_holding *gone, const st_holding *come);
-/* Changes what a mesh counts for like st_holders_move, but ignores the limits, for changes that are
- * made already. */
+/* Replaces what a mesh counts like st_holders_move, but ignores the limits, because the change of
+ * the mesh has already been made. */
 void st_holders_note(st_holders *holders, const st_holding *gone, const st_holding *come);
 
 typedef struct st_holder_limit {
     const char *name;
-    uint64_t meshes, bytes; /* 0: any number */
+    uint64_t meshes, bytes; /* 0: no limit */
 } st_holder_limit;
 
 typedef struct st_usage {
     uint64_t meshes, bytes;
-    uint64_t most_meshes, most_bytes; /* 0: any number */
+    uint64_t most_meshes, most_bytes; /* 0: no limit */
 } st_usage;
 
-/* The functions st_limit_holders and st_holder_usage of store.h. */
+/* These do the work of st_limit_holders and st_holder_usage, which store.h documents. */
 st_status st_holders_limit(st_holders *holders, const st_holder_limit *limits, size_t count);
 void st_holders_usage(st_holders *holders, const char *name, st_usage *out);
 

@@ -1,8 +1,9 @@
-/* booking.h - reserves room in the journal for a group of records, with the body of the first.
+/* booking.h - reserves space in the journal for a group of records and the body of the first one.
  *
- * A write books room while it can still be refused; then it publishes its records with the room, or
- * gives the room back. The body is coded here, before a claim takes the lock. A journal that keeps
- * nothing gives no room, and then nothing is coded. */
+ * A write books space while it can still be refused; later it publishes its records into this
+ * space, or gives the space back. The body is encoded here, so the commit of a long edit encodes it
+ * before it takes the mesh's lock. A journal that keeps nothing gives no space, and then nothing is
+ * encoded. */
 #ifndef HE_STORE_BOOKING_H
 #define HE_STORE_BOOKING_H
 
@@ -11,31 +12,33 @@
 
 typedef struct st_booking {
     st_room *room;
-    size_t body;     /* bytes of the room that are the first record's body */
-    st_stage *stage; /* the first record's content, or its coded edit, in place of a body */
+    size_t body; /* bytes of `room` that the first record's body takes */
+    /* What was written to the disk in place of the first record's body: a content or an encoded
+     * edit. */
+    st_stage *stage;
     bool staged_edit;
 } st_booking;
 
-/* The functions that book room. On failure *out is as it was.
+/* The next three functions book space in the journal. On failure *out is as it was.
  * Returns ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY or ST_TOO_LARGE if the journal refuses. */
 
-/* Books room for records without a body. */
+/* Books space for records without a body. */
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out);
-/* Books room for an edit that made `after`. If the caller may wait for the disk, large bodies are
- * staged (written to the disk before the change is published): a content that replaced another, or
- * the coded edit. */
+/* Books space for an edit; `after` is the mesh after it. If the caller may wait for the disk, a
+ * large body is staged, which means that it is written to the disk before the change is published.
+ * The body is the encoded edit, or the whole content if the edit replaced it. */
 st_status st_book_edit(const st_journal *journal, const he_delta *delta, const he_mesh *after,
                        bool may_wait, st_booking *out);
-/* Books room for a whole content, the first of `records` records. Takes `stage`, the content that
- * was written in advance, on success; NULL means that it was not. */
+/* Books space for `records` records, of which the first has the whole content. If the content was
+ * written to the disk in advance, `stage` is not NULL and is taken on success. */
 st_status st_book_content(const st_journal *journal, const he_mesh *content, st_stage *stage,
                           size_t records, st_booking *out);
 /* Writes a content that is too large for the body of a record to the disk, and may wait for that.
  * *out is NULL on failure, if the content is small, or if the journal keeps nothing. */
 st_status st_book_stage(const st_journal *journal, const he_mesh *content, st_stage **out);
-/* Fills in the fields of `first` that the booking decides. */
+/* Fills in the body and the stage of the first record of the group from the booking. */
 void st_booking_fill(const st_booking *booking, st_record *first);
-/* Gives the room back: none of the records was published. */
+/* Gives the space back; none of the records may have been published. */
 void st_booking_leave(const st_journal *journal, st_booking *booking);
 
 #endif

@@ -9,7 +9,7 @@
 struct st_message {
     uint32_t uses; /* references from the ring and from listeners, guarded by the queue's lock */
     st_place place;
-    uint64_t made; /* when it was added, by st_clock_micros */
+    uint64_t made; /* when the message was added, by st_clock_micros */
     size_t length;
     char bytes[];
 };
@@ -175,7 +175,8 @@ static st_message *message_new(const char *bytes, size_t length)
     return message;
 }
 
-/* Appends a message, which it takes, at the newest place; NULL makes listeners fall behind. */
+/* Appends a message, which it takes, at the place queue->newest. NULL makes all listeners fall
+ * behind. */
 static void append(st_queue *queue, st_message *message)
 {
     if (message == NULL || !reserve_place(queue)) {
@@ -316,7 +317,7 @@ void st_queue_leave(st_listener *listener)
     *listener = (st_listener){0};
 }
 
-/* Makes the next message that the listener may read its present message. */
+/* Makes the next message that the listener may read its current one. */
 static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
     if (listener->number < queue->floor_number) {

@@ -9,13 +9,15 @@
 struct st_waits {
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
-    st_wait *top;          /* top of the heap */
-    size_t resuming;       /* threads that have taken waits off the heap and call their resume */
-    pthread_cond_t caught; /* `durable` was raised, the waits are stopped, or `resuming` fell */
+    st_wait *top;    /* top of the heap */
+    size_t resuming; /* threads that have taken waits off the heap and call their resume */
+    /* Signalled when `durable` was raised, the waits were stopped, or `resuming` fell. */
+    pthread_cond_t caught;
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
-    st_loss rest; /* all losses that found no memory, as one; from > to: none */
+    /* All losses that there was no memory to list, merged into one; from > to: none. */
+    st_loss rest;
     bool stopped;
 };
 
@@ -26,7 +28,8 @@ static void raise_to(_Atomic uint64_t *number, uint64_t to)
     }
 }
 
-/* --- the heap: a pairing heap (Fredman, Sedgewick, Sleator, Tarjan 1986), under the lock --- */
+/* --- the heap, a pairing heap (Fredman, Sedgewick, Sleator, Tarjan 1986); the caller holds the
+ * lock --- */
 
 static st_wait *meld(st_wait *a, st_wait *b)
 {
@@ -64,14 +67,15 @@ static st_wait *without_top(st_wait *top)
     return all;
 }
 
-/* --- losses, under the lock --- */
+/* --- losses; the caller holds the lock --- */
 
 static bool concerns(const st_loss *loss, const st_shown *shown)
 {
     bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
                 loss->incarnation == shown->incarnation;
-    /* If all records were durable when the answer was begun, it shows nothing that could be lost:
-     * the journal may report a record as durable before its writer has noted it here. */
+    /* If all records that the answer shows were durable when it was begun (position <= since), none
+     * of them can be lost. `since` may be above `position`: the journal may report a record as
+     * durable before its writer calls st_waits_appended. */
     return same && shown->since < shown->position && loss->from <= shown->position &&
            loss->to > shown->since;
 }
@@ -101,8 +105,8 @@ static bool reserve_loss(st_waits *waits)
     return true;
 }
 
-/* Merges a loss into the last one if they are adjacent, because after a fault of the disk each room
- * that comes back is a loss of its own. */
+/* Extends the newest loss of the list by this one if the two are adjacent: after the disk has
+ * failed, the journal reports many small losses. */
 static bool extend_last(st_waits *waits, const st_loss *loss)
 {
     st_loss *last = waits->loss_count == 0 ? NULL : &waits->losses[waits->loss_count - 1];
@@ -114,8 +118,8 @@ static bool extend_last(st_waits *waits, const st_loss *loss)
     return true;
 }
 
-/* Stores a loss. If memory is out, everything from this loss on counts as lost: refusing too much
- * is safe. */
+/* Stores a loss. If memory is out, every record from this loss on counts as lost, which is safe
+ * because it only refuses more answers. */
 void st_waits_lose(st_waits *waits, const st_loss *loss)
 {
     pthread_mutex_lock(&waits->lock);
@@ -146,8 +150,8 @@ static bool is_over(const st_waits *waits, st_wait *wait)
     return durable || waits->stopped;
 }
 
-/* Resumes the waits that are over, in the order of positions. All are taken off the heap first,
- * because resuming one may free it. */
+/* Resumes the waits that are over, in the order of positions. They are all taken off the heap
+ * first, because a resume function may free its wait. */
 static void resume_those_over(st_waits *waits)
 {
     st_wait *first = NULL, **end = &first;
@@ -229,15 +233,15 @@ bool st_waits_is_lost(st_waits *waits, const st_shown *shown)
     return found;
 }
 
-/* Decides whether records are durable. The journal reports a loss before it moves past it, so
- * losses are checked after the position. */
+/* Decides whether records are durable. The journal reports a loss before it raises the durable
+ * position above it, so losses are checked after the position. */
 bool st_waits_is_durable(st_waits *waits, const st_shown *shown)
 {
     return shown->position <= atomic_load(&waits->durable) && !st_waits_is_lost(waits, shown);
 }
 
-/* Adds a wait. It checks again under the lock: a notice of the journal that came after the caller's
- * check did not find the wait; one that comes later will. */
+/* Adds a wait. It checks again under the lock whether the wait is over, because the journal may
+ * have moved since the caller's check. After this call the journal finds the wait. */
 bool st_waits_add(st_waits *waits, st_wait *wait)
 {
     pthread_mutex_lock(&waits->lock);

@@ -22,23 +22,23 @@ typedef enum st_loaded {
 
 /* The uses of a mesh's memory, which are counted separately. */
 typedef enum st_weight {
-    ST_WEIGHT_MESHES, /* 1 */
+    ST_WEIGHT_MESHES, /* 1 for each mesh in memory */
     ST_WEIGHT_VERTICES,
     ST_WEIGHT_EDGES,
     ST_WEIGHT_FACES,
-    ST_WEIGHT_CONTENT, /* bytes */
-    ST_WEIGHT_HISTORY, /* bytes */
+    ST_WEIGHT_CONTENT, /* bytes of the mesh itself */
+    ST_WEIGHT_HISTORY, /* bytes of entries and deltas */
     ST_WEIGHT_COUNT
 } st_weight;
 
 typedef struct st_store_counts {
     _Atomic uint64_t weights[ST_WEIGHT_COUNT];
-    _Atomic uint64_t copies;    /* bytes of snapshots */
+    _Atomic uint64_t copies;    /* bytes of cached copies of meshes */
     _Atomic uint64_t revisions; /* revisions made */
-    _Atomic uint64_t evicted;   /* meshes that left memory to make room */
+    _Atomic uint64_t evicted;   /* meshes that were removed from memory to free it */
     _Atomic uint64_t loads[ST_LOADED_COUNT];
     st_histogram load_time; /* microseconds of the loads that found a mesh */
-    st_queue_counts queues; /* queues of all meshes */
+    st_queue_counts queues; /* the counts of all meshes' queues of messages */
 } st_store_counts;
 
 static inline void st_count(_Atomic uint64_t *counter, uint64_t amount)
