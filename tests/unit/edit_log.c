@@ -123,7 +123,7 @@ static void change(he_mesh *m, md_random *random, unsigned serial)
                  md_below(random, he_mesh_issued(m, HE_EDGE)));
         break;
     }
-    /* The arguments are random, so the operation may name a deleted element; then it is refused and
+    /* The arguments are random and may name a deleted element: then the operation is refused and
      * changes nothing. */
     (void)script_run(m, text, NULL, NULL);
 }

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* Requires that the checker names the invariant `rule`, which the caller has broken in a valid
- * mesh; it may name others, too. */
+/* Requires that the checker reports the invariant `rule`, which the caller has broken in a valid
+ * mesh; the checker may report other invariants, too. */
 static void expect_rule(he_mesh *m, int rule)
 {
     he_problem problems[32];
@@ -71,8 +71,8 @@ static void each_broken_rule_is_found_and_named(void **state)
     expect_rule(m, 12);
 }
 
-/* A vertex has two open fans of faces whose boundary links form two loops, so that turning around
- * the vertex visits only one of the fans (I9). */
+/* A vertex has two open fans of faces, but its boundary links form two loops: walking around the
+ * vertex from one fan never comes to the other (invariant I9). */
 static void fans_in_separate_boundary_loops_are_found(void **state)
 {
     (void)state;
@@ -87,8 +87,7 @@ static void fans_in_separate_boundary_loops_are_found(void **state)
     expect_rule(m, 9);
 }
 
-/* Two triangles have the same corners, but their sides are linked by different edges: the edge 0-1
- * exists twice. */
+/* Two triangles have two equal corners, but no common edge: the edge 0-1 exists twice. */
 static void an_edge_that_exists_twice_is_found(void **state)
 {
     (void)state;
