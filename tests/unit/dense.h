@@ -1,5 +1,5 @@
 /* dense.h - meshes of many triangles for the tests of decimation, and a measure of the distance
- * between two surfaces. Any failure inside fails the test. */
+ * between two surfaces. If a function fails, the test fails. */
 #ifndef TESTS_UNIT_DENSE_H
 #define TESTS_UNIT_DENSE_H
 
@@ -7,7 +7,7 @@
 
 #include "algo/decimate.h"
 
-/* Decimates the mesh with the default weight of boundaries, and checks that it is valid. */
+/* Decimates the mesh with the default weight of boundaries, and checks that the result is valid. */
 he_decimated dense_decimate(he_mesh *m, uint32_t faces, double max_error);
 
 /* dense_add_vertex() and dense_add_triangle() add one vertex or one triangle to a soup (a list of
@@ -22,7 +22,8 @@ he_mesh *dense_built(he_soup *takes);
 he_mesh *dense_grid(uint32_t side, double (*height)(double x, double y), double scale);
 double dense_waves(double x, double y); /* can be passed to dense_grid() as `height` */
 he_mesh *dense_torus(uint32_t side);
-/* Makes a primitive shape by its name, in triangles; `param` may be NULL. */
+/* Makes a mesh of triangles of the primitive shape `name`; `value` is the value of its parameter
+ * `param`, which may be NULL. */
 he_mesh *dense_shape(const char *name, const char *param, double value);
 /* Makes a closed cube; each of the six sides has side x side cells of two triangles. */
 he_mesh *dense_cube(uint32_t side);

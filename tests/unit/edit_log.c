@@ -83,7 +83,7 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     }
 }
 
-/* Makes one random change of the mesh; the mesh is recording, so the change goes into a delta. */
+/* Makes one random change to a mesh; the mesh is recording, so the change is added to a delta. */
 static void change(he_mesh *m, md_random *random, unsigned serial)
 {
     char text[96];

@@ -25,7 +25,7 @@ typedef struct edit_log {
     /* stacks of the edits that can be undone and of those that can be redone */
     size_t done[EDIT_LOG_MOST], undone[EDIT_LOG_MOST];
     size_t done_count, undone_count;
-    edit_log_entry entries[EDIT_LOG_MOST + 1]; /* entry 0 is the initial state */
+    edit_log_entry entries[EDIT_LOG_MOST + 1]; /* entries[0] is the initial state of the mesh */
     size_t count;
 } edit_log;
 

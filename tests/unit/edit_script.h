@@ -27,7 +27,7 @@ he_mesh *script_mesh(const char *faces, const he_vec3 *positions);
  * values. */
 void script_add_columns(he_mesh *m);
 
-/* Runs one operation. `results` may be NULL. */
+/* Runs one operation, written as above. `results` may be NULL. */
 he_status script_run(he_mesh *m, const char *operation, he_results *results, he_error *err);
 /* Runs all operations of a script, which may be NULL; each must succeed. A script may also contain
  * "mark locked face=0", which sets the mark `locked` of face 0 and adds a column for this mark if
@@ -36,14 +36,14 @@ void script_prepare(he_mesh *m, const char *script);
 /* Returns the description of the operation whose name is at the beginning of `operation`. */
 const he_op *script_op(const char *operation);
 
-/* assert_valid fails the test, with a sentence, if an invariant of the mesh is broken. */
+/* assert_valid() fails the test and names the broken rule if an invariant of the mesh is broken. */
 void assert_valid(const he_mesh *m);
 void assert_counts(const he_mesh *m, uint32_t vertices, uint32_t edges, uint32_t faces);
 /* Requires that face f has the given vertices in the given order, starting at any of them. */
 void assert_face(const he_mesh *m, uint32_t f, const char *vertices);
 void assert_equal(const he_mesh *m, const he_mesh *other);
-/* Requires that the boundary loops have these lengths, given as digits in ascending order, as in
- * "345". */
+/* Requires that the boundary loops of the mesh have these lengths: one digit for each loop, in
+ * ascending order, as in "345". */
 void assert_loops(const he_mesh *m, const char *lengths);
 he_mesh *copy_of(const he_mesh *m);
 /* Requires that the list has exactly the ids in `expected`, which are separated by blanks. */

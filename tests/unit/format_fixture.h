@@ -31,7 +31,7 @@ void expect_same_imports(const he_import *a, const he_import *b);
 he_status read_bytes(const char *format, const void *text, size_t length, he_import *out,
                      he_error *err);
 
-/* Reads a file of text with read_bytes(), which must succeed; the caller must clear the import. */
+/* Reads a text file with read_bytes(), which must succeed; the caller must clear the result. */
 he_import read_text(const char *format, const char *text);
 
 /* Requires that reading the file fails with an error at line `line` whose message contains
@@ -67,10 +67,10 @@ typedef struct attribute_shape {
     size_t rows;
 } attribute_shape;
 
-/* Requires that the import has an attribute of this shape and type, and returns it. */
+/* Requires that the file that was read has an attribute of this shape and type, and returns it. */
 const he_column *expect_shape(const he_import *import, const attribute_shape *shape, he_type type);
 
-/* Requires an attribute of this shape with exactly these values, row by row. */
+/* Requires an attribute of doubles with this shape and exactly these values, row by row. */
 void expect_doubles(const he_import *import, const attribute_shape *shape, const double *values);
 
 /* Requires an attribute of colours equal to these bytes, as exactly as the attribute's type
@@ -78,10 +78,10 @@ void expect_doubles(const he_import *import, const attribute_shape *shape, const
 void expect_bytes(const he_import *import, he_kind domain, uint32_t components,
                   const unsigned char *values, size_t rows);
 
-/* Requires an attribute of this shape with exactly these values, row by row. */
+/* Requires an attribute of 32-bit integers with this shape and exactly these values, row by row. */
 void expect_u32s(const he_import *import, const attribute_shape *shape, const uint32_t *values);
 
-/* Returns the label that the attribute of this name gives to a face. */
+/* Returns the label of a face in the attribute `name`, whose values are labels. */
 const char *face_label(const he_import *import, const char *name, size_t face);
 
 /* Returns the warning with this code about this subject, or NULL if there is none. */
@@ -98,20 +98,20 @@ he_mesh *build_import(he_import *import);
 /* Reads a text file and makes a mesh of it; the caller must free the mesh. */
 he_mesh *mesh_of_text(const char *format, const char *text);
 
-/* Writes a mesh file through a buffer of `size` bytes; returns its text, ended by NUL, which the
- * caller must free. */
+/* Writes a mesh to a file in memory through a buffer of `size` bytes; returns the content, ended by
+ * NUL, which the caller must free. */
 char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh, size_t size,
                     he_warnings *warnings, size_t *out_length);
 
-/* Writes a mesh file of text through a buffer of `size` bytes, like write_encoded(). */
+/* Writes a mesh as a text file through a buffer of `size` bytes, like write_encoded(). */
 char *write_pieces(const char *format, const he_mesh *mesh, size_t size, he_warnings *warnings);
 
-/* Writes a mesh file, which may contain any bytes, through buffers of several sizes: the results
- * must be equal. The caller must free the result. */
+/* Writes a mesh to files in memory through buffers of several sizes; the files must be equal.
+ * Returns the content, which may have any bytes and which the caller must free. */
 char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
                   he_warnings *warnings, size_t *length);
 
-/* Writes a mesh file of text through buffers of several sizes, like write_bytes(). */
+/* Writes a mesh as a text file through buffers of several sizes, like write_bytes(). */
 char *write_text(const char *format, const he_mesh *mesh, he_warnings *warnings);
 
 #endif

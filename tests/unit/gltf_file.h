@@ -12,7 +12,7 @@
 typedef struct glb_file {
     unsigned char bytes[16384];
     size_t length;
-    size_t json; /* offset of the JSON text in the file */
+    size_t json; /* offset of the JSON text in bytes[] */
     size_t bin;
 } glb_file;
 

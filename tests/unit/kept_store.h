@@ -14,7 +14,7 @@ st_mesh *kept_store_make(st_store *store, const char *id);
 /* Loads a stored mesh into memory; it must not be loaded already, and its records must be
  * intact. */
 st_mesh *kept_store_load(st_store *store, const char *id);
-/* Requires that two meshes have equal content, revisions, times and history. */
+/* Requires that two stored meshes have equal content, revisions, times and history. */
 void kept_store_expect_same(st_mesh *was, st_mesh *is);
 
 #endif

@@ -20,10 +20,11 @@ void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32_t face);
 /* Makes a mesh of two triangles and an isolated vertex, and deletes the second triangle. */
 he_mesh *query_with_dead_rows(void);
 
-/* Makes one of the kernel's shapes with these parameters; the caller must free it. */
+/* Makes the primitive shape `name`, whose first four parameters are a, b, c and d; the caller must
+ * free the mesh. */
 he_mesh *query_shape(const char *name, double a, double b, double c, double d);
 
-/* Returns a pseudo-random number (SplitMix64): the same sequence on every machine. */
+/* Returns a pseudo-random number (SplitMix64); equal seeds give equal numbers on every machine. */
 uint64_t query_random(uint64_t *seed);
 
 /* Corrupts one random link of a mesh: sets it to the id of a wrong or deleted element, to null, or

@@ -18,7 +18,8 @@ enum { ALL = (1 << HE_REPAIR_COUNT) - 1 };
 #define SPLIT      (1u << HE_REPAIR_SPLIT)
 #define FILL       (1u << HE_REPAIR_FILL)
 
-/* Returns a plan of this set of repairs, which fills holes of up to 8 edges. */
+/* Returns a plan of the repairs in the bit set `which`; holes are filled if they have up to 8
+ * edges. */
 he_repair_plan repair_plan_of(unsigned which);
 
 /* Makes a soup with the faces of `from`. Each attribute value is the number of its own row, so that

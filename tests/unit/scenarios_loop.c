@@ -10,7 +10,7 @@
 #define CF4       "023,321,031,647,675,745"
 #define TETRAS    "021,013,032,123,465,457,476,567"
 #define BIPYRAMID "013,123,203,104,214,024"
-/* A tube: three quadrilaterals, which are a prism without its two ends. */
+/* A tube of three quadrilaterals: the sides of a prism without its two ends. */
 #define TUBE "0143,1254,2035"
 
 /* A surface with two peaks at vertices 1 and 2, a saddle at vertex 0 between the peaks, and a hole

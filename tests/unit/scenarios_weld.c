@@ -93,7 +93,7 @@ const scenario weld_scenarios[] = {
     {"vertex_separate vertex=1", STRANGE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertex=0", QCUBE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertices=0,7", "012,034+++", NULL, HE_OK, {1, 0, 0}},
-    /* Two neighbouring vertices are bow-ties, each with several fans of faces. */
+    /* Vertices 0 and 1 are neighbours, and each is a bow-tie of two fans of faces. */
     {"vertex_separate vertices=0,1", "012,034,156", NULL, HE_OK, {2, 0, 0}},
     {"vertex_separate vertex=7", STRANGE, NULL, HE_NO_SUCH_ELEMENT, {0}},
     {"vertex_separate vertices=0,7",

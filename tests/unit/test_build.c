@@ -215,7 +215,8 @@ static void a_fan_of_400000_triangles_takes_no_quadratic_time(void **state)
     he_mesh_free(m);
 }
 
-/* The mesh is one face with very many corners, of which one is repeated at the far end. */
+/* The mesh is one face with 200,000 corners; in the second round the last corner repeats an earlier
+ * one. */
 static void a_repeated_corner_is_found_in_a_face_of_200000(void **state)
 {
     (void)state;

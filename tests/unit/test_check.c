@@ -1,5 +1,5 @@
-/* he_check, the checker of invariants: each invariant is broken in turn, and the report must name
- * it. */
+/* he_check finds broken invariants of a mesh: the test breaks each invariant in turn, and he_check
+ * must report it. */
 #include "fixture.h"
 
 #include "mesh/write.h"
@@ -113,7 +113,7 @@ static void a_face_that_visits_a_vertex_twice_is_found(void **state)
     expect_rule(m, 7);
 }
 
-/* Whatever the links are, the checker must terminate and read nothing out of range. */
+/* Even if links are set to random values, he_check must terminate and not read out of bounds. */
 static void a_check_of_random_links_ends_and_stays_in_range(void **state)
 {
     (void)state;

@@ -34,7 +34,7 @@ static bool take(void *context, const char *data, size_t length)
     return true;
 }
 
-/* Returns a text of numbers as in a mesh file, which compresses to about a third. */
+/* Returns a text of numbers like a mesh file, which compresses to about a third of its length. */
 static bytes text_of(size_t length)
 {
     bytes b = {0};
@@ -67,7 +67,7 @@ static int64_t read_source(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* Reads all compressed bytes from `compressor`, `size` bytes at a time. */
+/* Reads all that `compressor` gives, at most `size` bytes in each call. */
 static bytes pull(api_compressor *compressor, size_t size)
 {
     bytes out = {0};

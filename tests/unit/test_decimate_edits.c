@@ -1,4 +1,4 @@
-/* Decimation as an edit: undo, recording, failing allocations, and cancelling. */
+/* Decimation as an edit: undo, recording in a delta, failing allocations, and cancelling. */
 #include "tests/unit/dense.h"
 
 #include "algo/progressive.h"

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* The outline of a grid that is bent out of its plane must stay in place. */
+/* A grid is bent out of its plane: decimation must leave its outline in place. */
 static void boundaries_are_kept(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Operations are decoded from JSON, and the names in a list of edits are resolved. */
+/* Operations are decoded from JSON, and references to the results of earlier operations are
+ * resolved. */
 #include "api/write/decode_op.h"
 #include "api/write/result_names.h"
 

@@ -367,7 +367,7 @@ static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
     he_mesh_free(m);
 }
 
-/* --- rows of dead elements, and of unchanged ones --- */
+/* --- deleted elements and elements that do not change --- */
 
 static void deleted_elements_are_not_drawn(void **state)
 {

@@ -225,7 +225,8 @@ static void corner_values_follow_the_rule_of_their_column(void **state)
     assert_corner(m, 1, 2, 40);
     he_mesh_free(m);
 
-    /* The corner of face 1 moves from the deleted vertex 0 to vertex 1, and must keep its value. */
+    /* The collapse moves a corner of face 1 from the deleted vertex 0 to vertex 1: the corner must
+     * keep its value. */
     m = after("012,023,034,045,056,061", HE_HALFEDGE, HE_COPY, NULL);
     double at_0 = value_at(m, HE_HALFEDGE, halfedge_between(m, 0, 2).i);
     script_prepare(m, "edge_collapse halfedge=0-1");

@@ -359,7 +359,7 @@ static void bevels_of_tiny_and_huge_edges_have_finite_positions(void **state)
     }
 }
 
-/* --- marks, values and ancestry --- */
+/* --- marks, attribute values, parents and survivors --- */
 
 enum { FIRST_VALUE = 10 };
 

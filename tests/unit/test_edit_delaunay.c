@@ -23,7 +23,7 @@
 #include "tests/failing.h"
 #include "tests/seed.h"
 
-/* --- properties of edges, computed in another way than in the edit --- */
+/* --- properties of edges, computed in another way than the edit does --- */
 
 static bool is_inner(const he_mesh *m, uint32_t e)
 {
@@ -125,8 +125,8 @@ static void an_edge_is_kept_where_a_flip_is_impossible(void **state)
         const char *mesh;
         const he_vec3 *at;
     } cases[] = {
-        {"012", KITE},          /* the edge is on the boundary */
-        {"012,1034", pentagon}, /* the edge is beside a quadrilateral */
+        {"012", KITE},          /* edge 0-1, which the edit would flip, is on the boundary */
+        {"012,1034", pentagon}, /* edge 0-1 is a side of a quadrilateral */
         /* two triangles in a plane, whose other diagonal exists as an edge already */
         {"012,103,213,023", KITE},
         {"012,103,234", KITE}, /* the other diagonal is an edge of a face elsewhere */
@@ -192,7 +192,7 @@ static void a_kite_is_flipped_at_any_scale(void **state)
     }
 }
 
-/* --- points in the plane --- */
+/* --- random points in the plane --- */
 
 static bool is_left(he_vec3 a, he_vec3 b, he_vec3 p)
 {

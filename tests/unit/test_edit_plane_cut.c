@@ -35,7 +35,7 @@ static double volume(const he_mesh *m)
     return measures.volume;
 }
 
-/* Makes a closed shape of triangles by its name. */
+/* Makes a mesh of triangles of the closed primitive shape `name`. */
 static he_mesh *shape(const char *name)
 {
     he_soup soup;

@@ -6,8 +6,9 @@
 #include "mesh/write.h"
 #include "tests/failing.h"
 
-/* A quadrilateral and a triangle that share an edge, on which their texture coordinates and normals
- * differ: at vertex 2 the two corners have another uv and normal, at vertex 3 only another uv. */
+/* A quadrilateral and a triangle that share the edge between the second and the third vertex. Their
+ * corners at the second vertex have different texture coordinates and normals, those at the third
+ * vertex only different texture coordinates. */
 static const char seam[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 9 9 9\n"
                            "vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nvt 0.75 0\nvt 1 0.25\nvt 0.75 1\n"
                            "vn 0 0 1\nvn 0 1 0\n"

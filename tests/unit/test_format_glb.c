@@ -50,7 +50,7 @@ static void every_mode_and_every_type_of_index(void **state)
         expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
         he_import_clear(&import);
     }
-    /* without indices, the first three corners form the triangle */
+    /* if a primitive has no indices, its vertices in their order are the corners of triangles */
     he_import import = glb_square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
         "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
@@ -261,7 +261,7 @@ static void quantized_positions(void **state)
 static void buffers_in_uris(void **state)
 {
     (void)state;
-    /* the file has three corners of the square, and no more bytes */
+    /* The file has only three corners of the square, 36 bytes. */
     static const char triangle[] =
         "{'asset':{'version':'2.0'},'buffers':[{'byteLength':36,'uri':'data:application/"
         "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA'}],"

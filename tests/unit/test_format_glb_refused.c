@@ -1,4 +1,5 @@
-/* Invalid GLB and glTF files: each refusal must have a byte offset and the path in the JSON. */
+/* GLB and glTF files that must be refused: each error must name a byte of the file and the path in
+ * the JSON. */
 #include "unit/gltf_file.h"
 
 #include <time.h>
@@ -486,7 +487,7 @@ static void bombs(void **state)
     }
     put(&w, "{}]}");
     expect_bomb(&w, HE_BAD_VALUE, "node 40 is reached twice");
-    /* JSON nested deeper than in any real file */
+    /* JSON that is nested deeper than in any real file */
     put(&w, "{'asset':{'version':'2.0'},'extras':");
     for (int i = 0; i < 90000; i++) {
         put(&w, i % 2 ? "{'a':" : "[");

@@ -5,7 +5,7 @@
 #include "model/random.h"
 #include "seed.h"
 
-/* --- STL: facets by position --- */
+/* --- STL, which stores positions of corners but no vertices --- */
 
 /* Reads an STL file that was written. Building a mesh of it must fail exactly if the writer has
  * warned of this, and with the number of defects named in the warning. */
@@ -164,7 +164,7 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
     he_mesh_free(mesh);
 }
 
-/* --- OBJ: values that faces refer to --- */
+/* --- OBJ, in which only faces refer to normals --- */
 
 static void normals_of_a_point_cloud_are_told(void **state)
 {

@@ -1,4 +1,5 @@
-/* The OBJ reader: every form of every line that it knows, and every refusal with its line. */
+/* Reading OBJ files: every form of every line that the reader knows, and every error with its
+ * line. */
 #include "unit/format_fixture.h"
 
 static const char cube[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";

@@ -1,4 +1,4 @@
-/* The OFF reader: headers, colours, counts, and every refusal with its line. */
+/* Reading OFF files: headers, colours, counts, and every error with its line. */
 #include "unit/format_fixture.h"
 #include "tests/failing.h"
 

@@ -240,7 +240,7 @@ static void colors_of_every_type_are_fractions(void **state)
     (void)state;
     static const struct {
         const char *type, *values;
-        double first; /* expected first component of the colour */
+        double first; /* expected value of the first component of the colour */
     } rows[] = {{"uchar", "51 0 255", 0.2}, {"ushort", "13107 0 65535", 0.2},
                 {"int", "51 0 255", 0.2},   {"float", "0.2 0 1", 0.2},
                 {"double", "0.2 0 1", 0.2}, {"float", "1.5 0 1", 1.5}};

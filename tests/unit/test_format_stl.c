@@ -1,4 +1,4 @@
-/* STL files, text and binary: reading, refusals, and writing. */
+/* Text and binary STL files: reading, errors, and writing. */
 #include "unit/format_fixture.h"
 #include "tests/failing.h"
 

@@ -263,7 +263,7 @@ static void what_is_lost_is_named(void **state)
     assert_int_equal(warnings.count, 4);
     assert_int_equal(find_warning(&warnings, "not_finite", "uv")->count, 1);
     assert_non_null(
-        /* OBJ cannot store the colours if they are fractions */
+        /* the colours are of type bool and not fractions */
         find_warning(&warnings, "attribute_lost", "vertex color"));
     assert_non_null(find_warning(&warnings, "attribute_lost", "face group"));
     assert_non_null(find_warning(&warnings, "attribute_lost", "edge weight"));
