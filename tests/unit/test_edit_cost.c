@@ -117,15 +117,15 @@ static void a_list_is_charged_for_the_hubs_it_walks_about(void **state)
     uint32_t ends[2] = {he_origin(m, rim).i, he_target(m, rim).i}, none = HE_MAX_ROWS;
     uint32_t spoke = he_edge_of(he_swing_ccw(m, rim)).i;
     api_hubs hubs = {.slots = {{0}}};
-    /* These operations change only a few rows, so they must not be charged for the many edges of
-     * the tip. */
+    /* edge_split and vertex_move change only a few rows, so they must not be charged for the many
+     * edges of the tip. */
     assert_int_equal(steps_of(m, "edge_split", &spoke, 1, &hubs), 0);
     assert_int_equal(steps_of(m, "vertex_move", ends, 2, &hubs), 0);
-    /* For each of the two vertices, the weld visits twice all edges of the tip, a neighbour of
-     * both, and all corners of the base. */
+    /* The weld visits, twice for each of the two vertices, all edges of the tip (a neighbour of
+     * both) and all corners of the base. */
     uint64_t weld = steps_of(m, "vertex_weld", ends, 2, &hubs);
     assert_true(weld > 4 * LONG && weld < 20 * LONG);
-    /* this time the degrees are in the cache `hubs` */
+    /* the second time, the degrees are in the cache `hubs` */
     assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld);
     assert_int_equal(steps_of(m, "vertex_weld", &none, 1, &hubs), 0);
     assert_true(steps_of(m, "face_split", &base, 1, &hubs) == LONG);

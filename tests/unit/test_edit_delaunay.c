@@ -100,8 +100,8 @@ static void the_long_diagonal_of_a_kite_is_flipped_once(void **state)
     he_mesh_free(m);
 }
 
-/* Of a quadrilateral whose four corners are on one circle, both diagonals are equally good: neither
- * may be flipped to the other. */
+/* If four points are on one circle, both diagonals between them are equally good: neither may be
+ * flipped to the other. */
 static void neither_diagonal_of_four_points_on_a_circle_is_flipped(void **state)
 {
     (void)state;

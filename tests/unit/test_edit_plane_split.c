@@ -399,8 +399,8 @@ static void check_cut(const point *points, uint32_t n, double height, uint32_t p
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    /* This normal lies in the tilted plane of the polygon and has the direction of the y axis of
-     * its points. */
+    /* The normal lies in the tilted plane of the polygon and has the direction of the y axis of the
+     * polygon's points. */
     he_vec3 normal = {-0.48, 0.8, 0.36};
     assert_int_equal(he_plane_split(m, &(he_plane){lay((point){5, height}, scale), normal, NULL},
                                     NULL, 0, NULL, NULL),

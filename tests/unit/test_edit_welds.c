@@ -342,7 +342,7 @@ static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
     assert_int_equal(he_face_of(e.m, (he_halfedge){3}).i, 1);
     edit_end(&e);
 
-    /* Here the weld makes the two faces equal, so they are merged, too. */
+    /* The weld makes the two faces equal, so they must be merged, too. */
     e = edit_run("012,345",
                  "vertex_move vertices=0,4 to=0,0,0;vertex_move vertices=1,5 to=5,1,0;"
                  "vertex_move vertices=2,3 to=0,5,0",

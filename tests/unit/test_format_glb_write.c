@@ -79,7 +79,7 @@ static void polygons_come_back(void **state)
         assert_int_equal(find_warning(&warnings, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
-        /* now read the file as other programs do */
+        /* without hedge's own data, the file is read as other programs read it */
         hide_extras(bytes, length);
         import = read_back(bytes, length);
         expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);

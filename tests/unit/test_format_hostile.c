@@ -55,8 +55,8 @@ static const char facets[] =
     "\2\0\0\0" ZERO ZERO UNIT ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0" ZERO ZERO UNIT
     "\0\0\0\x80" ZERO ZERO UNIT UNIT ZERO ZERO UNIT UNIT "\1\0.";
 
-/* This file is JSON (.gltf) and not binary (.glb): random changes of a GLB file would mostly give a
- * chunk of a wrong length, and test little else. */
+/* A glTF file as JSON (.gltf) and not binary (.glb): random changes of a GLB file would mostly give
+ * a chunk of a wrong length, and test little else. */
 static const char gltf[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
     "{\"name\":\"a\",\"mesh\":0,\"children\":[1]},{\"mesh\":0,\"scale\":[-1,1,1],"

@@ -319,8 +319,8 @@ static void limits_are_kept(void **state)
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
-    /* This file has many values of an attribute and hardly any other data: they must count for the
-     * limit on memory, too. */
+    /* The file has many values of an attribute and hardly any other data: the attribute must count
+     * for the limit on memory, too. */
     ply_file f;
     ply_begin(
         &f, LEAST_FIRST,
