@@ -84,7 +84,7 @@ void script_add_columns(he_mesh *m)
     for (unsigned i = 0; i < 12; i++) {
         char name[16];
         snprintf(name, sizeof name, "c%u", i);
-        if (i == 5 || i == 11) { /* these two columns belong to half-edges and to faces */
+        if (i == 5 || i == 11) { /* column 5 belongs to half-edges, column 11 to faces */
             snprintf(name, sizeof name, "normal");
         }
         he_column *column = NULL;

@@ -19,15 +19,15 @@
 #include "mesh/delta.h"
 #include "op/op.h"
 
-/* Makes a mesh of faces written as above. Its vertices are in general position if `positions` is
- * NULL. */
+/* Makes a mesh of faces written like "012,023". Its vertices are in general position if `positions`
+ * is NULL. */
 he_mesh *script_mesh(const char *faces, const he_vec3 *positions);
 
 /* Adds attribute columns for every kind of element and with every rule by which edits can set
  * values. */
 void script_add_columns(he_mesh *m);
 
-/* Runs one operation, written as above. `results` may be NULL. */
+/* Runs one operation, written like "edge_split edge=4-5 t=0.25". `results` may be NULL. */
 he_status script_run(he_mesh *m, const char *operation, he_results *results, he_error *err);
 /* Runs all operations of a script, which may be NULL; each must succeed. A script may also contain
  * "mark locked face=0", which sets the mark `locked` of face 0 and adds a column for this mark if

@@ -469,7 +469,8 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
         bytes most = {calloc(1, API_DECOMPRESS_FREE), API_DECOMPRESS_FREE, API_DECOMPRESS_FREE},
               out;
         bytes small = pack_bytes(both[c], &most), bomb = zeros_in(both[c], 200 << 20);
-        /* a body of up to API_DECOMPRESS_FREE bytes may be compressed to any size */
+        /* a body that grows to at most API_DECOMPRESS_FREE bytes is accepted at any compression
+         * ratio */
         expect_unfolded(both[c], &small, 1000, &most);
         for (size_t step = 100; step <= 10000; step *= 10) {
             api_problem problem;

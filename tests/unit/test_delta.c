@@ -338,8 +338,8 @@ static void changes_of_a_dropped_column_are_not_those_of_its_successor(void **st
     }
 }
 
-/* A reservation for one attribute value must be large enough for the widest possible value of every
- * kind of element. */
+/* The memory that is reserved for one attribute value must be enough for the widest possible value,
+ * for every kind of element. */
 static void a_reservation_has_room_for_the_widest_value(void **state)
 {
     (void)state;

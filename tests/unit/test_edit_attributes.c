@@ -184,8 +184,8 @@ static void corner_values_follow_the_rule_of_their_column(void **state)
     assert_corner(m, 1, 0, 60);
     he_mesh_free(m);
 
-    /* When the edge is divided, the old corner at vertex 1 gets another half-edge; under every rule
-     * its value must move there. */
+    /* When the edge is divided, the old corner at vertex 1 gets another half-edge. Its value must
+     * move to this half-edge, even if the column gives default values to new corners. */
     m = after("012,103", HE_HALFEDGE, HE_DEFAULT, "edge_bisect edge=#0 t=0.25");
     assert_corner(m, 1, 1, 10);
     assert_corner(m, 1, 4, -1);

@@ -499,8 +499,8 @@ static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **sta
         for (uint32_t i = n + 1; i-- > 0;) {
             points[count++] = (point){i, h[i]};
         }
-        /* Each side with an end above the line begins a new part, unless the side before it ends
-         * above the line. */
+        /* A side of the polygon with an end above the cutting line begins a new part, unless the
+         * side before it ends above this line. */
         for (uint32_t i = 0; i < n; i++) {
             above += h[i] > cut || h[i + 1] > cut;
             above -= i > 0 && h[i] > cut;
