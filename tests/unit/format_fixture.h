@@ -73,8 +73,8 @@ const he_column *expect_shape(const he_import *import, const attribute_shape *sh
 /* Requires an attribute of doubles with this shape and exactly these values, row by row. */
 void expect_doubles(const he_import *import, const attribute_shape *shape, const double *values);
 
-/* Requires an attribute of colours equal to these bytes, as exactly as the attribute's type
- * allows. */
+/* Requires an attribute of colours that are equal to these bytes, up to the precision of the
+ * attribute's type. */
 void expect_bytes(const he_import *import, he_kind domain, uint32_t components,
                   const unsigned char *values, size_t rows);
 

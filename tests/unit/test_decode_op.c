@@ -295,7 +295,8 @@ static void references_take_the_values_of_results(void **state)
 {
     (void)state;
     static const struct {
-        /* an operation that uses these results, and the parameter of it that is checked */
+        /* an operation that refers to results of an earlier one, and its parameter that is
+         * checked */
         const char *op, *name;
         int code;
         size_t count;

@@ -226,7 +226,8 @@ static void triangles_cover_the_faces_of_shapes_exactly(void **state)
         {"cone", 9, 1, 2, 1},     {"uv_sphere", 12, 9, 1, 0}, {"grid", 5, 4, 2, 1},
         {"disk", 9, 1, 0, 0},     {"polygon", 100, 1, 0, 0}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        /* The quadrilaterals of these shapes are planar, even those of the torus and the sphere. */
+        /* All faces of the tested shapes are planar, even the quadrilaterals of the torus and the
+         * sphere. */
         he_mesh *m =
             query_shape(shapes[i].name, shapes[i].a, shapes[i].b, shapes[i].c, shapes[i].d);
         check_drawing(m, COVERED);
@@ -354,7 +355,7 @@ static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
     double whole = he_face_area(m, (he_face){0});
     assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
-    /* The work announced for a single large face must grow linearly with the number of its corners,
+    /* The estimated work for a single large face must grow linearly with the number of its corners,
      * not with the square of this number. */
     const uint32_t face = 0;
     he_frame frame = he_frame_of(m);

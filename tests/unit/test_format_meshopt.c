@@ -51,8 +51,8 @@ static bin join(const packed *first, const packed *second)
     return b;
 }
 
-/* Writes the JSON of a glTF file with this data. `of_corners` and `of_indices` are the contents of
- * the compression extension for the corners and for the indices. */
+/* Writes the JSON of a glTF file whose binary chunk is a `bin`. `of_corners` and `of_indices` are
+ * the contents of the compression extension for the corners and for the indices. */
 static void describe(char *json, size_t size, const char *of_corners, const char *of_indices)
 {
     int used = snprintf(
@@ -345,7 +345,7 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
 }
 
 /* Flips each bit of the compressed data: the file must be read, perhaps as other geometry, or be
- * refused with a place. */
+ * refused with an error that names a byte. */
 static void streams_of_wrong_bytes_end_well(void **state)
 {
     (void)state;
