@@ -83,7 +83,7 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     }
 }
 
-/* Makes one random change of the mesh; the mesh is recording, so the change goes into a delta. */
+/* Makes one random change to a mesh; the mesh is recording, so the change is added to a delta. */
 static void change(he_mesh *m, md_random *random, unsigned serial)
 {
     char text[96];
@@ -123,7 +123,7 @@ static void change(he_mesh *m, md_random *random, unsigned serial)
                  md_below(random, he_mesh_issued(m, HE_EDGE)));
         break;
     }
-    /* The arguments are random, so the operation may name a deleted element; then it is refused and
+    /* The arguments are random and may name a deleted element: then the operation is refused and
      * changes nothing. */
     (void)script_run(m, text, NULL, NULL);
 }

@@ -84,7 +84,7 @@ void script_add_columns(he_mesh *m)
     for (unsigned i = 0; i < 12; i++) {
         char name[16];
         snprintf(name, sizeof name, "c%u", i);
-        if (i == 5 || i == 11) { /* of half-edges and faces */
+        if (i == 5 || i == 11) { /* column 5 belongs to half-edges, column 11 to faces */
             snprintf(name, sizeof name, "normal");
         }
         he_column *column = NULL;
@@ -154,7 +154,7 @@ static size_t parse_numbers(const char *text, double *numbers)
     return count;
 }
 
-/* Makes the mesh of an argument like "mesh=012,023", directly, without the code under test. */
+/* Makes the mesh described by an argument like "mesh=012,023" without using the code under test. */
 static he_mesh *other_mesh(const char *text)
 {
     char faces[MAX_TEXT];
@@ -272,8 +272,8 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
     return status;
 }
 
-/* Sets a mark: reads "locked vertices=1,2", the name of the mark, then the kind of elements or its
- * plural with ids. */
+/* Sets a mark on elements, given as text: the name of the mark, then a kind of elements and their
+ * ids, as in "locked vertices=1,2". */
 static void mark(he_mesh *m, const char *text)
 {
     char name[HE_COLUMN_NAME];
@@ -304,7 +304,7 @@ static void mark(he_mesh *m, const char *text)
     }
 }
 
-/* Adds materials to the table, called m0, m1 and so on, until it has `count`. */
+/* Adds materials called m0, m1 and so on to the mesh's table of materials until it has `count`. */
 static void fill_materials(he_mesh *m, size_t count)
 {
     for (size_t i = he_mesh_materials(m)->count; i < count; i++) {
@@ -385,7 +385,7 @@ void assert_loops(const he_mesh *m, const char *lengths)
         if (!he_mesh_is_live(m, HE_HALFEDGE, i) || !he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* Each boundary loop is counted once, at its lowest half-edge. */
+        /* Each boundary loop is counted only at the half-edge with the loop's lowest id. */
         he_halfedge k = he_next(m, h);
         while (k.i > i) {
             k = he_next(m, k);

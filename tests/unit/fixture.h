@@ -16,17 +16,18 @@
 
 #include <cmocka.h>
 
-/* Makes a soup of faces, which are strings of one-character vertex numbers, separated by blanks or
- * commas, as in "012,023". */
+/* Makes a soup (a list of unconnected faces). Each face is a string of one-character vertex
+ * numbers; blanks or commas separate the faces, as in "012,023". */
 void fixture_soup(he_soup *soup, const char *faces);
 
 /* Fails the test if the mesh breaks an invariant. */
 void fixture_check(const he_mesh *mesh);
 
-/* Makes a mesh of faces as in fixture_soup(), and checks it; the caller must free it. */
+/* Makes a mesh of faces written as in fixture_soup(), and checks it; the caller must free the
+ * mesh. */
 he_mesh *fixture_mesh(const char *faces);
 
-/* Requires these numbers of live vertices, edges and faces. */
+/* Requires that the mesh has these numbers of vertices, edges and faces that are not deleted. */
 void fixture_counts(const he_mesh *mesh, unsigned v, unsigned e, unsigned f);
 
 #endif

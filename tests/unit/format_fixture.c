@@ -12,8 +12,8 @@ he_status read_pieces(const format_file *file, size_t piece, const he_limits *li
     piece = piece == 0 ? length : piece;
     for (size_t at = 0; at < length && status == HE_OK; at += piece) {
         size_t n = length - at < piece ? length - at : piece;
-        /* the piece is copied to a block of exactly its size, so that the sanitizer detects reads
-         * beyond it */
+        /* each piece is copied to a block of exactly its size, so that the sanitizer detects reads
+         * beyond the end of the piece */
         char *bytes = malloc(n);
         assert_non_null(bytes);
         memcpy(bytes, (const char *)file->bytes + at, n);
@@ -123,7 +123,8 @@ void expect_bytes_refused(const format_file *file, he_status wanted, uint64_t li
     he_import import = {0};
     he_error err = {0};
     he_status status = read_bytes(file->format, file->bytes, file->length, &import, &err);
-    /* The text of the message must not repeat its place in the file (core/base/status.h). */
+    /* The text of the message must not repeat the line number, which the error has in a member of
+     * its own (core/base/status.h). */
     if (status != wanted || err.place != HE_PLACE_LINE || err.at != line ||
         strstr(err.text, words) == NULL || strncmp(err.text, "line ", 5) == 0) {
         fail_msg("%.300s\ngot %s, line %llu: %s\nwanted %s, line %llu, %s",

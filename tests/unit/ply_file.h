@@ -21,7 +21,8 @@ typedef struct ply_file {
 /* Appends text. */
 void ply_put_text(ply_file *f, const char *text);
 
-/* A type of PLY's numbers: its two names, and the type of an attribute that is read from it. */
+/* A number type of PLY: its two names, and the type of an attribute that is read from such
+ * numbers. */
 typedef struct ply_type {
     const char *names[2];
     size_t size;
@@ -32,19 +33,21 @@ typedef struct ply_type {
 enum { TYPES = 8, WHOLE_TYPES = 6, UCHAR = 1, INT = 4, UINT = 5, FLOAT = 6, DOUBLE = 7 };
 extern const ply_type ply_types[TYPES];
 
-/* Appends a value of this type in the encoding of the file. */
+/* Appends a value of the type ply_types[type] in the encoding of the file. */
 void ply_put_value(ply_file *f, size_t type, double value);
 
-/* Ends a row: with a line break, if the encoding is text. */
+/* Ends the values of one element: appends a line break if the encoding is text, otherwise
+ * nothing. */
 void ply_end_row(ply_file *f);
 
-/* Begins a file: its first two lines, and the rest of its header. */
+/* Begins a file: appends the two lines that name the encoding, then the other lines of the
+ * header. */
 void ply_begin(ply_file *f, ply_encoding e, const char *header);
 
-/* Reads the file, which must succeed. */
+/* Reads the PLY file that was built; reading must succeed. */
 he_import ply_read(const ply_file *f);
 
-/* Four corners whose coordinates are whole numbers. */
+/* positions of four corners, whose coordinates are whole numbers */
 extern const double ply_square[4][3];
 
 #endif

@@ -1,4 +1,4 @@
-/* query_specimens.h - the meshes on which every query is tested. */
+/* query_specimens.h - the meshes on which the tests try every query. */
 #ifndef TESTS_UNIT_QUERY_SPECIMENS_H
 #define TESTS_UNIT_QUERY_SPECIMENS_H
 
@@ -7,27 +7,28 @@
 #include "algo/shape.h"
 #include "mesh/write.h"
 
-/* In this order: an empty mesh, closed and open meshes, a bow-tie, isolated vertices, polygons,
- * faces that share two edges, two components, two components that touch at a vertex, a mesh of
- * genus 1, and a strip through all corners of a cube. */
+/* query_specimens[] has, in this order: an empty mesh, closed and open meshes, a bow-tie, isolated
+ * vertices, polygons, faces that share two edges, two components, two components that touch at a
+ * vertex, a mesh of genus 1, and a strip through all corners of a cube. */
 enum { QUERY_SPECIMENS = 16 };
 extern const char *const query_specimens[QUERY_SPECIMENS];
 
-/* Deletes the component that consists of all elements from these ids on, so that the mesh has rows
- * of deleted elements. */
+/* Deletes the component that consists of all vertices, edges and faces with at least these ids: the
+ * mesh then has rows of deleted elements. */
 void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32_t face);
 
 /* Makes a mesh of two triangles and an isolated vertex, and deletes the second triangle. */
 he_mesh *query_with_dead_rows(void);
 
-/* Makes one of the kernel's shapes with these parameters; the caller must free it. */
+/* Makes the primitive shape `name`, whose first four parameters are a, b, c and d; the caller must
+ * free the mesh. */
 he_mesh *query_shape(const char *name, double a, double b, double c, double d);
 
-/* Returns a pseudo-random number (SplitMix64): the same sequence on every machine. */
+/* Returns a pseudo-random number (SplitMix64); equal seeds give equal numbers on every machine. */
 uint64_t query_random(uint64_t *seed);
 
-/* Corrupts one link of a mesh: it becomes the id of a wrong element or of a deleted one, null, or
- * out of range. */
+/* Corrupts one random link of a mesh: sets it to the id of a wrong or deleted element, to null, or
+ * to an id out of range. */
 void query_spoil(he_mesh *m, uint64_t *seed);
 
 #endif

@@ -62,7 +62,8 @@ void repair_expect_carried(const he_soup *before, const he_soup *after, const he
         uint32_t read = he_soup_end(before, from) - before->starts[from];
         if (degree == read) {
             assert_int_equal(value(after, 2, after->starts[f]), before->starts[from]);
-        } else { /* the face was degenerate and has been dropped */
+            /* the face has lost corners, so the repair of degenerate faces must have changed it */
+        } else {
             assert_true(degree < read &&
                         repair_account_of(done, HE_REPAIR_DROP_DEGENERATE)->parts > 0);
         }
@@ -82,7 +83,8 @@ void repair_expect_carried(const he_soup *before, const he_soup *after, const he
 
 void repair_expect_failures_survived(const he_soup *soup, unsigned which, long least)
 {
-    failing f = {.may_succeed = true}; /* to shrink a block is optional */
+    /* a repair may succeed although an allocation fails, if it only wanted to shrink a block */
+    failing f = {.may_succeed = true};
     while (failing_next(&f)) {
         failing_pause();
         he_soup copy;

@@ -10,10 +10,12 @@ typedef struct scenario {
     const char *mesh;
     const char *prepare; /* a script that runs before the operation, or NULL */
     he_status expected;
-    int change[3]; /* change of V, E, F on success */
+    /* by how much a successful operation changes the numbers of vertices, edges and faces */
+    int change[3];
 } scenario;
 
-/* The scenarios that are not in test_op_table.c; each list ends in one without an operation. */
+/* Scenarios for test_op_table.c, sorted by the operations they test. The last element of each list
+ * has no operation. */
 extern const scenario border_scenarios[];
 extern const scenario weld_scenarios[];
 extern const scenario corner_scenarios[];

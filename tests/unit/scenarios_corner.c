@@ -5,10 +5,9 @@
 #define PILLOW  "012,021"
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
-/* Two quadrilaterals with a common edge. */
+/* Two quadrilaterals that share an edge. */
 #define CF3 "0123,3245"
-/* Two quadrilaterals back to back: at the corners of degree 2, the two faces also share another
- * vertex. */
+/* Two quadrilaterals back to back, which share all four edges; all vertices have degree 2. */
 #define TENT "0123,0321"
 
 const scenario corner_scenarios[] = {

@@ -5,16 +5,16 @@
 #define PILLOW     "012,021"
 #define STRANGE    "012,034,056"
 #define OCTAHEDRON "012,023,034,041,521,532,543,514"
-/* CF4: two tetrahedra with one face missing in each. TETRAS: two complete tetrahedra. BIPYRAMID:
- * the solid made by joining them at a face. */
+/* CF4: two tetrahedra, each without one of its four faces. TETRAS: two complete tetrahedra.
+ * BIPYRAMID: the solid that results if two tetrahedra are joined at a face. */
 #define CF4       "023,321,031,647,675,745"
 #define TETRAS    "021,013,032,123,465,457,476,567"
 #define BIPYRAMID "013,123,203,104,214,024"
-/* A tube: three quadrilaterals, which are a prism without its two ends. */
+/* A tube of three quadrilaterals: the sides of a prism without its two ends. */
 #define TUBE "0143,1254,2035"
 
-/* A surface with two peaks, 1 and 2, a saddle at 0 between them, and a hole of seven sides
- * below. */
+/* A surface with two peaks at vertices 1 and 2, a saddle at vertex 0 between the peaks, and a hole
+ * of seven sides below. */
 #define PEAKS "024,041,013,032,145,153,264,236,467,547,357,637"
 #define PEAKS_LIE                           \
     "vertex_move vertices=0,1,2,3,4,5,6,7 " \

@@ -5,10 +5,11 @@
 #define PILLOW  "012,021"
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
-/* Two strips, one of two quads and one of one quad, that do not touch. */
+/* A strip of two quadrilaterals, and a separate quadrilateral that does not touch the strip. */
 #define APART "0154,1265,378b"
 
-/* Moves vertex 3 of APART to the position of vertex 2, and vertex 11 to that of vertex 6. */
+/* Operation that moves vertex 3 of APART to the position of vertex 2, and vertex 11 to that of
+ * vertex 6. */
 static const char TOGETHER[] = "vertex_move vertices=3,11,2,6 to=0,0,1,0,1,1,0,0,1,0,1,1";
 
 const scenario weld_scenarios[] = {
@@ -17,13 +18,13 @@ const scenario weld_scenarios[] = {
     {"vertex_weld vertices=", "012,345", NULL, HE_OK, {0, 0, 0}},
     {"vertex_weld vertices=0,3", "012+", NULL, HE_OK, {-1, 0, 0}},
     {"vertex_weld vertices=0,8 position=lowest", QCUBE "+", NULL, HE_OK, {-1, 0, 0}},
-    /* A weld can make one edge of two sides: it is refused if the faces use that edge in the same
-     * direction, or if more than two use it. */
+    /* A weld can merge two sides of faces into one edge: it is refused if both faces use this edge
+     * in the same direction, or if more than two faces use it. */
     {"vertex_weld vertices=1,3", "012,034", NULL, HE_ORIENTATION, {0}},
     {"vertex_weld vertices=1,4", "012,103,045", NULL, HE_NONMANIFOLD_EDGE, {0}},
     {"vertex_weld vertices=3,4", "012,023,041", NULL, HE_OK, {-1, -1, 0}},
-    /* Welding corners of a face deletes the face, with the vertices and edges that no other face
-     * uses. */
+    /* Welding neighbouring corners of a face removes the edge between them; a face with fewer than
+     * three corners left is deleted, with the vertices and edges that no other face uses. */
     {"vertex_weld vertices=0,1", "012", NULL, HE_OK, {-2, -3, -1}},
     {"vertex_weld vertices=0,1,2", "012", NULL, HE_OK, {-2, -3, -1}},
     {"vertex_weld vertices=0,1", "0123", NULL, HE_OK, {-1, -1, 0}},
@@ -32,7 +33,7 @@ const scenario weld_scenarios[] = {
     {"vertex_weld vertices=0,1,2,3", QCUBE, NULL, HE_OK, {-3, -4, -1}},
     {"vertex_weld vertices=0,1", TETRA, NULL, HE_OK, {-1, -3, -2}},
     {"vertex_weld vertices=0,1", PILLOW, NULL, HE_OK, {-2, -3, -2}},
-    /* If the weld makes faces equal, one of them stays. */
+    /* If a weld makes several faces equal, all but one of them are deleted. */
     {"weld tolerance=0",
      "012,345",
      "vertex_move vertices=0,3 to=0,0,0;vertex_move vertices=1,4 to=1,0,0;"
@@ -92,7 +93,7 @@ const scenario weld_scenarios[] = {
     {"vertex_separate vertex=1", STRANGE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertex=0", QCUBE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertices=0,7", "012,034+++", NULL, HE_OK, {1, 0, 0}},
-    /* Two neighbouring vertices are bow-ties, each with several fans of faces. */
+    /* Vertices 0 and 1 are neighbours, and each is a bow-tie of two fans of faces. */
     {"vertex_separate vertices=0,1", "012,034,156", NULL, HE_OK, {2, 0, 0}},
     {"vertex_separate vertex=7", STRANGE, NULL, HE_NO_SUCH_ELEMENT, {0}},
     {"vertex_separate vertices=0,7",

@@ -12,8 +12,8 @@
 #include "edit_script.h"
 #include "stored/stored.h"
 
-/* Requires that the bytes stay within their predicted bound; returns them in a block of exactly
- * their size, so that the sanitizers detect reads beyond it. */
+/* Requires that the encoding is not larger than the bound predicted for its size. Shrinks the block
+ * to exactly that size, so that the sanitizers detect reads beyond its end. */
 static stored_bytes cut(unsigned char *bytes, size_t size, size_t bound)
 {
     assert_true(size > 0 && size <= bound);

@@ -6,21 +6,21 @@
 
 #include <stddef.h>
 
-/* Encoded bytes, in a block of exactly their size, which the caller must free. */
+/* The encoding of a mesh or an edit, in a block of exactly its size, which the caller must free. */
 typedef struct stored_bytes {
     unsigned char *bytes;
     size_t size;
 } stored_bytes;
 
 stored_bytes stored_content(const he_mesh *mesh);
-/* Encodes an edit; `after` is the mesh after it. */
+/* Encodes an edit; `after` is the mesh after the edit. */
 stored_bytes stored_edit(const he_delta *delta, const he_mesh *after);
-/* Decodes a mesh, which must succeed; the caller must free it. */
+/* Decodes a mesh, which must be possible; the caller must free the mesh. */
 he_mesh *stored_load(stored_bytes content);
 
-/* Decodes the content of `before` and applies the bytes of the edit: the result must equal `after`,
- * undo must give `before`, redo must give `after` again, and the delta that was read must be
- * encoded to equal bytes. */
+/* Encodes and decodes `before`, then applies the encoded edit to it: the result must equal `after`,
+ * undo must give `before`, redo must give `after` again, and the decoded edit must be encoded to
+ * equal bytes. */
 void stored_trip(const he_mesh *before, const he_delta *delta, const he_mesh *after);
 
 #endif

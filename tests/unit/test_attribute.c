@@ -1,5 +1,5 @@
-/* Adding, replacing and removing columns of attributes, and writing values, are edits like others:
- * they are done completely or not at all, and undone bit by bit. */
+/* Adding, replacing and removing columns of attributes, and writing attribute values, are edits
+ * like others: each is done completely or not at all, and undo restores every bit. */
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 

@@ -60,8 +60,8 @@ static void elements_are_numbered_in_the_order_of_the_faces(void **state)
         assert_int_equal(he_origin(m, (he_halfedge){2 * i}).i, i);
         assert_int_equal(he_face_of(m, (he_halfedge){2 * i}).i, 0);
     }
-    /* The first face has made the edge 0-2, so the second face begins with the other half-edge of
-     * this edge. */
+    /* Building the first face has made the edge 0-2 with half-edges 4 and 5: the second face begins
+     * with half-edge 5. */
     assert_int_equal(he_face_halfedge(m, (he_face){1}).i, 5);
     he_mesh_free(m);
 }
@@ -84,14 +84,14 @@ static void a_refusal_names_the_defect_and_leaves_the_soup_complete(void **state
     expect_refusal("012,0131", HE_REPEATED_CORNER, HE_FACE, 1, 1);
     expect_refusal("012,103,014", HE_NONMANIFOLD_EDGE, HE_FACE, 2, 1);
     expect_refusal("012,013", HE_ORIENTATION, HE_FACE, 1, 1);
-    /* In the first soup two tetrahedra share only vertex 0; in the second, vertex 0 has a closed
-     * fan of faces and an open one. */
+    /* In the first soup two tetrahedra share only vertex 0. In the second soup vertex 0 has a
+     * closed and an open fan of faces. */
     expect_refusal("021,032,013,123,054,065,046,456", HE_CLOSED_FAN, HE_VERTEX, 0, 1);
     expect_refusal("021,032,013,123,045", HE_CLOSED_FAN, HE_VERTEX, 0, 1);
 }
 
-/* Defects of single faces are found first, then those of edges, then those of fans around a vertex;
- * the vertices of a faulty edge must not be reported again as faulty fans. */
+/* he_build finds defects of single faces first, then those of edges, then those of fans around a
+ * vertex; if an edge is faulty, it must not report the fans at the ends of this edge as well. */
 static void a_refusal_names_the_defects_of_all_stages(void **state)
 {
     (void)state;
@@ -192,8 +192,8 @@ static void a_soup_takes_no_more_than_its_limits_and_no_nan(void **state)
     he_soup_clear(&soup);
 }
 
-/* All edges of the hub of a large fan are looked up under the hub's id: if that took more than
- * linear time, 400,000 triangles would take minutes. */
+/* he_build looks up all edges of the fan's centre in one list: if that took more than linear time,
+ * 400,000 triangles would take minutes. */
 static void a_fan_of_400000_triangles_takes_no_quadratic_time(void **state)
 {
     (void)state;
@@ -215,7 +215,8 @@ static void a_fan_of_400000_triangles_takes_no_quadratic_time(void **state)
     he_mesh_free(m);
 }
 
-/* The mesh is one face with very many corners, of which one is repeated at the far end. */
+/* The mesh is one face with 200,000 corners; in the second round the last corner repeats an earlier
+ * one. */
 static void a_repeated_corner_is_found_in_a_face_of_200000(void **state)
 {
     (void)state;
@@ -249,9 +250,8 @@ static uint32_t random_below(uint64_t *seed, uint32_t n)
     return (uint32_t)((*seed >> 33) % n);
 }
 
-/* Returns whether a mesh can represent these triangles, decided by the definition alone: every
- * directed edge is used once, no edge has more than two faces, and at each vertex there is one
- * closed fan of faces or only open ones. */
+/* Returns whether a half-edge mesh can represent these triangles, decided by the definition alone:
+ * every directed edge is used once, and a vertex with a closed fan of faces has no other fan. */
 static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
 {
     for (size_t i = 0; i < 3 * count; i++) {
@@ -263,8 +263,8 @@ static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
         }
     }
     for (uint32_t v = 0; v < vertices; v++) {
-        /* follow[a] = b: a face with the corners v, a, b leads from the edge v-a to the edge
-         * v-b. */
+        /* follow[a] = b means that a face has the corners v, a, b: around v this face leads from
+         * the edge v-a to the edge v-b. */
         uint32_t follow[16], fans = 0, closed = 0;
         bool entered[16] = {false}, seen[16] = {false};
         for (uint32_t i = 0; i < 16; i++) {
@@ -277,7 +277,7 @@ static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
                 entered[b] = true;
             }
         }
-        /* an open fan starts at a vertex to which no face leads */
+        /* an open fan around v starts at an edge to which no face leads from another edge */
         for (uint32_t i = 0; i < vertices; i++) {
             if (follow[i] != HE_NONE && !entered[i]) {
                 fans++;
@@ -325,7 +325,7 @@ static void random_soups_are_built_exactly_if_a_mesh_can_hold_them(void **state)
                 }
             } while (faces[i][0] == faces[i][1] || faces[i][1] == faces[i][2] ||
                      faces[i][2] == faces[i][0]);
-            /* A face is usually built on an edge of the face before it, to get fans and not only
+            /* Most faces share an edge with the face before them, so that fans occur and not only
              * separate faces. */
             if (i > 0 && random_below(&seed, 4) != 0) {
                 faces[i][0] = faces[i - 1][1];

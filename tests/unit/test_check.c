@@ -1,5 +1,5 @@
-/* he_check, the checker of invariants: each invariant is broken in turn, and the report must name
- * it. */
+/* he_check finds broken invariants of a mesh: the test breaks each invariant in turn, and he_check
+ * must report it. */
 #include "fixture.h"
 
 #include "mesh/write.h"
@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* Requires that the checker names the invariant `rule`, which the caller has broken in a valid
- * mesh; it may name others, too. */
+/* Requires that the checker reports the invariant `rule`, which the caller has broken in a valid
+ * mesh; the checker may report other invariants, too. */
 static void expect_rule(he_mesh *m, int rule)
 {
     he_problem problems[32];
@@ -71,8 +71,8 @@ static void each_broken_rule_is_found_and_named(void **state)
     expect_rule(m, 12);
 }
 
-/* A vertex has two open fans of faces whose boundary links form two loops, so that turning around
- * the vertex visits only one of the fans (I9). */
+/* A vertex has two open fans of faces, but its boundary links form two loops: walking around the
+ * vertex from one fan never comes to the other (invariant I9). */
 static void fans_in_separate_boundary_loops_are_found(void **state)
 {
     (void)state;
@@ -87,8 +87,7 @@ static void fans_in_separate_boundary_loops_are_found(void **state)
     expect_rule(m, 9);
 }
 
-/* Two triangles have the same corners, but their sides are linked by different edges: the edge 0-1
- * exists twice. */
+/* Two triangles have two equal corners, but no common edge: the edge 0-1 exists twice. */
 static void an_edge_that_exists_twice_is_found(void **state)
 {
     (void)state;
@@ -114,7 +113,7 @@ static void a_face_that_visits_a_vertex_twice_is_found(void **state)
     expect_rule(m, 7);
 }
 
-/* Whatever the links are, the checker must terminate and read nothing out of range. */
+/* Even if links are set to random values, he_check must terminate and not read out of bounds. */
 static void a_check_of_random_links_ends_and_stays_in_range(void **state)
 {
     (void)state;

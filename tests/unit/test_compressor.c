@@ -34,7 +34,7 @@ static bool take(void *context, const char *data, size_t length)
     return true;
 }
 
-/* Returns a text of numbers as in a mesh file, which compresses to about a third. */
+/* Returns a text of numbers like a mesh file, which compresses to about a third of its length. */
 static bytes text_of(size_t length)
 {
     bytes b = {0};
@@ -49,7 +49,7 @@ static bytes text_of(size_t length)
     return b;
 }
 
-/* A source for the compressor, which reads some bytes, a few at a time. */
+/* A source that gives the compressor the bytes of `of`, at most `step` in each call. */
 typedef struct source {
     const bytes *of;
     size_t at, step;
@@ -67,7 +67,7 @@ static int64_t read_source(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* Reads all compressed bytes from `compressor`, `size` bytes at a time. */
+/* Reads all that `compressor` gives, at most `size` bytes in each call. */
 static bytes pull(api_compressor *compressor, size_t size)
 {
     bytes out = {0};
@@ -101,12 +101,12 @@ static bytes pack_bytes(api_coding coding, const bytes *plain)
     return out;
 }
 
-/* The number of bytes that one call may decompress beyond its share: a block of zstd, or what zlib
- * has buffered. */
+/* By how many bytes one call of the decompressor may exceed API_DECOMPRESS_TURN: a block of zstd,
+ * or what zlib has buffered. */
 enum { LEFT = 1 << 17 };
 
-/* Decompresses a body that comes in pieces of `step` bytes; returns false, with `problem`, if it is
- * refused. */
+/* Decompresses a body that comes in pieces of `step` bytes; if the body is refused, sets `problem`
+ * and returns false. */
 static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *out,
                    api_problem *problem)
 {
@@ -118,7 +118,8 @@ static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *ou
     bool good = true;
     for (size_t at = 0, used; at < coded->length && good; at += used) {
         size_t n = coded->length - at < step ? coded->length - at : step;
-        /* each piece has a block of its own, so that a sanitizer detects reads beyond it */
+        /* each piece is in a block of its own, so that a sanitizer detects reads beyond the end of
+         * the piece */
         char *piece = malloc(n);
         assert_non_null(piece);
         memcpy(piece, coded->data + at, n);
@@ -184,8 +185,8 @@ static void bodies_of_all_sizes_come_back(void **state)
     }
 }
 
-/* Entity tags of compressed answers are strong, so the compressed bytes must not depend on how they
- * are read. */
+/* Compressed answers have strong entity tags (the bytes are equal if the tags are), so the sizes of
+ * the reads must not influence the compressed bytes. */
 static void the_same_body_packs_to_the_same_bytes(void **state)
 {
     (void)state;
@@ -221,7 +222,8 @@ static int64_t break_off(void *context, char *buffer, size_t size)
 }
 
 typedef struct nothing {
-    size_t left, read; /* bytes left, and bytes read in this turn */
+    /* bytes not yet read, and bytes read during the present call of the compressor */
+    size_t left, read;
 } nothing;
 
 static int64_t read_zeros(void *context, char *buffer, size_t size)
@@ -234,8 +236,8 @@ static int64_t read_zeros(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* However well a body compresses, one read must handle only a limited part of it, so that other
- * requests are not delayed. */
+/* One call that reads compressed bytes may take only a limited amount of input, however well it
+ * compresses, because other requests wait during the call. */
 static void no_read_codes_more_than_its_turn(void **state)
 {
     (void)state;
@@ -307,7 +309,8 @@ static void what_cannot_be_coded_is_passed_on(void **state)
     free(plain.data);
 }
 
-/* Adds a skippable frame of zstd: a magic number, a length, and that many bytes. */
+/* Adds a skippable frame of zstd: a magic number, a length, and `length` bytes that have no
+ * meaning. */
 static void add_skippable(bytes *b, uint32_t length)
 {
     const unsigned char head[8] = {
@@ -380,8 +383,8 @@ static void what_follows_the_coding_is_refused_at_its_byte(void **state)
     free(plain.data);
 }
 
-/* Flips each bit of a compressed body: it must be refused or, for the bits of a header that have no
- * meaning, give the same body. */
+/* Flips each bit of a compressed body in turn: the body must then be refused or, if the bit has no
+ * meaning, be decompressed to the same bytes as before. */
 static void no_flipped_bit_gives_another_body(void **state)
 {
     (void)state;
@@ -414,7 +417,8 @@ static void a_checksum_that_does_not_hold_is_named(void **state)
     (void)state;
     bytes plain = text_of(3000);
     bytes gzip = pack_bytes(API_GZIP, &plain), zstd = pack_bytes(API_ZSTD, &plain);
-    gzip.data[gzip.length - 8] ^= 1; /* the checksum, which is followed by the length */
+    /* changes the checksum, which stands before the last four bytes */
+    gzip.data[gzip.length - 8] ^= 1;
     expect_refused(API_GZIP, &gzip, 100, API_BAD_ENCODING, "incorrect data check");
     gzip.data[gzip.length - 8] ^= 1;
     gzip.data[gzip.length - 1] ^= 1;
@@ -431,8 +435,8 @@ static void a_checksum_that_does_not_hold_is_named(void **state)
 static void other_codings_are_not_taken_for_these(void **state)
 {
     (void)state;
-    static const char zlib[] = "x\x9c\x03\x00\x00\x00\x00\x01"; /* the coding "deflate" */
-    static const char old[] = "\x27\xB5\x2F\xFD\x00\x00\x00";   /* zstd 0.7 */
+    static const char zlib[] = "x\x9c\x03\x00\x00\x00\x00\x01"; /* data in the coding "deflate" */
+    static const char old[] = "\x27\xB5\x2F\xFD\x00\x00\x00";   /* magic number of zstd 0.7 */
     static const char plain[] = "{\"shape\":\"cube\"}";
     bytes empty = {0}, gzip = pack_bytes(API_GZIP, &empty), zstd = pack_bytes(API_ZSTD, &empty);
     expect_refused(API_GZIP, &(bytes){(char *)(uintptr_t)zlib, 8, 0}, 8, API_BAD_ENCODING,
@@ -465,7 +469,9 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
         bytes most = {calloc(1, API_DECOMPRESS_FREE), API_DECOMPRESS_FREE, API_DECOMPRESS_FREE},
               out;
         bytes small = pack_bytes(both[c], &most), bomb = zeros_in(both[c], 200 << 20);
-        expect_unfolded(both[c], &small, 1000, &most); /* a short body may have any ratio */
+        /* a body that grows to at most API_DECOMPRESS_FREE bytes is accepted at any compression
+         * ratio */
+        expect_unfolded(both[c], &small, 1000, &most);
         for (size_t step = 100; step <= 10000; step *= 10) {
             api_problem problem;
             assert_false(unfold(both[c], &bomb, step, &out, &problem));
@@ -479,7 +485,7 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
     }
 }
 
-/* Returns bytes that do not compress, followed by zeros. */
+/* Returns random bytes, which cannot be compressed, followed by zeros. */
 static bytes noise_and_zeros(size_t noise, size_t zeros)
 {
     bytes out = {malloc(noise + zeros), noise + zeros, noise + zeros};
@@ -493,8 +499,9 @@ static bytes noise_and_zeros(size_t noise, size_t zeros)
     return out;
 }
 
-/* A body may be decompressed to a multiple of its compressed size. Data that is skipped must not
- * count for this, nor data of another gzip member or zstd frame. */
+/* A body may become at most a certain multiple of its compressed size. Data that does not belong to
+ * the present gzip member or zstd frame, such as comments and earlier members or frames, must not
+ * raise this limit. */
 static void only_compressed_data_lets_a_body_unfold(void **state)
 {
     (void)state;
@@ -525,8 +532,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
         free(named.data);
         free(after.data);
     }
-    /* The first megabyte of a decompressed body is allowed whatever its compressed size. Many small
-     * members or frames in one body must not get this allowance again and again. */
+    /* The first megabyte of a decompressed body is allowed whatever its compressed size. A body of
+     * many small gzip members or zstd frames must get this allowance only once. */
     for (size_t c = 0; c < 2; c++) {
         bytes part = zeros_in(both[c], 200000), coded = {0};
         for (size_t i = 0; i < 20; i++) {
@@ -538,8 +545,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
     }
 }
 
-/* However much a body is decompressed to, no single call may do it all; the function unfold checks
- * this. */
+/* A body that grows to a large size must be decompressed in several calls; unfold() checks how much
+ * each call adds. */
 static void a_dense_body_takes_its_turns(void **state)
 {
     (void)state;
@@ -554,16 +561,16 @@ static void a_dense_body_takes_its_turns(void **state)
     free(plain.data);
 }
 
-/* The content of the frame is shorter than its header says. libzstd alone accepts this in pieces,
- * so the daemon has to check it. */
+/* The frame has less content than its header says. libzstd alone accepts such a frame if it comes
+ * in pieces, so the daemon has to check the length. */
 static void a_frame_has_the_length_it_says(void **state)
 {
     (void)state;
     static const unsigned char frame[] = {
         0x28, 0xB5, 0x2F, 0xFD,           /* magic number */
-        0x20, 5,                          /* one segment, of five bytes */
-        0x18, 0,    0,    'a',  'b', 'c', /* a raw block of three */
-        0x01, 0,    0,                    /* the last, of none */
+        0x20, 5,                          /* header of the frame: one segment, of five bytes */
+        0x18, 0,    0,    'a',  'b', 'c', /* an uncompressed block of three bytes */
+        0x01, 0,    0,                    /* the last block, which is empty */
     };
     bytes coded = {0}, plain = {0};
     add(&coded, frame, sizeof frame);
@@ -580,7 +587,7 @@ static void a_frame_has_the_length_it_says(void **state)
     free(plain.data);
 }
 
-/* Returns a frame that declares a window of 2^log bytes. */
+/* Returns a zstd frame that declares a window of 2^log bytes. */
 static bytes with_window(int log)
 {
     bytes plain = text_of(100000), out = {0};
@@ -706,8 +713,8 @@ static void every_allocation_may_fail(void **state)
                 api_compressor_give_up(compressor);
             }
             if (compressor != NULL) {
-                /* The packing had allocated all its memory before allocations began to fail, so it
-                 * can still be read. */
+                /* The compressor allocates nothing after api_compressor_begin() or
+                 * api_compressor_give_up(), so it can be read although allocations fail. */
                 bytes out = pull(compressor, 1000);
                 assert_int_equal(out.length, done ? coded.length : plain.length);
                 free(out.data);

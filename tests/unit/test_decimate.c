@@ -105,8 +105,8 @@ static void more_faces_less_error(void **state)
         dense_apart there = dense_measure(m, sphere), back = dense_measure(sphere, m);
         double farthest = fmax(there.farthest, back.farthest);
         assert_true(farthest > last && done.error > last_error);
-        /* On a smooth closed surface no point may be much farther from the original than the
-         * estimated error of the worst vertex. */
+        /* On a smooth closed surface the largest distance from the original must be of the size of
+         * the error that the decimation estimates. */
         assert_true(farthest < 4 * done.error);
         assert_true(there.root_mean_square < 2 * done.error);
         assert_int_equal(there.turned + back.turned, 0);
@@ -141,8 +141,8 @@ static double draw(uint64_t *state)
     return (double)(*state >> 11) * 0x1p-53;
 }
 
-/* Each collapse turns a face only a little, but there are many. On a surface whose faces all look
- * up, some barely, only a few may look down afterwards. */
+/* Each edge collapse may turn a face a little, and many collapses may turn it over. The surface is
+ * rough, but all its faces look up at first; after the decimation, only a few may look down. */
 static void few_faces_of_a_rough_surface_are_turned(void **state)
 {
     (void)state;
@@ -183,8 +183,8 @@ static void the_error_stays_below_its_limit(void **state)
         assert_int_equal(done.stop, HE_STOP_ERROR);
         assert_true(done.error <= most && done.error > most / 4);
         assert_true(he_mesh_faces(m) < last);
-        /* The planes that keep the boundary in place influence the error, so the results differ
-         * slightly. */
+        /* The estimated error also counts distances from the planes that keep the boundary in
+         * place, so it may differ slightly from the measured distance of the surfaces. */
         assert_true(dense_measure(m, first).root_mean_square <= 1.5 * most);
         assert_true(dense_measure(first, m).root_mean_square <= 1.5 * most);
         last = he_mesh_faces(m);
@@ -193,9 +193,9 @@ static void the_error_stays_below_its_limit(void **state)
     he_mesh_free(first);
 }
 
-/* Each edge that is left must either have an error above the limit or be refused. Errors are means
- * over an area, so the error of an edge that was too expensive may have fallen since; such an edge
- * must have been tried again. */
+/* At the end, the collapse of each remaining edge must either have an error above the limit or be
+ * refused. The error of an edge is a mean over an area and can fall during the decimation: an edge
+ * that once was above the limit must have been tried again. */
 static void no_edge_is_left_within_the_limit(void **state)
 {
     (void)state;
@@ -228,7 +228,8 @@ static void what_cannot_be_collapsed_is_left(void **state)
     he_mesh *m = dense_torus(12);
     he_decimated done = dense_decimate(m, 0, INFINITY);
     assert_int_equal(done.stop, HE_STOP_EXHAUSTED);
-    /* A torus needs at least 7 vertices; whether the decimation reaches 7 depends on the shape. */
+    /* No torus of triangles has fewer than 7 vertices and 14 faces; how close to this number the
+     * decimation comes depends on the shape. */
     assert_true(he_mesh_faces(m) >= 14 && he_mesh_faces(m) < 100);
     assert_int_equal(he_mesh_vertices(m) + he_mesh_faces(m), he_mesh_edges(m));
     he_decimated again = dense_decimate(m, 0, INFINITY);
@@ -294,8 +295,8 @@ static void points_in_one_place_are_no_harm(void **state)
     }
 }
 
-/* After each collapse at a vertex of very high degree, not all of its edges may be visited
- * again. */
+/* A vertex has 200,000 edges: a collapse at this vertex must not visit all of them, or the
+ * decimation would take quadratic time. */
 static void a_hub_of_many_edges_is_no_work(void **state)
 {
     (void)state;
@@ -322,7 +323,8 @@ static void a_hub_of_many_edges_is_no_work(void **state)
     }
 }
 
-/* Makes a mesh of stars of 256 points, each with its own hub. */
+/* Makes `count` separate stars of 256 points; each star consists of triangles around its own
+ * hub. */
 static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
 {
     enum { POINTS = 256 };
@@ -342,8 +344,9 @@ static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
     return dense_built(&soup);
 }
 
-/* Each collapse at the rim of a star changes faces around the hub. The 256 edges of the hub must
- * not all be tried again after each collapse; but before the decimation ends, they must be. */
+/* Each collapse at the rim of a star changes faces around the star's hub, and so the errors of the
+ * hub's edges. It would take too long to try all 256 edges again after each collapse, but they must
+ * have been tried again before the decimation ends. */
 static void edges_of_a_star_are_tried_again_but_not_each_time(void **state)
 {
     (void)state;

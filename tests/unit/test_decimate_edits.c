@@ -1,4 +1,4 @@
-/* Decimation as an edit: undo, recording, failing allocations, and cancelling. */
+/* Decimation as an edit: undo, recording in a delta, failing allocations, and cancelling. */
 #include "tests/unit/dense.h"
 
 #include "algo/progressive.h"
@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* The request would remove nearly everything, but no collapse is allowed, so nothing must be
- * recorded. */
+/* The request asks to remove nearly all faces, but the error limit of 0 allows no collapse: the
+ * delta must stay empty. */
 static void nothing_is_recorded_where_no_edge_may_go(void **state)
 {
     (void)state;
@@ -28,8 +28,8 @@ static void nothing_is_recorded_where_no_edge_may_go(void **state)
     he_mesh_free(m);
 }
 
-/* A decimation of few faces is recorded change by change, and one of many faces as a replacement of
- * the mesh; both must be undone. */
+/* A small decimation is recorded change by change, a large one as a replacement of the whole mesh;
+ * undo must work in both cases. */
 static const struct {
     uint32_t side, faces;
     bool replaced;
@@ -104,8 +104,8 @@ static void add_columns(he_mesh *m, unsigned count)
     }
 }
 
-/* Finds how many records a decimation reserves and uses for this number of columns, beyond those
- * without columns. */
+/* Decimates a mesh that has `columns` attributes; sets `room` to the number of records for which
+ * its delta has memory, and `used` to the number of records in the delta. */
 static void record_with(unsigned columns, size_t *room, size_t *used)
 {
     he_mesh *m = dense_torus(20);

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* The outline of a grid that is bent out of its plane must stay in place. */
+/* A grid is bent out of its plane: decimation must leave its outline in place. */
 static void boundaries_are_kept(void **state)
 {
     (void)state;
@@ -42,8 +42,8 @@ static void boundaries_are_kept(void **state)
     he_mesh_free(m);
 }
 
-/* Returns the largest distance of the boundary vertices of a decimated grid from the original
- * outline. */
+/* Returns how far the boundary of a grid has moved from its original outline after a decimation in
+ * which the boundary has this weight. */
 static double outline_error(double weight)
 {
     enum { SIDE = 30 };
@@ -156,8 +156,8 @@ static void locked_elements_keep_their_attributes(void **state)
     }
 }
 
-/* A line across a flat grid costs no error and would disappear; marked as a feature it must stay,
- * and stay straight. */
+/* A straight row of edges across a flat grid could be removed without any error; marked as a
+ * feature, the row must stay and stay straight. */
 static void feature_lines_keep_their_shape(void **state)
 {
     (void)state;

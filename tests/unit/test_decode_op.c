@@ -1,4 +1,5 @@
-/* Operations are decoded from JSON, and the names in a list of edits are resolved. */
+/* Operations are decoded from JSON, and references to the results of earlier operations are
+ * resolved. */
 #include "api/write/decode_op.h"
 #include "api/write/result_names.h"
 
@@ -16,8 +17,8 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"by\":[0,0,1]}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[2,1,0]}", HE_OK, ""},
-    /* the next two lists of vertices are invalid, but the operation refuses them and not the
-     * decoder */
+    /* The decoder accepts the next two lists of vertices, although the operation itself will refuse
+     * them. */
     {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[]}", HE_OK, ""},
     {"{\"op\":\"vertex_split\",\"vertex\":0,\"left\":1,\"right\":null,\"to\":[0,0,0]}", HE_OK, ""},
@@ -25,7 +26,8 @@ static const struct {
     {"{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}", HE_OK, ""},
     {"{\"op\":\"face_delete\",\"face\":1,\"keep_isolated\":true}", HE_OK, ""},
     {"{\"op\":\"edge_collapse\",\"halfedge\":1,\"t\":1}", HE_OK, ""},
-    /* elements named by a set of the mesh ("selected"), which is looked up after decoding */
+    /* operations on all elements with a certain mark ("selected"); these elements are looked up
+     * only after decoding */
     {"{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}", HE_OK, ""},
     {"{\"op\":\"delaunay\",\"edges\":{\"a b\":true}}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":{\"s\":true},\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
@@ -35,13 +37,13 @@ static const struct {
     {"{\"op\":\"face_delete\",\"faces\":{\"a\":1}}", API_WRONG_TYPE, "/faces/a"},
     {"{\"op\":\"face_delete\",\"face\":{\"a\":true}}", API_WRONG_TYPE, "/face"},
     {"{\"op\":\"face_add\",\"vertices\":{\"a\":true}}", API_WRONG_TYPE, "/vertices"},
-    /* mistakes in the operation as a whole */
+    /* mistakes in the operation as a whole: no object, or no valid name */
     {"[]", API_WRONG_TYPE, ""},
     {"{}", API_MISSING_MEMBER, ""},
     {"{\"op\":7}", API_WRONG_TYPE, "/op"},
     {"{\"op\":\"edge_spilt\",\"edge\":5}", API_UNKNOWN_OPERATION, "/op"},
     {"{\"op\":\"Edge_split\",\"edge\":5}", API_UNKNOWN_OPERATION, "/op"},
-    /* mistakes in the names of members */
+    /* members that are missing, unknown, or exclude each other */
     {"{\"op\":\"edge_split\"}", API_MISSING_MEMBER, ""},
     {"{\"op\":\"edge_split\",\"edge\":5,\"tt\":0.5}", API_UNKNOWN_MEMBER, "/tt"},
     {"{\"op\":\"edge_split\",\"edge\":5,\"T\":0.5}", API_UNKNOWN_MEMBER, "/T"},
@@ -52,7 +54,7 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertex\":1}", API_MISSING_MEMBER, ""},
     {"{\"op\":\"edge_collapse\",\"edge\":1,\"halfedge\":2}", API_CONFLICTING_MEMBERS, "-"},
     {"{\"op\":\"edge_collapse\"}", API_MISSING_MEMBER, ""},
-    /* mistakes in ids */
+    /* ids that are no numbers, out of range, or not in a list where one is needed */
     {"{\"op\":\"edge_split\",\"edge\":-1}", HE_BAD_VALUE, "/edge"},
     {"{\"op\":\"edge_split\",\"edge\":1.5}", HE_BAD_VALUE, "/edge"},
     {"{\"op\":\"edge_split\",\"edge\":4294967294}", HE_BAD_VALUE, "/edge"},
@@ -65,7 +67,7 @@ static const struct {
     {"{\"op\":\"face_delete\",\"faces\":[1,2,-3]}", HE_BAD_VALUE, "/faces/2"},
     {"{\"op\":\"face_delete\",\"faces\":[1,null]}", API_WRONG_TYPE, "/faces/1"},
     {"{\"op\":\"face_delete\",\"face\":\"$a.face\"}", API_WRONG_TYPE, "/face"},
-    /* mistakes in numbers, points, choices, flags and matrices */
+    /* wrong numbers, points, choices, flags and matrices */
     {"{\"op\":\"edge_split\",\"edge\":5,\"t\":0}", HE_BAD_VALUE, "/t"},
     {"{\"op\":\"edge_split\",\"edge\":5,\"t\":1}", HE_BAD_VALUE, "/t"},
     {"{\"op\":\"edge_split\",\"edge\":5,\"t\":\"0.5\"}", API_WRONG_TYPE, "/t"},
@@ -151,7 +153,7 @@ static void names_that_do_not_exist_are_answered_with_those_that_do(void **state
     }
 }
 
-/* Returns the index of a parameter with this name. */
+/* Returns the index of the operation's parameter with this name. */
 static size_t param(const he_op *op, const char *name)
 {
     size_t i = 0;
@@ -194,8 +196,8 @@ static void arguments_hold_what_was_given(void **state)
     clear(&p);
 }
 
-/* Decodes a list of operations as a check before any of them runs: each operation may use the names
- * given to results of earlier ones. */
+/* Decodes a list of operations without running them. An operation may refer to results of earlier
+ * ones by the names that these give to their results. */
 static bool check_list(const api_in *list, api_result_names *names, api_arena *arena)
 {
     api_in op;
@@ -236,7 +238,7 @@ static const struct {
     {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex.0\"}]", API_BAD_REFERENCE,
      "/1/vertex"},
     {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"a.vertex\"}]", API_WRONG_TYPE, "/1/vertex"},
-    /* names of results of the wrong kind, or of a list where one id is needed */
+    /* references to results of the wrong kind, or to a list of ids where one id is needed */
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.vertex\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.01\"}]", API_BAD_REFERENCE, "/1/edge"},
@@ -244,7 +246,7 @@ static const struct {
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.1.2\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.99999999999999999999\"}]",
      API_BAD_REFERENCE, "/1/edge"},
-    /* mistakes in the names given to results */
+    /* operations that give an invalid name ("as") to their results */
     {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"\"}]", HE_BAD_VALUE, "/0/as"},
     {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"1a\"}]", HE_BAD_VALUE, "/0/as"},
     {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"a.b\"}]", HE_BAD_VALUE, "/0/as"},
@@ -287,13 +289,15 @@ static size_t result(const he_op *op, const char *name)
     return i;
 }
 
-/* In the results that the test provides, the first operation has the vertex 17, the edges 30, 31
- * and 32, and no faces. */
+/* Operations refer to results of an earlier operation, which the test sets: the vertex 17, the
+ * edges 30, 31 and 32, and no faces. */
 static void references_take_the_values_of_results(void **state)
 {
     (void)state;
     static const struct {
-        const char *op, *name; /* the second operation, and the parameter that is checked */
+        /* an operation that refers to results of an earlier one, and its parameter that is
+         * checked */
+        const char *op, *name;
         int code;
         size_t count;
         uint32_t first, last;

@@ -1,6 +1,6 @@
-/* Recording of changes, undo, redo, rollback, sets of changed elements, columns and compact, tested
- * with writes made directly through write.h. The deltas of operations are tested with the
- * operations. */
+/* Recording of changes: undo, redo, rollback, sets of changed elements, columns, and compaction.
+ * The changes are made directly by the functions of write.h; deltas of whole operations are tested
+ * with the operations. */
 #include "fixture.h"
 
 #include "mesh/compact.h"
@@ -15,7 +15,7 @@ static he_mesh *copy_of(const he_mesh *m)
     return copy;
 }
 
-/* Adds a separate triangle by direct writes. */
+/* Adds a separate triangle with the functions of write.h. */
 static he_status add_triangle(he_mesh *m, he_error *err)
 {
     he_status status = he_reserve(m, (he_reservation){.vertices = 3, .edges = 3, .faces = 1}, err);
@@ -44,7 +44,7 @@ static he_status add_triangle(he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Removes the separate triangle with this face by direct writes. */
+/* Removes a separate triangle with the functions of write.h. */
 static he_status remove_triangle(he_mesh *m, he_face f, he_error *err)
 {
     he_reservation need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
@@ -101,7 +101,8 @@ static void undo_and_redo_restore_the_mesh_but_ids_stay_issued(void **state)
         he_delta_undo(d, m);
         fixture_check(m);
         assert_true(he_mesh_equal_live(m, start));
-        assert_false(he_mesh_equal(m, start)); /* undo does not take back issued ids */
+        /* undo does not take back the ids that were issued */
+        assert_false(he_mesh_equal(m, start));
         assert_int_equal(he_mesh_issued(m, HE_FACE), 4);
         he_error err;
         assert_int_equal(he_mesh_require(m, HE_FACE, 3, &err), HE_DELETED_ELEMENT);
@@ -171,7 +172,7 @@ static void changes_that_cancel_out_are_not_reported(void **state)
     he_set_attribute(m, 0, 1, &(uint32_t){7});
     assert_int_equal(add_triangle(m, NULL), HE_OK);
     he_note_parent(m, HE_FACE, 3, 0);
-    he_note_parent(m, HE_FACE, 1, 0); /* face 1 was not created: dropped */
+    he_note_parent(m, HE_FACE, 1, 0); /* face 1 is not new, so its parent must not be reported */
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
     expect_ids(&changes.created[HE_VERTEX], 3, (const uint32_t[]){7, 8, 9});
@@ -248,8 +249,8 @@ static void undo_and_redo_restore_added_and_dropped_columns(void **state)
     he_mesh_free(end);
 }
 
-/* Values of the mesh itself, and those of half-edges along a hole, belong to no vertex, edge or
- * face that could be reported as modified; they must still count as changes. */
+/* A value of the mesh itself or of a half-edge along a hole belongs to no vertex, edge or face that
+ * could be reported as modified; setting such a value must still count as a change. */
 static void values_of_no_vertex_edge_or_face_count_as_changes(void **state)
 {
     (void)state;
@@ -272,7 +273,7 @@ static void values_of_no_vertex_edge_or_face_count_as_changes(void **state)
         he_changes_clear(&changes);
         size_t from = d->count;
         assert_int_equal(he_reserve(m, (he_reservation){.attributes = 1}, NULL), HE_OK);
-        /* Half-edge 1 runs along the hole, so it has no corner. */
+        /* Half-edge 1 runs along the hole, so it belongs to no corner of a face. */
         he_set_attribute(m, 0, (uint32_t)rows == 1 ? 0 : 1, &(uint32_t){7});
         assert_int_equal(d->count, from + 1);
         assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
@@ -295,8 +296,8 @@ static void put_column(he_mesh *m, const char *name, he_kind domain)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* A column was removed and another one took its slot: a value written to the old column must not be
- * reported as a value of the new one. */
+/* A column of attributes is removed, and another column takes its slot: a value written to the old
+ * column must not be reported as a value of the new one. */
 static void changes_of_a_dropped_column_are_not_those_of_its_successor(void **state)
 {
     (void)state;
@@ -337,7 +338,8 @@ static void changes_of_a_dropped_column_are_not_those_of_its_successor(void **st
     }
 }
 
-/* he_reserve must reserve space for every word of the widest value, for every kind of element. */
+/* The memory that is reserved for one attribute value must be enough for the widest possible value,
+ * for every kind of element. */
 static void a_reservation_has_room_for_the_widest_value(void **state)
 {
     (void)state;

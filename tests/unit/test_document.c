@@ -1,4 +1,4 @@
-/* Mesh documents in JSON are read in pieces, and written. */
+/* Documents in JSON that describe a mesh are read in pieces, and written. */
 #include "api/document/document_in.h"
 #include "api/document/document_out.h"
 
@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 
-/* The result of reading a body that comes in pieces of `step` bytes. */
+/* What reading a document gave: an error code, or HE_OK, and the JSON pointer to the error. */
 typedef struct outcome {
     int code;
     char pointer[API_PROBLEM_POINTER];
@@ -25,8 +25,8 @@ static outcome feed(const char *body, size_t length, size_t step, api_document_i
     bool good = true;
     for (size_t at = 0; good && at < length; at += step) {
         size_t size = length - at < step ? length - at : step;
-        /* The piece is copied to a block of its exact size, so that the sanitizer detects a read
-         * beyond it. */
+        /* The piece is copied to a block of its exact size, so that the sanitizer detects reads
+         * beyond the end of the piece. */
         char *piece = malloc(size);
         assert_non_null(piece);
         memcpy(piece, body + at, size);
@@ -48,7 +48,7 @@ static outcome feed(const char *body, size_t length, size_t step, api_document_i
 static const struct {
     const char *body;
     int code;
-    const char *pointer; /* "-": not checked */
+    const char *pointer; /* expected JSON pointer to the error; "-" if the test does not check it */
 } bodies[] = {
     {"{}", HE_OK, "-"},
     {"{\"vertices\":[],\"faces\":[]}", HE_OK, "-"},
@@ -144,7 +144,7 @@ static const struct {
     {"{\"vertices\":[],\"\\u0076ertices\":[]}", API_DUPLICATE_MEMBER, "/vertices"},
     {"{\"faces\":[],\"faces\":[[0,1,2]]}", API_DUPLICATE_MEMBER, "/faces"},
     {"{\"name\":\"a\",\"vertices\":[],\"name\":\"b\"}", API_DUPLICATE_MEMBER, "/name"},
-    /* types and values */
+    /* members of wrong types or with invalid values */
     {"{\"vertices\":null}", API_WRONG_TYPE, "/vertices"},
     {"{\"vertices\":{}}", API_WRONG_TYPE, "/vertices"},
     {"{\"vertices\":[1,2,3]}", API_WRONG_TYPE, "/vertices/0"},
@@ -227,10 +227,10 @@ static void what_is_gathered_is_bounded(void **state)
     memcpy(body, "{\"name\":\"", 9);
     memcpy(body + length - 2, "\"}", 2);
     assert_int_equal(feed(body, length, 65536, NULL).code, HE_LIMIT);
-    /* A name that never ends must be refused without being stored. */
+    /* A member name that does not end within the body must be refused without being stored. */
     memset(body + 2, 'k', length - 2);
     assert_int_equal(feed(body, length, 65536, NULL).code, API_UNKNOWN_MEMBER);
-    /* A number that never ends must be refused without being stored. */
+    /* A number that does not end within the body must be refused without being stored. */
     memset(body, '0', length);
     memcpy(body, "{\"vertices\":[[1.", 16);
     assert_int_equal(feed(body, length, 7, NULL).code, HE_BAD_VALUE);
@@ -279,8 +279,8 @@ static const char attributed[] =
     "\"bool\","
     "\"values\":[true]}],\"name\":\"n\"}";
 
-/* Reads a document with attributes, repairs it and builds the mesh; returns NULL with HE_NO_MEMORY
- * in the problem if an allocation fails. */
+/* Reads a document with attributes, repairs its faces and builds a mesh; if an allocation fails,
+ * returns NULL and sets the problem to HE_NO_MEMORY. */
 static he_mesh *make_attributed(api_problem *problem)
 {
     const he_repair_plan plan = {.which = he_repair_bit(HE_REPAIR_WELD) |
@@ -315,8 +315,8 @@ static he_mesh *make_attributed(api_problem *problem)
     return mesh;
 }
 
-/* Some allocations are optional, such as shrinking a block: if one of these fails, the mesh is
- * still made. */
+/* The test lets each allocation fail in turn. If the failed allocation was optional, such as one
+ * that shrinks a block, the mesh must still be made. */
 static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void **state)
 {
     (void)state;
@@ -338,7 +338,7 @@ static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void 
     assert_true(refused > 30);
 }
 
-/* Writes a document in pieces of `step` bytes; returns the text. */
+/* Writes a document in pieces of `step` bytes; returns the text, which the caller must free. */
 static char *write_all(const he_mesh *mesh, const char *name, size_t step, size_t *length)
 {
     api_document_out *out = api_document_out_new(mesh, name);
@@ -369,7 +369,7 @@ static he_mesh *read_back(const char *text, size_t length)
     return mesh;
 }
 
-/* Writes a document in pieces of several sizes; it must be read back as an equal mesh. */
+/* Writes a document in pieces of several sizes; reading it back must always give an equal mesh. */
 static void expect_comes_back(const he_mesh *mesh, const char *name)
 {
     size_t length;
@@ -431,7 +431,8 @@ static void text_is_one_item_a_line(void **state)
 static void a_large_document_is_cut_anywhere(void **state)
 {
     (void)state;
-    /* The mesh is a strip of quads whose document is larger than the writer's buffer. */
+    /* Number of quadrilaterals in a strip, enough to make its document larger than the writer's
+     * buffer. */
     enum { QUADS = 5000 };
     he_soup soup;
     he_mesh *mesh = NULL;

@@ -1,4 +1,5 @@
-/* The arrays for drawing are compared with the polygons from which they are made. */
+/* The arrays of triangles that clients draw are compared with the polygons from which they are
+ * made. */
 #include "query_specimens.h"
 
 #include "draw/draw_arrays.h"
@@ -55,7 +56,8 @@ static he_vec3 area_vector(const he_mesh *m, const row *r)
     return he_vec3_scale(he_vec3_cross(he_vec3_sub(b, a), he_vec3_sub(c, a)), 0.5);
 }
 
-/* Returns whether the face has a side from -> to, decided by walking around the face. */
+/* Returns whether the face has a side from vertex `from` to vertex `to`, by walking around the
+ * face. */
 static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
 {
     uint32_t first = m->c.face_halfedge[face], h = first;
@@ -68,9 +70,9 @@ static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
     return false;
 }
 
-/* Checks the triangles of one face: there must be two fewer than its corners; each side of the
- * polygon must be marked once and in its direction; each diagonal must be unmarked and used once in
- * either direction. */
+/* Checks the triangles of one face. There must be two fewer than the face has corners. Each side of
+ * the face must occur once, in its own direction, and be marked as a side; each diagonal must occur
+ * once in either direction and not be marked. */
 static void check_face(const he_mesh *m, uint32_t face, const row *r, uint32_t count)
 {
     uint32_t degree = he_face_degree(m, (he_face){face}), marked = 0;
@@ -92,9 +94,10 @@ static void check_face(const he_mesh *m, uint32_t face, const row *r, uint32_t c
     assert_int_equal(marked, degree);
 }
 
-/* What must hold for the triangles of a face. OUTLINED: their sides are right. SUMMED: their area
- * vectors also add up to that of the face. COVERED: their areas do, too, as in a planar face that
- * does not cross itself. */
+/* What a test requires of the triangles of each face. OUTLINED: the sides of the face are right.
+ * SUMMED: the area vectors of the triangles also add up to that of the face. COVERED: the areas of
+ * the triangles also add up to that of the face, as they must if the face is planar and does not
+ * cross itself. */
 typedef enum promise { OUTLINED, SUMMED, COVERED } promise;
 
 static void check_drawing(const he_mesh *m, promise promised)
@@ -223,7 +226,8 @@ static void triangles_cover_the_faces_of_shapes_exactly(void **state)
         {"cone", 9, 1, 2, 1},     {"uv_sphere", 12, 9, 1, 0}, {"grid", 5, 4, 2, 1},
         {"disk", 9, 1, 0, 0},     {"polygon", 100, 1, 0, 0}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        /* The quadrilaterals of a torus and of a sphere are planar. */
+        /* All faces of the tested shapes are planar, even the quadrilaterals of the torus and the
+         * sphere. */
         he_mesh *m =
             query_shape(shapes[i].name, shapes[i].a, shapes[i].b, shapes[i].c, shapes[i].d);
         check_drawing(m, COVERED);
@@ -239,8 +243,8 @@ typedef struct polygon {
     uint32_t n;
 } polygon;
 
-/* Makes one face in a slanted plane, of which the corner `turn` is the first; `size` and `away`
- * make it small, or put it far from the origin. */
+/* Makes one face in a slanted plane. Corner `turn` of the polygon becomes the face's first corner,
+ * coordinates are multiplied by `size`, and the face is moved away from the origin by `away`. */
 static he_mesh *face_of(const polygon *p, uint32_t turn, double size, double away)
 {
     he_soup soup;
@@ -289,7 +293,8 @@ static void triangles_cover_concave_faces_from_every_first_corner(void **state)
     }
 }
 
-/* The polygons are star-shaped around the origin, so that they never cross themselves. */
+/* The polygons are star-shaped around the origin (each corner is visible from there), so they do
+ * not cross themselves. */
 static void triangles_cover_random_polygons_exactly(void **state)
 {
     (void)state;
@@ -311,7 +316,8 @@ static void triangles_cover_random_polygons_exactly(void **state)
     }
 }
 
-/* The faces are not planar, and one is a pentagram: the number of triangles must still be right. */
+/* The corners lie in a line or in one point, or the sides cross each other: even then each face
+ * must have two triangles fewer than corners. */
 static void faces_without_a_plane_have_all_their_triangles(void **state)
 {
     (void)state;
@@ -349,8 +355,8 @@ static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
     double whole = he_face_area(m, (he_face){0});
     assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
-    /* The time for a single face must depend on the number of its corners, and not on the square of
-     * this number. */
+    /* The estimated work for a single large face must grow linearly with the number of its corners,
+     * not with the square of this number. */
     const uint32_t face = 0;
     he_frame frame = he_frame_of(m);
     he_draw_arrays d;
@@ -362,7 +368,7 @@ static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
     he_mesh_free(m);
 }
 
-/* --- rows of dead elements, and of unchanged ones --- */
+/* --- deleted elements and elements that do not change --- */
 
 static void deleted_elements_are_not_drawn(void **state)
 {
@@ -382,7 +388,7 @@ static void moving_a_vertex_changes_only_faces_at_it(void **state)
     he_mesh *m = query_shape("grid", 6, 6, 1, 1);
     he_frame before, after;
     rows old = draw(m, &before);
-    uint32_t moved = 24; /* the middle of the grid */
+    uint32_t moved = 24; /* the vertex in the middle of the grid, which the test moves */
     assert_int_equal(he_vertex_degree(m, (he_vertex){moved}), 4);
     m->c.position[moved].x += 0.1;
     m->c.position[moved].y += 0.12;
@@ -427,8 +433,8 @@ static void a_frame_fits_the_mesh_closely_at_any_scale(void **state)
         assert_true(he_vec3_is_finite(frame.origin));
         he_mesh_free(m);
     }
-    /* The arrays must not lose the mesh in too large a frame: it fills at least an eighth of the
-     * width of the sphere around it. */
+    /* The coordinates lose precision if the frame is much larger than the mesh: the mesh must fill
+     * a reasonable part of the frame's width. */
     he_mesh *m = query_shape("cube", 3.7, 0, 0, 0);
     he_frame frame = he_frame_of(m);
     assert_true(3.7 * frame.scale >= 0.5);
@@ -455,8 +461,8 @@ static void a_drawing_without_memory_is_refused(void **state)
     he_mesh_free(m);
 }
 
-/* A single face must have the same triangles as among all faces; that it takes long must be
- * announced before the work begins. */
+/* A single face must get the same triangles as in the arrays of all faces. A limit on the work must
+ * be checked before the work begins. */
 static void a_face_alone_has_the_triangles_it_has_among_all(void **state)
 {
     (void)state;

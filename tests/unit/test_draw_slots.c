@@ -1,5 +1,5 @@
-/* Slots for the triangles of faces, which are kept together for each face, while faces of all sizes
- * are added and removed. */
+/* The triangles of all faces have slots in one array, those of one face next to each other, while
+ * faces of all sizes are added and removed. */
 #include "query_specimens.h"
 
 #include "draw/draw_slots.h"
@@ -15,8 +15,8 @@
 
 enum { VERTICES = 3000, FACES = 60 };
 
-/* Isolated vertices on a circle; faces with different numbers of corners are made from intervals of
- * them. */
+/* Vertices on a circle, and faces of different sizes that each use a row of neighbouring
+ * vertices. */
 typedef struct world {
     he_mesh *m;
     he_delta *delta;
@@ -99,8 +99,8 @@ static he_status advance(world *w, uint64_t most)
     return status;
 }
 
-/* Requires that each live face has one run of slots of its length, and that no other slot is in
- * use. */
+/* Requires that the triangles of each face fill slots next to each other, and that no other slot is
+ * in use. */
 static void check_slots(const world *w)
 {
     const he_draw_slots *s = w->slots;
@@ -142,8 +142,8 @@ static uint32_t owner_of(const uint32_t *owner, uint32_t slot)
     return (owner[slot] & HE_DRAW_SLOT_DEAD) != 0 ? HE_NONE : owner[slot];
 }
 
-/* Requires that every difference is in the list of changes, and that all slots of a face are listed
- * if one is. */
+/* Requires that each slot whose face differs from that in `before` is in the list of changes, and
+ * that if the list has any slot of a face, it has the first slot of this face, too. */
 static void check_changes(const world *w, const uint32_t *before, uint32_t count)
 {
     he_ids vertices = {0}, slots = {0};
@@ -226,8 +226,8 @@ static void an_advance_over_its_limit_leaves_the_slots_unchanged(void **state)
     close_world(&w);
 }
 
-/* A vertex that becomes live at the origin writes no position, because it has this one already; it
- * must still be noticed that it lies outside the frame of the coordinates. */
+/* A new vertex at the origin needs no write of its position, because all positions are 0 at first:
+ * even so the slots must report that the vertex lies outside the frame of the drawn coordinates. */
 static void a_vertex_outside_the_frame_ends_the_layout(void **state)
 {
     (void)state;
@@ -252,7 +252,7 @@ static void a_vertex_outside_the_frame_ends_the_layout(void **state)
     he_mesh_free(m);
 }
 
-/* The oldest changes must be forgotten first, and the memory for changes must not grow. */
+/* The list of changes must have a limited length: the oldest changes are forgotten first. */
 static void the_oldest_changes_are_forgotten_and_memory_stays_bounded(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Attribute values through edits, and refusals of C functions that no JSON request can cause. */
+/* Values of attributes after edits, and errors that callers of the C functions can cause but JSON
+ * requests cannot. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -18,7 +19,8 @@
 #include "edit/whole/transform.h"
 #include "mesh/write.h"
 
-/* Adds a column of one double named "a": the row i holds 10 * i, and the default is -1. */
+/* Adds a column of attribute values, one double named "a" per row: row i holds 10 * i, and rows of
+ * new elements get -1 by default. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -51,7 +53,8 @@ static void assert_value(const he_mesh *m, he_kind domain, uint32_t row, double 
     }
 }
 
-/* Requires this value at the corner of a face at a vertex. */
+/* Requires that the attribute "a" has this value at the corner of face `face` at vertex
+ * `vertex`. */
 static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, double expected)
 {
     he_halfedge h = he_face_halfedge(m, (he_face){face});
@@ -61,7 +64,7 @@ static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, doub
     assert_value(m, HE_HALFEDGE, h.i, expected);
 }
 
-/* Returns a mesh with one column after a script was run on it. */
+/* Returns a mesh with one column of values, on which `script` was run. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -145,7 +148,7 @@ static void edge_and_face_values_follow_the_rule_of_their_column(void **state)
     he_mesh_free(m);
     m = after("012,023", HE_FACE, HE_INTERPOLATE, "face_join edge=0-2");
     assert_value(m, HE_FACE, 0, 5);
-    assert_value(m, HE_FACE, 1, -1); /* the face is deleted */
+    assert_value(m, HE_FACE, 1, -1); /* face 1 is deleted, so its value is the default */
     he_mesh_free(m);
     m = after("012,103,214", HE_EDGE, HE_COPY, "face_delete face=2;edge_flip edge=0-1;compact");
     assert_value(m, HE_EDGE, edge_between(m, 3, 2).i, 0);
@@ -163,8 +166,8 @@ static void edge_and_face_values_follow_the_rule_of_their_column(void **state)
     he_mesh_free(m);
 }
 
-/* The half-edges of the mesh 012,103: 0 runs from 0 to 1, 2 from 1 to 2 and 4 from 2 to 0 in face
- * 0; 1 runs from 1 to 0, 6 from 0 to 3 and 8 from 3 to 1 in face 1. */
+/* In the mesh 012,103 the half-edges of face 0 are 0 (from 0 to 1), 2 (1 to 2) and 4 (2 to 0);
+ * those of face 1 are 1 (from 1 to 0), 6 (0 to 3) and 8 (3 to 1). */
 static void corner_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
@@ -181,7 +184,8 @@ static void corner_values_follow_the_rule_of_their_column(void **state)
     assert_corner(m, 1, 0, 60);
     he_mesh_free(m);
 
-    /* Under every rule, the old corner moves to another half-edge together with its value. */
+    /* When the edge is divided, the old corner at vertex 1 gets another half-edge. Its value must
+     * move to this half-edge, even if the column gives default values to new corners. */
     m = after("012,103", HE_HALFEDGE, HE_DEFAULT, "edge_bisect edge=#0 t=0.25");
     assert_corner(m, 1, 1, 10);
     assert_corner(m, 1, 4, -1);
@@ -221,7 +225,8 @@ static void corner_values_follow_the_rule_of_their_column(void **state)
     assert_corner(m, 1, 2, 40);
     he_mesh_free(m);
 
-    /* The corner of face 1 moves from the deleted vertex 0 to vertex 1, and must keep its value. */
+    /* The collapse moves a corner of face 1 from the deleted vertex 0 to vertex 1: the corner must
+     * keep its value. */
     m = after("012,023,034,045,056,061", HE_HALFEDGE, HE_COPY, NULL);
     double at_0 = value_at(m, HE_HALFEDGE, halfedge_between(m, 0, 2).i);
     script_prepare(m, "edge_collapse halfedge=0-1");
@@ -241,7 +246,7 @@ static void add_normals(he_mesh *m, he_kind domain, he_type type)
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     const double number[3] = {0, 3, 4};
     const float single[3] = {0, 3, 4};
-    for (size_t i = 1; i < rows; i++) { /* the first is zero */
+    for (size_t i = 1; i < rows; i++) { /* row 0 keeps the normal 0, 0, 0 */
         memcpy(he_column_row(column, i),
                type == HE_FLOAT ? (const void *)single : (const void *)number, column->row_bytes);
     }
@@ -272,8 +277,8 @@ static void assert_normal(const he_mesh *m, he_kind domain, uint32_t row, double
 static void a_transform_turns_the_normals_of_what_it_moves(void **state)
 {
     (void)state;
-    /* The matrix doubles the height: the normal of a plane with slope 3:4 becomes that of slope
-     * 3:2. */
+    /* The matrix doubles all heights: the normal 0, 3, 4 of a plane then becomes 0, 3, 2, scaled to
+     * length 1. */
     static const char HIGHER[] = "transform matrix=1,0,0,5,0,1,0,0,0,0,2,0,0,0,0,1";
     static const char MIRROR[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1";
     static const char FLAT[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1";
@@ -302,8 +307,8 @@ static void a_transform_turns_the_normals_of_what_it_moves(void **state)
         assert_normal(m, domain, 2, 0, 0, -1);
         he_mesh_free(m);
     }
-    /* Only some vertices are transformed: the normals in their rows change, and those of corners
-     * and faces only if the whole face moves. */
+    /* Only vertices 2, 3 and 4 are transformed: the normals of these vertices change, but those of
+     * corners and faces change only if all corners of the face are transformed. */
     he_mesh *m = script_mesh("012,023,324", NULL);
     add_normals(m, HE_VERTEX, HE_DOUBLE);
     add_normals(m, HE_HALFEDGE, HE_FLOAT);
@@ -361,8 +366,8 @@ static void nothing_is_mixed_into_what_is_locked(void **state)
     }
 }
 
-/* The new vertex must not be locked, whichever end of the edge is the origin of half-edge 2e, and
- * under every rule. */
+/* Some of the old vertices are locked, in every combination. The vertices that an edit adds between
+ * them must not be locked, whatever the column's rule for values is. */
 static void a_lock_does_not_spread_to_a_vertex_between(void **state)
 {
     (void)state;
@@ -397,7 +402,8 @@ static void a_lock_does_not_spread_to_a_vertex_between(void **state)
     }
 }
 
-/* If an element is divided, both parts must have its mark; new elements must not. */
+/* If an element with a mark is divided, both parts must have the mark; elements that are not part
+ * of it must not. */
 static void both_parts_of_a_divided_element_have_its_mark(void **state)
 {
     (void)state;
@@ -414,7 +420,7 @@ static void both_parts_of_a_divided_element_have_its_mark(void **state)
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         assert_int_equal(marked(m, HE_FACE, "locked", f), f != 1 && f != 3);
     }
-    /* A column that has the name of a mark but another type is an ordinary attribute. */
+    /* A column that has the name of a mark, but not the type of marks, is an ordinary attribute. */
     he_mesh_free(m);
     m = script_mesh("012,023", NULL);
     he_column *column = NULL;
@@ -462,7 +468,7 @@ static void bad_numbers_points_and_matrices_are_refused_without_change(void **st
     he_mesh_free(m);
 }
 
-/* Positions near the largest double must stay finite. */
+/* An edit near the largest double must not overflow: positions stay finite. */
 static void positions_near_the_largest_double_stay_finite(void **state)
 {
     (void)state;
@@ -491,7 +497,7 @@ static void values_follow_their_rule_when_loops_are_joined_or_split(void **state
     (void)state;
     static const char join[] = "loop_join a=2-0 b=4-6";
     static const char split[] = "loop_split a=0-1 b=1-2 c=2-0";
-    /* Vertex 6 is merged into vertex 2, and the edge 4-6 into the edge 0-2. */
+    /* `join` merges vertex 6 into vertex 2, and the edge 4-6 into the edge 0-2. */
     static const he_rule rules[] = {HE_INTERPOLATE, HE_COPY, HE_DEFAULT};
     for (size_t i = 0; i < 3; i++) {
         he_mesh *m = after(CF4, HE_VERTEX, rules[i], join);
@@ -510,8 +516,8 @@ static void values_follow_their_rule_when_loops_are_joined_or_split(void **state
     assert_corner(m, 0, 2, 10.0 * halfedge_between(m, 2, 3).i);
     he_mesh_free(m);
 
-    /* The new vertices 5, 6 and 7 come from 0, 1 and 2; the new edge 9 comes from edge 0, which
-     * runs from 0 to 1. */
+    /* `split` copies the vertices 0, 1 and 2 to the new vertices 5, 6 and 7, and the edge 0 from 0
+     * to 1 to the new edge 9. */
     m = after(BIPYRAMID, HE_VERTEX, HE_COPY, split);
     assert_value(m, HE_VERTEX, 6, 10);
     he_mesh_free(m);

@@ -1,5 +1,5 @@
-/* Edits that open, close and extend the boundary, and edge_bevel: their results, and that they undo
- * each other. */
+/* Edits that open, close and extend the boundary of a mesh, and edge_bevel: their results, and
+ * which of these edits undo each other. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ static void assert_at(const he_mesh *m, uint32_t v, double x, double y, double z
     assert_true(fabs(p.x - x) < 1e-12 && fabs(p.y - y) < 1e-12 && fabs(p.z - z) < 1e-12);
 }
 
-/* An interior vertex may store any half-edge that leaves it, and a bow-tie any boundary half-edge:
- * makes `m` store the same ones as `like`, so that both can be compared. */
+/* Lets each vertex of `m` store the half-edge that it stores in `like`, so that both meshes can be
+ * compared: several half-edges are valid for an interior vertex or a bow-tie. */
 static void store_like(he_mesh *m, const he_mesh *like)
 {
     for (uint32_t v = 0; v < he_mesh_issued(like, HE_VERTEX); v++) {
@@ -102,7 +102,7 @@ static void a_cube_cut_along_all_edges_falls_apart(void **state)
 static void a_cut_leaves_other_fans_unchanged(void **state)
 {
     (void)state;
-    /* Vertex 0 has two fans, of two and of three faces; the second one is cut. */
+    /* Vertex 0 is a bow-tie with a fan of two faces and one of three faces; the latter is cut. */
     he_mesh *m = script_mesh("012,023,045,056,067", NULL);
     uint32_t e = edge_between(m, 0, 5).i;
     script_prepare(m, "edge_cut edge=0-5");
@@ -110,7 +110,7 @@ static void a_cut_leaves_other_fans_unchanged(void **state)
     assert_face(m, 0, "012");
     assert_face(m, 1, "023");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
-    /* The face at half-edge 2e of the cut edge keeps both old vertices. */
+    /* Half-edge 2e of the cut edge must still run between the old vertices 0 and 5. */
     assert_int_equal(he_origin(m, (he_halfedge){2 * e}).i + he_target(m, (he_halfedge){2 * e}).i,
                      5);
     assert_false(he_is_boundary_halfedge(m, (he_halfedge){2 * e}));
@@ -130,8 +130,8 @@ static void edge_weld_places_the_ends_as_keep_chooses(void **state)
                  {"edge_weld a=0-1 b=3-5 keep=a", 0, 0, 2},
                  {"edge_weld a=0-1 b=3-5 keep=b", 4, 4, 4}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        /* After the weld and the cut each face must have its own side again: 0-1 belongs to face
-         * 102, 3-5 to face 345. */
+        /* After the weld, the ends of the merged edge must be where `keep` says: at the mean of the
+         * positions, or at one of the welded edges. */
         he_mesh *m = script_mesh("012,345", places);
         script_prepare(m, cases[i].weld);
         assert_counts(m, 4, 5, 2);
@@ -146,8 +146,8 @@ static void fans_of_a_bowtie_can_be_welded_in_every_order(void **state)
     (void)state;
     static const char *const welds[] = {"edge_weld a=0-2 b=0-3", "edge_weld a=0-4 b=0-5",
                                         "edge_weld a=0-6 b=0-7", "edge_weld a=0-8 b=0-1"};
-    /* Four fans around a vertex are welded in every order; the last weld closes the only fan that
-     * remains. */
+    /* Vertex 0 has four fans of faces, which are welded to each other in every order. The last weld
+     * welds the two ends of the only fan that is left, which becomes closed. */
     for (unsigned order = 0; order < 256; order++) {
         unsigned used = 0;
         he_mesh *m = script_mesh("012,034,056,078", NULL);
@@ -191,7 +191,8 @@ static void deleting_the_walls_undoes_edge_extrude(void **state)
             assert_int_equal(script_run(m, cases[i].extrude, &results, NULL), HE_OK);
             assert_valid(m);
             assert_true(he_mesh_faces(m) > he_mesh_faces(before));
-            /* The far edges of the walls are on the boundary and have only the walls as faces. */
+            /* edge_extrude adds a wall of new faces at the boundary. Deleting these faces, or their
+             * edges on the new boundary, must restore the old mesh. */
             char text[128];
             int n =
                 snprintf(text, sizeof text, by_edge ? "edge_delete edges=" : "face_delete faces=");
@@ -204,8 +205,8 @@ static void deleting_the_walls_undoes_edge_extrude(void **state)
             assert_int_equal(he_mesh_vertices(m), he_mesh_vertices(before));
             assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
             if (strcmp(cases[i].mesh, STRANGE) != 0) {
-                /* The order of the fans at a bow-tie is not restored, so it is taken from the old
-                 * mesh before comparing. */
+                /* The walls are gone again, but a bow-tie may store another half-edge than before:
+                 * it is set to the old one, so that the meshes can be compared. */
                 store_like(m, before);
                 assert_true(he_mesh_equal_live(m, before));
             }
@@ -223,8 +224,8 @@ static void extruded_edges_that_meet_share_a_new_corner(void **state)
     he_results results = {{0}, {0}, {{0}}, {0}};
     assert_int_equal(script_run(m, "edge_extrude edges=1-2,0-1 by=0,0,3", &results, NULL), HE_OK);
     assert_counts(m, 7, 9, 3);
-    /* The new vertices are numbered in the order of the vertices that they were extruded from,
-     * faces and edges in the order of the given edges. */
+    /* New vertices are numbered in the order of the vertices from which they were extruded, new
+     * faces and edges in the order of the edges given in the request. */
     for (uint32_t v = 0; v < 3; v++) {
         assert_at(m, 4 + v, cube[v].x, cube[v].y, 3);
     }
@@ -233,7 +234,7 @@ static void extruded_edges_that_meet_share_a_new_corner(void **state)
     assert_int_equal(results.list[1].ids[0], edge_between(m, 5, 6).i);
     assert_int_equal(results.list[1].ids[1], edge_between(m, 4, 5).i);
     assert_false(he_is_boundary_vertex(m, (he_vertex){1}));
-    /* A second extrusion continues from the far edges of the first. */
+    /* The edges that the first extrusion made on the boundary can be extruded again. */
     script_prepare(m, "edge_extrude edges=4-5,5-6 by=0,0,1");
     assert_counts(m, 10, 14, 5);
     he_results_clear(&results);
@@ -272,7 +273,7 @@ static void a_bevel_is_narrower_than_the_edges_it_cuts(void **state)
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
     script_prepare(m, "vertex_move vertex=4 to=0,0,-9;edge_bevel edge=0-1 width=7");
-    /* The distance of each cut is proportional to the length of its edge. */
+    /* Each edge is cut at the width 7, but not beyond 99 hundredths of its length. */
     assert_at(m, 8, 0, 0.99, 0);
     assert_at(m, 9, 0, 0, -7);
     assert_int_equal(he_edge_bevel(m, edge_between(m, 6, 7), (double)NAN, NULL, NULL),
@@ -301,8 +302,8 @@ static void both_bevels_cut_an_edge_without_length_halfway(void **state)
         script_prepare(m, "vertex_move vertex=3 to=0,0,0");
         script_prepare(m, bevels[i]);
         assert_valid(m);
-        /* Finds the vertex that cuts the edge between 0 and 3: it is the only new neighbour
-         * of 3. */
+        /* The bevel has cut the edge from 0 to 3 by a new vertex: `cut` is the only new neighbour
+         * of vertex 3. */
         uint32_t cut = HE_NONE;
         he_halfedge first = he_vertex_halfedge(m, (he_vertex){3}), h = first;
         do {
@@ -326,8 +327,8 @@ static void a_bevel_beside_a_hole_keeps_the_ends_of_its_edge(void **state)
     bool from_0 = he_origin(m, he_edge_halfedge(e, 0)).i == 0;
     script_prepare(m, "edge_bevel edge=0-2 width=1");
     assert_counts(m, 8, 10, 3);
-    /* The corners in the order of the new face: two cuts with an end of the bevelled edge between
-     * them, twice. */
+    /* The new face has six corners: a cut, an end of the bevelled edge and another cut, then the
+     * same three at the other end of the edge. */
     assert_face(m, 2, from_0 ? "405627" : "425607");
     assert_at(m, 0, 0, 0, 0);
     assert_at(m, 2, 4, 4, 0);
@@ -351,17 +352,18 @@ static void bevels_of_tiny_and_huge_edges_have_finite_positions(void **state)
             he_mesh *m = script_mesh(QCUBE, places);
             he_status status = he_edge_bevel(m, edge_between(m, 0, 1), widths[k], NULL, NULL);
             assert_int_equal(status, HE_OK);
-            assert_counts(m, 10, 15, 7); /* this also requires finite positions */
+            /* assert_counts() also requires that positions are finite */
+            assert_counts(m, 10, 15, 7);
             he_mesh_free(m);
         }
     }
 }
 
-/* --- marks, values and ancestry --- */
+/* --- marks, attribute values, parents and survivors --- */
 
 enum { FIRST_VALUE = 10 };
 
-/* Adds a column of doubles; the value of each element is 10 times its id. */
+/* Adds a column of attribute values, one double per row; row i holds 10 * i. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -421,8 +423,8 @@ static void values_of_new_elements_follow_the_rule_of_their_column(void **state)
     he_mesh *m = script_mesh(QCUBE, cube);
     add_column(m, HE_VERTEX, HE_INTERPOLATE);
     add_column(m, HE_HALFEDGE, HE_INTERPOLATE);
-    /* `at_0` and `at_3` are the half-edges that leave vertices 0 and 3 in face 0; they stand for
-     * its corners there. */
+    /* `at_0` and `at_3` are the ids of the half-edges of face 0 that leave vertices 0 and 3: they
+     * are the ids of the face's corners there, too. */
     uint32_t at_0 = halfedge_between(m, 0, 1).i, at_3 = halfedge_between(m, 3, 0).i;
     double expected = FIRST_VALUE * (0.75 * at_0 + 0.25 * at_3);
     script_prepare(m, "edge_bevel edge=0-1 width=0.25");

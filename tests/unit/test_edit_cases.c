@@ -1,4 +1,4 @@
-/* The cases that the design lists in its table of operations, and edits at bow-ties. */
+/* Cases that the design documents name for each operation, and edits at bow-ties. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -88,8 +88,8 @@ static void a_face_joins_two_fans_but_may_not_close_one_beside_others(void **sta
     he_mesh *before = copy_of(m);
     assert_int_equal(script_run(m, "face_add vertices=3,0,4", NULL, NULL), HE_CLOSED_FAN);
     assert_equal(m, before);
-    /* Faces fill one gap after another between the fans at vertex 0 and join them, in whatever
-     * order the boundary links connect the fans. */
+    /* At vertex 0 three fans of faces meet. New faces fill the gaps between the fans one after
+     * another, independent of the order in which the boundary links the fans. */
     script_prepare(m, "face_add vertices=1,0,4");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
     assert_int_equal(script_run(m, "face_add vertices=3,0,2", NULL, NULL), HE_CLOSED_FAN);
@@ -126,8 +126,8 @@ static void deleted_faces_leave_one_hole_and_hole_fill_closes_it(void **state)
 static void a_checkerboard_has_bowties_and_can_be_rebuilt(void **state)
 {
     (void)state;
-    /* From a grid of three by three squares the white squares of a checkerboard are deleted: five
-     * faces are left that touch only at corners. */
+    /* In a grid of three by three squares, deleting every second square leaves five faces that
+     * touch only at corners. */
     he_mesh *m = script_mesh("0154,1265,2376,4598,56a9,67ba,89dc,9aed,abfe", NULL);
     script_prepare(m, "face_delete faces=1,3,5,7");
     assert_counts(m, 16, 20, 5);
@@ -173,7 +173,7 @@ static void collapsing_the_new_edge_undoes_vertex_split_corners(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
-    /* The new edge becomes a side of both faces at their corner at vertex 3. */
+    /* The new edge divides the corner of each face at vertex 3 and becomes a side of both faces. */
     script_prepare(m, "vertex_split_corners a=3-2 b=3-5");
     assert_counts(m, 7, 8, 2);
     script_prepare(m, "edge_collapse halfedge=6-3 t=1");
@@ -223,7 +223,7 @@ static void each_cube_vertex_bevels_to_a_triangle(void **state)
     }
 }
 
-/* Makes a primitive shape by its name, with these parameters. */
+/* Makes a mesh of a primitive shape by its name, with these parameters. */
 static he_mesh *make(const char *name, const double *given, size_t count)
 {
     double args[HE_SHAPE_PARAMS];
@@ -315,8 +315,8 @@ static void solids_have_their_known_counts_and_euler_number_2(void **state)
     }
 }
 
-/* After a refusal every bit must be as before: rows of deleted elements, issued ids and every
- * attribute. */
+/* If an operation is refused, the mesh must be equal to what it was before, bit by bit: with rows
+ * of deleted elements, issued ids and all attributes. */
 static void a_refusal_leaves_the_mesh_as_it_was(void **state)
 {
     (void)state;
@@ -377,8 +377,8 @@ static void an_edge_of_a_quadrilateral_can_be_flipped_and_split(void **state)
     he_mesh_free(m);
 }
 
-/* Loop's subdivision made of splits and flips: all edges are split, and then each new edge between
- * an old and a new vertex is flipped. */
+/* Loop's subdivision can be made of splits and flips: first all edges are split, then each new edge
+ * between an old and a new vertex is flipped, unless it is half of a split edge. */
 static void splits_and_flips_make_a_loop_subdivision(void **state)
 {
     (void)state;
@@ -393,7 +393,7 @@ static void splits_and_flips_make_a_loop_subdivision(void **state)
     for (uint32_t i = e; i < he_mesh_issued(m, HE_EDGE); i++) {
         he_halfedge h = he_edge_halfedge((he_edge){i}, 0);
         bool old_from = he_origin(m, h).i < v, old_to = he_target(m, h).i < v;
-        /* The first of the three edges that a split makes is the other half of the split edge. */
+        /* A split makes three edges, of which the first is one half of the split edge. */
         bool half = (i - e) % 3 == 0;
         if (old_from != old_to && !half) {
             char text[64];
@@ -411,7 +411,7 @@ static void splits_and_flips_make_a_loop_subdivision(void **state)
     he_mesh_free(m);
 }
 
-/* vertex_split followed by the collapse of its edge must give the same mesh, link by link. */
+/* Splitting a vertex and collapsing the new edge must restore the mesh, with all its links. */
 static void edge_collapse_undoes_vertex_split_link_by_link(void **state)
 {
     (void)state;
@@ -440,8 +440,8 @@ static void edge_collapse_undoes_vertex_split_link_by_link(void **state)
         snprintf(text, sizeof text, "edge_collapse halfedge=%u-%u t=1", u, cases[i].v);
         script_prepare(m, text);
         assert_valid(m);
-        /* An interior vertex may store any half-edge that leaves it, so the choice is taken from
-         * the old mesh before comparing. */
+        /* An interior vertex may store any half-edge that leaves it: v gets the half-edge that it
+         * had before, so that the meshes can be compared. */
         he_vertex v = {cases[i].v};
         if (!he_is_boundary_vertex(m, v)) {
             he_set_vertex_halfedge(m, v, he_vertex_halfedge(before, v));

@@ -1,4 +1,4 @@
-/* The cost of an operation is estimated before a worker runs it. */
+/* The daemon estimates the cost of an operation before a thread runs it. */
 #include "fixture.h"
 
 #include "algo/shape.h"
@@ -6,7 +6,8 @@
 
 enum { LONG = 5000 };
 
-/* Returns a cone: one face with many corners, and one vertex, the tip, with as many edges. */
+/* Returns a cone, whose base is one face with LONG corners and whose tip is a vertex with LONG
+ * edges. */
 static he_mesh *cone(void)
 {
     double args[HE_SHAPE_PARAMS];
@@ -56,7 +57,8 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
     (void)state;
     he_mesh *m = cone();
     uint32_t base = find_face(m, true), side = find_face(m, false);
-    he_halfedge rim = he_face_halfedge(m, (he_face){base}); /* along the base */
+    /* a half-edge of the face that is the base */
+    he_halfedge rim = he_face_halfedge(m, (he_face){base});
     uint32_t corner = he_origin(m, rim).i, edge = he_edge_of(rim).i;
     uint32_t other = he_twin(rim).i;
     const struct {
@@ -77,7 +79,7 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
         {"face_poke", "face", base, true},
         {"face_collapse", "face", side, true},
         {"face_inset", "face", side, true},
-        {"loop_join", "a", other, true}, /* the tip is a corner of the face beside it */
+        {"loop_join", "a", other, true}, /* half-edge of a triangle that has the tip as a corner */
         {"loop_join", "b", rim.i, true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -85,14 +87,14 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
         assert_true(exceeds(m, cases[i].name, cases[i].param, cases[i].id, 100) ==
                     cases[i].reaches);
         assert_false(exceeds(m, cases[i].name, cases[i].param, cases[i].id, 20 * LONG));
-        /* An operation with invalid ids is refused at once and costs nothing. */
+        /* An operation with invalid ids is refused at once, so its estimated cost is 0. */
         assert_false(exceeds(m, cases[i].name, cases[i].param, HE_MAX_ROWS, 0));
     }
     he_mesh_free(m);
 }
 
-/* Returns the estimated steps of an operation whose first parameter is an element or a list of
- * elements. */
+/* Returns the estimated number of steps of an operation whose first parameter is an element, or a
+ * list of elements. */
 static uint64_t steps_of(const he_mesh *m, const char *name, const uint32_t *ids, size_t count,
                          api_hubs *hubs)
 {
@@ -115,21 +117,21 @@ static void a_list_is_charged_for_the_hubs_it_walks_about(void **state)
     uint32_t ends[2] = {he_origin(m, rim).i, he_target(m, rim).i}, none = HE_MAX_ROWS;
     uint32_t spoke = he_edge_of(he_swing_ccw(m, rim)).i;
     api_hubs hubs = {.slots = {{0}}};
-    /* An operation whose cost is only that of the few rows it changes is not charged for the
-     * hub. */
+    /* edge_split and vertex_move change only a few rows, so they must not be charged for the many
+     * edges of the tip. */
     assert_int_equal(steps_of(m, "edge_split", &spoke, 1, &hubs), 0);
     assert_int_equal(steps_of(m, "vertex_move", ends, 2, &hubs), 0);
-    /* The weld visits the hub twice for each of the two vertices, and the base with all its
-     * corners. */
+    /* The weld visits, twice for each of the two vertices, all edges of the tip (a neighbour of
+     * both) and all corners of the base. */
     uint64_t weld = steps_of(m, "vertex_weld", ends, 2, &hubs);
     assert_true(weld > 4 * LONG && weld < 20 * LONG);
-    assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld); /* from the cached degrees */
+    /* the second time, the degrees are in the cache `hubs` */
+    assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld);
     assert_int_equal(steps_of(m, "vertex_weld", &none, 1, &hubs), 0);
     assert_true(steps_of(m, "face_split", &base, 1, &hubs) == LONG);
     assert_true(steps_of(m, "face_split", &side, 1, &hubs) == 3);
     assert_true(steps_of(m, "face_collapse", &side, 1, &hubs) > LONG);
-    /* Even with all elements in its list, no operation may cost more than a few passes over the
-     * mesh. */
+    /* The estimate for a list of all elements must not exceed a few passes over the whole mesh. */
     uint32_t *all = he_mem_array(NULL, LONG, sizeof *all);
     assert_non_null(all);
     for (uint32_t i = 0; i < LONG; i++) {

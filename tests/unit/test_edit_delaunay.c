@@ -1,5 +1,6 @@
-/* The edit `delaunay` is compared with the circle test of every edge. SEED=n in the environment
- * repeats a random run, ROUNDS=n makes it longer. */
+/* The result of the edit `delaunay` is compared with a circle test of every edge: the circle
+ * through a triangle must contain no vertex of the neighbouring triangle. The environment variable
+ * SEED=n repeats a random run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -22,7 +23,7 @@
 #include "tests/failing.h"
 #include "tests/seed.h"
 
-/* --- properties of edges, computed in another way than in the edit --- */
+/* --- properties of edges, computed in another way than the edit does --- */
 
 static bool is_inner(const he_mesh *m, uint32_t e)
 {
@@ -31,7 +32,8 @@ static bool is_inner(const he_mesh *m, uint32_t e)
            he_face_degree(m, he_face_of(m, (he_halfedge){2 * e + 1})) == 3;
 }
 
-/* Returns the angle at the corner opposite to h, by the law of cosines. */
+/* Returns the angle at the corner opposite to half-edge h in its triangle, by the law of
+ * cosines. */
 static double opposite(const he_mesh *m, he_halfedge h)
 {
     double a = he_edge_length(m, he_edge_of(h)), b = he_edge_length(m, he_edge_of(he_next(m, h)));
@@ -46,8 +48,8 @@ static bool is_clearly_crooked(const he_mesh *m, uint32_t e)
     return is_inner(m, e) && opposite(m, h) + opposite(m, he_twin(h)) > 3.14159265358979 + 1e-6;
 }
 
-/* Returns how far d is inside the circle through a, b and c in the plane z = 0, relative to the
- * size of the circle. */
+/* Returns how far inside the circle through a, b and c the point d is, relative to the size of the
+ * circle; all points have z = 0. */
 static double depth_in_circle(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
 {
     long double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y;
@@ -98,7 +100,8 @@ static void the_long_diagonal_of_a_kite_is_flipped_once(void **state)
     he_mesh_free(m);
 }
 
-/* If four points are on a circle, both diagonals are equally good, and neither may be flipped. */
+/* If four points are on one circle, both diagonals between them are equally good: neither may be
+ * flipped to the other. */
 static void neither_diagonal_of_four_points_on_a_circle_is_flipped(void **state)
 {
     (void)state;
@@ -122,11 +125,12 @@ static void an_edge_is_kept_where_a_flip_is_impossible(void **state)
         const char *mesh;
         const he_vec3 *at;
     } cases[] = {
-        {"012", KITE},             /* the edge is on the boundary */
-        {"012,1034", pentagon},    /* the edge is beside a quadrilateral */
-        {"012,103,213,023", KITE}, /* flat, but the other diagonal is there */
-        {"012,103,234", KITE},     /* the other diagonal is in a face elsewhere */
-        {"012,021", KITE},         /* two triangles back to back */
+        {"012", KITE},          /* edge 0-1, which the edit would flip, is on the boundary */
+        {"012,1034", pentagon}, /* edge 0-1 is a side of a quadrilateral */
+        /* two triangles in a plane, whose other diagonal exists as an edge already */
+        {"012,103,213,023", KITE},
+        {"012,103,234", KITE}, /* the other diagonal is an edge of a face elsewhere */
+        {"012,021", KITE},     /* two triangles back to back */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         he_mesh *m = script_mesh(cases[i].mesh, cases[i].at), *before = copy_of(m);
@@ -171,7 +175,7 @@ static void edges_marked_as_features_are_not_flipped(void **state)
     }
 }
 
-/* The mesh is tried small and far from the origin, huge, and tiny. */
+/* The kite is made small and far from the origin, huge, and tiny. */
 static void a_kite_is_flipped_at_any_scale(void **state)
 {
     (void)state;
@@ -188,7 +192,7 @@ static void a_kite_is_flipped_at_any_scale(void **state)
     }
 }
 
-/* --- points in the plane --- */
+/* --- random points in the plane --- */
 
 static bool is_left(he_vec3 a, he_vec3 b, he_vec3 p)
 {
@@ -207,8 +211,8 @@ static bool is_inside(const he_mesh *m, uint32_t f, he_vec3 p)
     return true;
 }
 
-/* Makes a square into which points are inserted; each is connected to the corners of the triangle
- * around it. */
+/* Makes a square of triangles and inserts random points: each divides the triangle around it into
+ * three. */
 static he_mesh *random_points(md_random *r, uint32_t n)
 {
     static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -242,7 +246,8 @@ static void random_points_become_delaunay_by_flips_that_can_be_repeated(void **s
         assert_valid(m);
         assert_delaunay_in_plane(m);
         assert_true(fabs(area_of(m) - 1) < 1e-9);
-        /* Applying the reported flips to the old mesh must give the new one. */
+        /* The edit reports the edges that it flipped, in order: flipping these in the old mesh must
+         * give the new one. */
         he_mesh *replay = copy_of(before);
         for (size_t i = 0; i < flips.count; i++) {
             assert_true(is_inner(replay, flips.ids[i]));
@@ -266,7 +271,7 @@ static void random_points_become_delaunay_by_flips_that_can_be_repeated(void **s
     }
 }
 
-/* Edges with a feature mark must be unchanged; all others must be Delaunay. */
+/* Edges that are marked as features must not be flipped; all others must be Delaunay afterwards. */
 static void all_edges_but_features_become_delaunay(void **state)
 {
     (void)state;
@@ -298,8 +303,9 @@ static void all_edges_but_features_become_delaunay(void **state)
     }
 }
 
-/* After a point is inserted into a Delaunay triangulation, it must suffice to name the sides of its
- * triangle: the flips spread from there (Lawson's insertion). */
+/* After a point is inserted into a Delaunay triangulation, a request that names only the sides of
+ * the triangle around it must be enough: each flip makes the edit test the neighbouring edges
+ * (Lawson's insertion). */
 static void flips_spread_from_the_listed_edges(void **state)
 {
     (void)state;
@@ -329,7 +335,8 @@ static void flips_spread_from_the_listed_edges(void **state)
     he_mesh_free(m);
 }
 
-/* An edge that is neither in the list nor beside a flip must not be tested. */
+/* The edit must test no other edges than those in the request's list and those next to a flipped
+ * edge. */
 static void edges_neither_listed_nor_beside_a_flip_are_not_flipped(void **state)
 {
     (void)state;
@@ -344,7 +351,8 @@ static void edges_neither_listed_nor_beside_a_flip_are_not_flipped(void **state)
 
 /* --- triangles in space --- */
 
-static or_mesh *shapes; /* made once, because its tables are large */
+/* memory of the random shapes, allocated once because its tables are large */
+static or_mesh *shapes;
 
 static bool random_triangles(md_random *r, he_mesh **out)
 {
@@ -382,7 +390,8 @@ static void flips_in_space_end_and_never_enlarge_the_area(void **state)
         double area = area_of(m);
         assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
         assert_valid(m);
-        /* The total area must not grow: by this bound delaunay.h proves that the flips end. */
+        /* The total area of the triangles must not grow, as the proof in delaunay.h that the edit
+         * terminates assumes. */
         assert_true(area_of(m) <= area * (1 + 1e-9));
         all += flips.count;
         for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
@@ -404,9 +413,8 @@ static void flips_in_space_end_and_never_enlarge_the_area(void **state)
 
 /* --- work --- */
 
-/* Makes two rows of points; all triangles on the lower row share one point of the upper row,
- * and the other way round, so that the number of flips grows with the square of the number of
- * points. */
+/* Makes two rows of points: all triangles with a side in the lower row share one point of the upper
+ * row, and the other way round. The number of necessary flips grows with the square of n. */
 static he_mesh *two_rows(uint32_t n)
 {
     he_soup soup;
@@ -447,8 +455,8 @@ static void too_many_flips_are_refused_without_change(void **state)
     he_mesh_free(m);
 }
 
-/* However many flips there are, the delta must not be longer than the number of words in the mesh,
- * and must undo and redo them. */
+/* However many flips an edit makes, its delta must not be longer than the number of words in the
+ * mesh, and must undo and redo all flips. */
 static void the_record_of_many_flips_is_no_larger_than_the_mesh(void **state)
 {
     (void)state;
@@ -474,7 +482,8 @@ static void the_record_of_many_flips_is_no_larger_than_the_mesh(void **state)
     he_mesh_free(m);
 }
 
-/* A vertex has ten thousand edges: no flip may visit all of them. */
+/* A vertex has ten thousand edges: if each flip visited all of them, the edit would take quadratic
+ * time. */
 static void a_vertex_of_10000_edges_takes_no_quadratic_time(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* Welds with `keep` preserve the values of vertices: where the values of merged vertices differ,
- * they move to the corners of faces, and undo moves them back. */
+/* A weld with the option `keep` preserves attribute values of vertices: where the values of merged
+ * vertices differ, the attribute becomes one of the corners of faces, and undo makes it one of the
+ * vertices again. */
 #include "unit/edit_script.h"
 
 #include "mesh/check.h"
@@ -15,11 +16,12 @@
 
 #include <cmocka.h>
 
-/* The vertices 1 and 5 have equal positions, and so have 2 and 4. */
+/* Vertices 1 and 5 have equal positions, and vertices 2 and 4 have, too. */
 static const he_vec3 beside[6] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}};
 #define BESIDE "012,345"
 
-/* Adds a column of two doubles, 10 * row + 1 and 7, or of one bool that is true. */
+/* Adds a column of attribute values: one bool per row that is true, or two doubles per row, which
+ * in row i are 10 * i + 1 and 7. */
 static he_column *add_column(he_mesh *m, he_kind domain, const char *name, he_type type,
                              he_rule rule)
 {
@@ -53,7 +55,8 @@ static double first_of(const he_column *column, uint32_t row)
     return value;
 }
 
-/* Requires these values at the corners of a face, whichever corner is the first. */
+/* Requires that the attribute has the values a, b and c at the corners of the face, in this order
+ * but starting at any corner. */
 static void expect_corners(const he_mesh *m, const char *name, uint32_t face, double a, double b,
                            double c)
 {
@@ -166,8 +169,8 @@ static void an_attribute_that_corners_have_is_not_changed(void **state)
     }
 }
 
-/* A vertex without faces has no corners to which its value could move, so the attribute must stay
- * one of vertices if such a vertex has a value other than the default. */
+/* The value of a vertex without faces cannot move to corners: if it is not the default, the
+ * attribute must stay one of the vertices. */
 static void vertices_without_corners_keep_the_attribute(void **state)
 {
     (void)state;

@@ -1,12 +1,12 @@
-/* Lists of ids: the first repeated id is found in short, dense and sparse lists, with memory that
- * does not depend on the size of the mesh. */
+/* The search for the first repeated id in a list: it must work if ids are few or many, close
+ * together or far apart, and its memory must not depend on the size of the mesh. */
 #include "fixture.h"
 
 #include "edit/piece/list.h"
 
 enum { COUNT = 1000 };
 
-/* The size of the largest block that was requested. */
+/* size of the largest block of memory that was requested */
 static size_t largest;
 
 static void *measure(void *context, void *memory, size_t size)

@@ -1,5 +1,5 @@
-/* Joining and splitting loops, and bridges between them: the cases of the design, surviving ids,
- * inverse edits, and the twist of a bridge. */
+/* Edits that join, split and bridge loops of edges: cases from the design documents, which ids
+ * survive, which edits undo each other, and how far a bridge is twisted. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -21,11 +21,11 @@
 
 #define CF4       "023,321,031,647,675,745"
 #define BIPYRAMID "013,123,203,104,214,024"
-/* Two open cylinders of six sides each: the vertices 0 to b and c to n. */
+/* Two open cylinders of six sides each, with the vertices 0 to b and c to n (b is 11, n is 23). */
 #define CYLINDERS "0176,1287,2398,34a9,45ba,506b,cdji,dekj,eflk,fgml,ghnm,hcin"
 
-/* Requires that the links of two meshes are equal, except that a vertex may store any of the
- * half-edges that it is allowed to. */
+/* Requires that the links of two meshes are equal; only the half-edge that a vertex stores may
+ * differ, if both are valid. */
 static void assert_same_links(he_mesh *m, const he_mesh *other)
 {
     for (uint32_t v = 0; v < he_mesh_issued(other, HE_VERTEX); v++) {
@@ -58,8 +58,8 @@ static void a_bridge_and_a_join_make_a_torus_of_two_cylinders(void **state)
     m = script_mesh(CYLINDERS, NULL);
     assert_counts(m, 24, 36, 12);
     assert_loops(m, "6666");
-    /* Bridges join the top of one cylinder to the bottom of the other, and then the remaining ends,
-     * which makes a torus. */
+    /* A bridge connects one end of the first cylinder to one of the second; then the two open ends
+     * that are left are joined, which makes a torus. */
     script_prepare(m, "loop_bridge a=6-7 b=13-12");
     assert_valid(m);
     assert_counts(m, 24, 42, 18);
@@ -85,8 +85,9 @@ static void the_first_loop_survives_loop_join(void **state)
     script_prepare(m, "loop_join a=2-0 b=4-6");
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
-    /* The target of half-edge b is merged into the origin of half-edge a, and so on around the
-     * loops, in pairs "merged, into". */
+    /* The target of half-edge b is merged into the origin of half-edge a, and so are the vertices
+     * that follow along both loops. Of each pair here, the first vertex is merged into the
+     * second. */
     static const uint32_t merged[] = {6, 2, 4, 0, 5, 1};
     assert_int_equal(changes.merged[HE_VERTEX].count, 6);
     for (unsigned i = 0; i < 6; i++) {
@@ -114,7 +115,8 @@ static void loop_split_reports_the_new_vertices_edges_and_faces(void **state)
     assert_int_equal(he_loop_split(m, a, c, b, &parts, NULL), HE_OK);
     assert_valid(m);
     assert_int_equal(euler_of(m), 4);
-    /* Half-edge 2a runs from 0 to 1 with face 0 on its left. */
+    /* Half-edge 2a runs from 0 to 1 in face 0. The loop 0-1-2 is cut open: faces 3 to 5 get copies
+     * 5, 6 and 7 of its vertices, and both sides are closed by a face. */
     static const char *const faces[] = {"013", "123", "203", "654", "764", "574", "102", "567"};
     for (uint32_t f = 0; f < 8; f++) {
         assert_face(m, f, faces[f]);
@@ -144,11 +146,11 @@ static void loop_join_undoes_loop_split(void **state)
     } cases[] = {
         {BIPYRAMID, {0, 1, 2}},
         {BIPYRAMID, {2, 1, 0}},
-        /* The cycle consists of the sides of a face of an octahedron; the face is divided by a
-         * vertex in its middle. */
+        /* The cycle 0-1-2 surrounds a face of an octahedron that is divided into three
+         * triangles. */
         {"016,126,206,023,034,041,521,532,543,514", {0, 1, 2}},
-        /* Cycles around the hole and through the tube of a torus of three by three squares, each
-         * cut in two. */
+        /* The mesh is a torus of three by three squares, each cut into two triangles; the first
+         * cycle runs around it the long way, the second one through its tube. */
         {"014,043,125,154,203,235,347,376,458,487,536,568,671,610,782,721,860,802", {0, 1, 2}},
         {"014,043,125,154,203,235,347,376,458,487,536,568,671,610,782,721,860,802", {0, 3, 6}},
     };
@@ -170,8 +172,8 @@ static void loop_join_undoes_loop_split(void **state)
         assert_int_equal(he_face_of(m, other).i, parts.faces[1].i);
         assert_int_equal(he_loop_join(m, there, other, NULL, NULL), HE_OK);
         assert_valid(m);
-        /* A face may store another of its half-edges, so the choice is taken from the old mesh; the
-         * corners must have equal values. */
+        /* A face may store any of its half-edges: each gets the one that it had before, so that the
+         * meshes can be compared. */
         for (uint32_t f = 0; f < he_mesh_issued(before, HE_FACE); f++) {
             he_set_face_halfedge(m, (he_face){f}, he_face_halfedge(before, (he_face){f}));
         }
@@ -222,8 +224,8 @@ static void deleting_the_new_faces_undoes_loop_bridge(void **state)
 
 static const double TURN = 6.283185307179586;
 
-/* Makes a disk of n corners below one of k corners, which is rotated by `turn`; the two face each
- * other, and positions are scaled by `scale`. */
+/* Makes a disk with n corners and, parallel above it, one with k corners that is rotated by the
+ * angle `turn`; the two faces look at each other. All positions are multiplied by `scale`. */
 static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
 {
     he_soup soup;
@@ -247,7 +249,7 @@ static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
     return m;
 }
 
-/* Returns the angle by which an edge turns from its lower to its upper end, as a part of a full
+/* Returns the angle around the z axis between the two ends of an edge, as a fraction of a full
  * turn. */
 static double twist_of(const he_mesh *m, uint32_t e)
 {
@@ -274,7 +276,7 @@ static double bridge_disks(he_mesh *m, uint32_t n, uint32_t k)
         assert_true(he_origin(m, rung).i < n && he_target(m, rung).i >= n);
         assert_int_equal(he_face_of(m, he_twin(rung)).i, bridge.faces.ids[i]);
     }
-    /* The first of the new edges leaves the origin of half-edge a. */
+    /* The first edge of the bridge must begin at the origin of half-edge a. */
     assert_int_equal(he_origin(m, (he_halfedge){2 * bridge.edges.ids[0]}).i, 1);
     he_bridge_clear(&bridge);
     return most;
@@ -309,8 +311,8 @@ static void a_bridge_of_unequal_loops_is_not_twisted(void **state)
     }
 }
 
-/* The corners of one loop are all nearest to the same corner of the other loop, so that many
- * triangles of the bridge meet there. */
+/* All corners of the small loop are nearest to one corner of the large loop, so many triangles of
+ * the bridge meet at this corner. */
 static void a_small_loop_at_one_corner_of_a_large_one_is_bridged(void **state)
 {
     (void)state;
@@ -333,7 +335,8 @@ static void a_small_loop_at_one_corner_of_a_large_one_is_bridged(void **state)
     }
 }
 
-/* The loop visits vertex 0 twice, and both gaps there are filled, so that its fans become one. */
+/* One loop passes the bow-tie 0 twice. The bridge fills both gaps between the two fans there, so
+ * the fans become one. */
 static void a_bridge_joins_the_fans_of_a_bowtie_and_loop_join_does_not(void **state)
 {
     (void)state;
@@ -346,8 +349,7 @@ static void a_bridge_joins_the_fans_of_a_bowtie_and_loop_join_does_not(void **st
     assert_false(he_is_boundary_vertex(m, (he_vertex){0}));
     he_mesh_free(m);
 
-    /* If a fan at a bow-tie is joined to a hole at one of its gaps, it stays separate from the
-     * other fan. */
+    /* A join with a hole closes only one gap at the bow-tie 0, so its two fans stay separate. */
     m = script_mesh("012,034,567", NULL);
     script_prepare(m, "loop_join a=0-1 b=6-5");
     assert_valid(m);

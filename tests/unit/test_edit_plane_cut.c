@@ -1,5 +1,5 @@
-/* Cutting a mesh by a plane: both parts together must be the whole mesh, and caps must close
- * them. */
+/* Cutting a mesh by a plane: the parts above and below the plane together must be the whole mesh,
+ * and caps must close the cuts. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@
 
 static const he_vec3 ORIGIN = {0, 0, 0}, UP = {0, 0, 1};
 
-/* Two steps of a stair: 2 wide, 2 high at the back, 1 high in front. */
+/* A stair with two steps: 2 wide, 2 high at the back and 1 high in front. */
 #define STAIRS "0176,1287,2398,34a9,45ba,506b,543210,6789ab"
 static const he_vec3 STAIRS_LIE[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2},
                                      {2, 0, 2}, {2, 0, 0}, {0, 1, 0}, {0, 1, 1},
@@ -35,7 +35,7 @@ static double volume(const he_mesh *m)
     return measures.volume;
 }
 
-/* Makes a closed shape of triangles by its name. */
+/* Makes a mesh of triangles of the closed primitive shape `name`. */
 static he_mesh *shape(const char *name)
 {
     he_soup soup;
@@ -68,7 +68,8 @@ static he_mesh *part_of(const he_mesh *m, he_vec3 at, he_vec3 normal, he_cut_sid
     return part;
 }
 
-/* Cuts a closed mesh into two parts and checks them; returns the number of caps of each part. */
+/* Cuts a closed mesh into the parts above and below a plane, and checks both. Returns the number of
+ * caps (faces that close the cut), which must be equal for both parts. */
 static size_t check_halves(const he_mesh *m, he_vec3 at, he_vec3 normal)
 {
     double whole = volume(m), around = area_of(m), volumes = 0, areas = 0;
@@ -127,7 +128,8 @@ static void the_halves_of_a_cut_make_up_the_whole(void **state)
     }
 }
 
-/* A face that lies in the plane belongs to the part of which it is an outer face. */
+/* A face that lies in the cutting plane belongs to that part of the mesh of which it is a part of
+ * the surface. */
 static void a_face_in_the_plane_goes_to_the_part_it_bounds(void **state)
 {
     (void)state;
@@ -166,7 +168,7 @@ static void a_face_in_the_plane_goes_to_the_part_it_bounds(void **state)
 static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **state)
 {
     (void)state;
-    /* A hole that the plane does not meet must be unchanged. */
+    /* A hole of the mesh that the plane does not meet must stay a hole. */
     he_mesh *m = shape("icosphere");
     script_prepare(m, "face_delete face=0");
     he_vec3 hole = {0, 0, 0};
@@ -187,8 +189,8 @@ static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **sta
     assert_int_equal(euler_of(part), 2);
     he_mesh_free(part);
 
-    /* If the plane meets a hole, the cut is an open line: with caps the operation must be refused,
-     * without caps it must succeed. */
+    /* A plane through a hole cuts the mesh along an open line, which no cap can close: with caps
+     * the operation must be refused, without caps it must succeed. */
     he_vec3 across = he_vec3_cross(hole, UP), at = he_vec3_scale(hole, 1.0 / 3);
     he_error err = {.status = HE_OK};
     part = copy_of(m);
@@ -229,7 +231,8 @@ static void corners_within_the_tolerance_lie_in_the_plane(void **state)
     const he_vec3 at = {0, 0, 0.05};
     he_cut_parts parts;
     he_mesh *m = script_mesh(STAIRS, STAIRS_LIE), *before = copy_of(m);
-    /* The bottom of the stair lies in the plane and faces down, so the part above keeps it. */
+    /* The bottom of the stair lies in the plane, within the tolerance, and looks down: the part
+     * above the plane must keep this face. */
     assert_int_equal(he_plane_cut(m, &(he_plane){at, UP, &near}, HE_CUT_ABOVE, true, &parts, NULL),
                      HE_OK);
     assert_int_equal(parts.edges_split, 0);

@@ -1,5 +1,5 @@
-/* plane_split is compared with counts and measures that are computed in another way. SEED=n in the
- * environment repeats a random run, ROUNDS=n makes it longer. */
+/* The edit plane_split is compared with counts and areas that the test computes in another way. The
+ * environment variable SEED=n repeats a random run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -40,7 +40,8 @@ static he_mesh *shape(const char *name, double first, double second)
     return m;
 }
 
-/* Returns the side of the plane on which a vertex lies, with no tolerance except for rounding. */
+/* Returns whether a vertex lies above the plane (1), below it (-1) or in it (0), with a tolerance
+ * for rounding only. */
 static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
 {
     he_vec3 p = he_position(m, v);
@@ -48,8 +49,8 @@ static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
     return fabs(d) < 1e-7 ? 0 : d > 0 ? 1 : -1;
 }
 
-/* How a face lies relative to the plane: whether it has corners on both sides, which corners lie in
- * the plane, and which sides cross it. */
+/* How a face lies relative to a plane: whether it has corners above and below, how many corners lie
+ * in the plane, and how many sides cross it. */
 typedef struct look {
     bool above, below;
     uint32_t in_plane, crossings;
@@ -96,8 +97,8 @@ static void assert_same_topology(const he_mesh *m, const he_mesh *before)
     he_topology_clear(&b);
 }
 
-/* Predicts the numbers of vertices, edges and faces from the old faces and edges; faces with
- * corners in the plane must be convex. */
+/* Checks the numbers of new vertices, edges and faces, which can be predicted from the old mesh;
+ * for faces with corners in the plane the prediction is exact only if they are convex. */
 static void assert_predicted(const he_mesh *before, const he_plane_parts *parts, he_vec3 point,
                              he_vec3 normal, bool convex)
 {
@@ -125,8 +126,8 @@ static void assert_predicted(const he_mesh *before, const he_plane_parts *parts,
     assert_true(exact ? parts->faces.count == least : parts->faces.count >= least);
 }
 
-/* Splits the mesh, and checks everything that must hold for any mesh. Returns false if the split
- * was refused. */
+/* Splits the faces of the mesh by a plane, and checks all that can be predicted. Returns false if
+ * the split was refused. */
 static bool split_and_check(he_mesh *m, he_vec3 point, he_vec3 normal, bool convex)
 {
     he_mesh *before = copy_of(m);
@@ -210,8 +211,8 @@ static void a_square_is_cut_only_if_corners_lie_on_both_sides(void **state)
     }
 }
 
-/* The part with the side that begins at the origin of the face's stored half-edge must keep
- * the id. */
+/* If a face is split, the part that has the origin of the face's stored half-edge must keep the
+ * face's id. */
 static void the_part_of_the_first_side_keeps_the_id_of_the_face(void **state)
 {
     (void)state;
@@ -246,7 +247,8 @@ static void the_part_of_the_first_side_keeps_the_id_of_the_face(void **state)
     he_mesh_free(m);
 }
 
-/* Only listed faces are cut; a neighbour that is not listed gets the new vertex as a corner. */
+/* Only the faces in the request's list are split. The neighbour of a split face gets the new vertex
+ * on their common edge as a corner, but stays whole if it is not in the list. */
 static void only_listed_faces_are_cut_and_neighbours_get_the_corner(void **state)
 {
     (void)state;
@@ -258,7 +260,8 @@ static void only_listed_faces_are_cut_and_neighbours_get_the_corner(void **state
     assert_int_equal(he_face_degree(m, (he_face){0}), 4);
     assert_int_equal(he_face_degree(m, (he_face){1}), 5);
     assert_int_equal(he_face_degree(m, (he_face){2}), 4);
-    /* A second split must use the corner that the first one gave to the neighbours. */
+    /* The neighbours already have a corner on the plane: a second split must use this corner
+     * instead of making another one. */
     script_prepare(m, "plane_split point=0,0.5,0 normal=0,1,0 faces=2,1,0,3");
     assert_counts(m, 12, 17, 6);
     he_mesh_free(m);
@@ -284,8 +287,9 @@ static void values_are_copied_to_parts_and_interpolated_at_the_cut(void **state)
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     }
     script_prepare(m, "plane_split point=0.25,0,0 normal=1,0,0");
-    /* Vertex 4 lies between 0 and 1, edge 4 came from edge 0, and face 1 from face 0. The corner at
-     * 4 in face 0 lies between those at 0 and 1, whose half-edges are 0 and 2. */
+    /* The split makes vertex 4 between 0 and 1, edge 4 from edge 0, and face 1 from face 0. Corner
+     * values at vertex 4 in face 0 lie between those of half-edges 0 and 2, the corners at 0 and
+     * 1. */
     const struct {
         he_kind domain;
         uint32_t row;
@@ -339,7 +343,8 @@ static void what_cannot_be_cut_is_refused_and_changes_nothing(void **state)
         assert_int_equal(parts.faces_split, 77);
         assert_equal(m, before);
     }
-    /* The mesh has two sheets, of which one can be cut alone. */
+    /* The plane meets two sheets of faces: splitting both is refused, but one sheet can be split
+     * alone. */
     script_prepare(m, "plane_split point=0.5,0,0 normal=1,0,0 faces=1");
     assert_counts(m, 6, 7, 3);
     he_mesh_free(before);
@@ -364,7 +369,7 @@ static double area2(const he_mesh *m, const point *at, uint32_t f)
     return sum;
 }
 
-/* Puts points into a tilted plane far from the origin; `back` does the opposite. */
+/* Maps a point to a tilted plane far from the origin; back() is the inverse. */
 static he_vec3 lay(point p, double scale)
 {
     return (he_vec3){scale * (0.6 * p.x - 0.48 * p.y + 10), scale * (0.8 * p.y + 3),
@@ -377,8 +382,8 @@ static point back(he_vec3 p, double scale)
     return (point){0.6 * q.x + 0.8 * q.z, q.y / 0.8};
 }
 
-/* Cuts a polygon by the line y = height: there must be `parts` parts, none of them turned over, and
- * their areas must add up. */
+/* Splits a polygon at the line y = height: there must be `parts` parts, none of them turned over,
+ * and their areas must add up to that of the polygon. */
 static void check_cut(const point *points, uint32_t n, double height, uint32_t parts, double scale)
 {
     he_soup soup;
@@ -394,8 +399,8 @@ static void check_cut(const point *points, uint32_t n, double height, uint32_t p
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    /* The normal of the cutting plane lies within the polygon's plane, so that y is the distance
-     * along it. */
+    /* The normal lies in the tilted plane of the polygon and has the direction of the y axis of the
+     * polygon's points. */
     he_vec3 normal = {-0.48, 0.8, 0.36};
     assert_int_equal(he_plane_split(m, &(he_plane){lay((point){5, height}, scale), normal, NULL},
                                     NULL, 0, NULL, NULL),
@@ -473,8 +478,8 @@ static void a_comb_of_3000_teeth_is_cut_into_teeth_and_back(void **state)
     free(points);
 }
 
-/* The polygons have corners at integer heights and are cut at integer heights: corners and sides
- * lie in the plane and touch it from above and below, also at the ends. */
+/* Polygons with corners at integer heights are split at integer heights, so that corners and sides
+ * lie in the cutting plane or touch it from above or below, also at the ends of the polygon. */
 static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **state)
 {
     (void)state;
@@ -494,13 +499,13 @@ static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **sta
         for (uint32_t i = n + 1; i-- > 0;) {
             points[count++] = (point){i, h[i]};
         }
-        /* Each side that rises above the line begins a part, unless it continues a side that is
-         * above already. */
+        /* A side of the polygon with an end above the cutting line begins a new part, unless the
+         * side before it ends above this line. */
         for (uint32_t i = 0; i < n; i++) {
             above += h[i] > cut || h[i + 1] > cut;
             above -= i > 0 && h[i] > cut;
         }
-        /* The polygon is also tried with each corner as the first one. */
+        /* The polygon begins at a random corner. */
         point turned[16];
         uint32_t start = md_below(&r, count);
         for (uint32_t i = 0; i < count; i++) {
@@ -527,14 +532,16 @@ static void cut_shapes_keep_topology_and_area_with_faces_on_one_side(void **stat
         for (unsigned k = 0; k < 20; k++) {
             print_message("%s, plane %u\n", names[i], k);
             he_mesh *m = shape(names[i], 0, 0);
-            /* The quadrilaterals of the torus need not be planar, so its area may change. */
+            /* Quadrilaterals of the torus need not be planar, so a split may change the torus's
+             * area. */
             bool flat = strcmp(names[i], "torus") != 0;
             double area = area_of(m);
             he_vec3 normal = k == 0 ? UP : random_vector(&r);
             he_vec3 at = k < 2 ? ORIGIN : he_vec3_scale(random_vector(&r), 0.3);
             assert_true(split_and_check(m, at, normal, true));
             assert_true(!flat || fabs(area_of(m) - area) < 1e-9 * area);
-            /* The mesh is cut repeatedly, as a sheet that is folded. */
+            /* The mesh is split again and again by planes in random directions through one
+             * point. */
             for (unsigned fold = 0; fold < 4; fold++) {
                 assert_true(split_and_check(m, at, random_vector(&r), flat));
             }
@@ -544,7 +551,8 @@ static void cut_shapes_keep_topology_and_area_with_faces_on_one_side(void **stat
     }
 }
 
-static or_mesh *shapes; /* made once, because its tables are large */
+/* memory of the random shapes, allocated once because its tables are large */
+static or_mesh *shapes;
 
 static he_mesh *random_mesh(md_random *r)
 {
@@ -571,7 +579,7 @@ static bool triangulate(he_mesh *m)
     return done;
 }
 
-/* Draws a plane through three vertices, or a random one. */
+/* Chooses a plane through three vertices of the mesh, or a random plane. */
 static void random_plane(const he_mesh *m, md_random *r, he_vec3 *at, he_vec3 *normal)
 {
     uint32_t n = he_mesh_issued(m, HE_VERTEX);

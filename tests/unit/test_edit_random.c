@@ -1,6 +1,7 @@
-/* Random operations on small meshes, some with bow-ties: after each the mesh must pass he_check, a
- * refusal must be one that the operation's row declares and must change nothing, and the delta must
- * undo and redo. SEED=n in the environment repeats a run, ROUNDS=n makes it longer. */
+/* Random operations on small meshes, some of which have bow-ties. After each operation the mesh
+ * must pass he_check, a refusal must have changed nothing and must be one that the operation
+ * declares, and undo and redo must work. The environment variable SEED=n repeats a run, ROUNDS=n
+ * makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -19,8 +20,8 @@ enum { LONGEST = 12, MOST_VERTICES = 48 };
 
 static uint64_t random_state;
 
-/* Returns a pseudo-random number: Steele, Lea and Flood, "Fast splittable pseudorandom number
- * generators", 2014. */
+/* Returns a pseudo-random number below n, by the method of Steele, Lea and Flood, "Fast splittable
+ * pseudorandom number generators", 2014. */
 static uint32_t random_below(uint32_t n)
 {
     uint64_t z = random_state += 0x9E3779B97F4A7C15u;
@@ -46,8 +47,8 @@ static uint32_t random_id(const he_mesh *m, he_kind kind)
     return random_below(issued + 2);
 }
 
-/* Returns a random neighbour of a vertex or a random corner of a face, so that arguments often fit
- * together. */
+/* Returns a random neighbour of a vertex or a random corner of a face. Operations with two
+ * arguments succeed more often if their second argument is such a vertex. */
 static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
 {
     bool face = kind == HE_FACE;
@@ -63,7 +64,8 @@ static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
     return he_target(m, h).i;
 }
 
-/* Draws the corners of a new face, often along a hole, so that the face can be added. */
+/* Chooses random corners for a new face; they often follow the boundary of a hole, where a face can
+ * be added. */
 static size_t random_cycle(const he_mesh *m, uint32_t *ids)
 {
     size_t n = 2 + random_below(4);
@@ -81,7 +83,7 @@ typedef struct storage {
     he_vec3 points[LONGEST];
 } storage;
 
-static he_mesh *other; /* the mesh that append adds */
+static he_mesh *other; /* the mesh that the operation `append` adds */
 
 static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, storage *stores)
 {
@@ -113,7 +115,8 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
     case HE_PARAM_NUMBER:
         arg->number = param->min + random_unit() * (param->max - param->min);
         if (param->flags &
-            HE_WHOLE) { /* many steps would make the mesh large, or remove all of it */
+            /* the number is limited, as many steps would make the mesh large or remove all of it */
+            HE_WHOLE) {
             arg->number = param->max < 1e6 ? param->min : random_below(100);
         }
         return;
@@ -155,8 +158,8 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         if (param->group != 0) {
-            /* Two alternative parameters follow each other; the choice between them was made at the
-             * first. */
+            /* Two alternative parameters follow each other in the list; the loop chose one of them
+             * when it came to the first. */
             if (i > 0 && op->params[i - 1].group == param->group) {
                 continue;
             }
@@ -168,7 +171,8 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     }
 }
 
-/* Requires that the reported sets are empty exactly if both meshes are equal. */
+/* Requires that the reported sets of changed elements are empty if both meshes are equal, and only
+ * then. */
 static void require_honest_changes(const he_mesh *before, const he_mesh *m, const he_delta *delta)
 {
     he_changes changes;
@@ -179,7 +183,7 @@ static void require_honest_changes(const he_mesh *before, const he_mesh *m, cons
     he_changes_clear(&changes);
 }
 
-/* Runs one random operation; returns whether it succeeded. */
+/* Runs an operation with random arguments, and checks the result; returns whether it succeeded. */
 static bool step(he_mesh *m, const he_op *op)
 {
     he_arg args[HE_OP_PARAMS];
@@ -232,8 +236,8 @@ static void random_edits_keep_every_promise_of_their_row(void **state)
     script_add_columns(other);
     for (uint64_t round = 0; round < rounds; round++) {
         random_state = seed + round;
-        /* Each round prints how to repeat it, so that the last line printed before a failure shows
-         * this. */
+        /* If a check fails in this round, the line printed here is the last one before the failure:
+         * it shows how to repeat the round. */
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)random_state);
         he_mesh *m = script_mesh(starts[round % (sizeof starts / sizeof *starts)], NULL);
         script_add_columns(m);
@@ -252,7 +256,8 @@ static void random_edits_keep_every_promise_of_their_row(void **state)
         all += done[i];
     }
     he_mesh_free(other);
-    /* Enough steps must succeed; otherwise the arguments are chosen badly. */
+    /* A test in which nearly all operations are refused would show little: at least ten per round
+     * must succeed. */
     assert_true(all > 10 * rounds);
 }
 

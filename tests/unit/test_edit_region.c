@@ -1,5 +1,5 @@
-/* Extruding and insetting regions, collapsing and reversing faces, duals and appending: surviving
- * ids, positions, and attributes. */
+/* Edits that extrude and inset regions of faces, collapse and reverse faces, make the dual of a
+ * mesh, and append a mesh: which ids survive, positions, and attribute values. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@
 
 #define QCUBE "0123,7654,1045,2156,3267,0374"
 
-/* A unit square in the plane z = 0 and, beside it, a triangle. */
+/* Positions of the corners of a unit square in the plane z = 0 and of a triangle beside it. */
 static const he_vec3 flat[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0.5, 0}};
 
 static const he_vec3 cube[] = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0},
@@ -45,7 +45,7 @@ static void run(he_mesh *m, const char *operation)
     assert_valid(m);
 }
 
-/* makes a grid of columns by columns quads */
+/* makes a square grid of columns x columns quadrilaterals */
 static he_mesh *grid(uint32_t columns)
 {
     he_soup soup;
@@ -104,7 +104,8 @@ static void a_region_moves_as_one_with_what_is_inside(void **state)
     assert_counts(m, 25 + 8, 40 + 16, 16 + 8);
     assert_at(m, 12, 2, 2, 3);
     assert_at(m, 6, 1, 1, 0);
-    /* One end of the inner edge is a new vertex, so the edge has moved, too. */
+    /* The inner edge 12-13 belongs to the extruded region: its end 13, at the rim of the region,
+     * must have become a new vertex. */
     he_halfedge h = he_edge_halfedge(inner, 0);
     h = he_origin(m, h).i == 12 ? h : he_twin(h);
     assert_int_equal(he_origin(m, h).i, 12);
@@ -229,8 +230,8 @@ static void an_inset_ends_before_a_side_vanishes(void **state)
     he_mesh_free(m);
 }
 
-/* The reflex corner would meet the side below before any side vanishes, so the inset must end
- * there. */
+/* The face has a reflex corner (the angle inside is more than 180 degrees). While the inset grows,
+ * this corner would meet the side below before any side vanishes: the inset must end there. */
 static void an_inset_ends_before_a_reflex_corner_meets_a_side(void **state)
 {
     (void)state;
@@ -254,7 +255,7 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     assert_at(m, 25, 1.25, 1.25, 0);
     assert_counts(m, 33, 56, 24);
     he_mesh_free(m);
-    /* The rim moves towards the inner vertex, but must never reach it. */
+    /* The rim of the region moves towards the vertex in its middle, but must never reach it. */
     m = grid(4);
     run(m, "face_inset faces=5,6,9,10 distance=9 region=1");
     assert_at(m, 12, 2, 2, 0);
@@ -262,8 +263,8 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     he_mesh_free(m);
 }
 
-/* If the values at the corners are linear in the plane, each new vertex must get the value of the
- * linear function at its position. */
+/* If the values at a face's corners are a linear function of their positions, the values at the new
+ * vertices of an inset must be the values of this function at their positions. */
 static void values_of_an_inset_are_those_at_its_place(void **state)
 {
     (void)state;
@@ -312,7 +313,8 @@ static void values_of_an_inset_are_those_at_its_place(void **state)
     }
 }
 
-/* The values are not linear; each new one must still lie between the values of the corners. */
+/* Even if the values at a face's corners are no linear function of their positions, the values at
+ * new vertices must lie between them. */
 static void values_of_an_inset_lie_between_those_of_its_corners(void **state)
 {
     (void)state;
@@ -468,8 +470,8 @@ static void the_dual_of_a_cube_is_an_octahedron(void **state)
     he_mesh_free(m);
 }
 
-/* Returns the position of a vertex among the live ones, to compare the corners of faces of two
- * meshes. */
+/* Returns how many vertices with smaller ids than v are live. By these numbers, vertices of two
+ * meshes can be compared although their ids differ. */
 static uint32_t rank_of(const he_mesh *m, uint32_t v)
 {
     uint32_t rank = 0;
@@ -491,8 +493,8 @@ static void the_dual_of_the_dual_has_the_links_of_the_mesh(void **state)
         assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
         uint32_t first = he_mesh_issued(m, HE_EDGE) - he_mesh_edges(m);
         for (uint32_t h = 0; h < 2 * he_mesh_edges(m); h++) {
-            /* The dual turns each edge by a quarter, so applying it twice must reverse each
-             * edge. */
+            /* The dual of a mesh turns each edge by a right angle, so the dual of the dual has each
+             * half-edge in the opposite direction. */
             he_halfedge old = {h}, new = {2 * first + (h ^ 1)};
             assert_int_equal(he_next(m, new).i, 2 * first + (he_next(before, old).i ^ 1));
             assert_int_equal(rank_of(m, he_origin(m, new).i), he_origin(before, old).i);

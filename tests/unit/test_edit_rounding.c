@@ -1,5 +1,6 @@
-/* Rounding may decide whether an edit moves a vertex: edits use the position that they compute, and
- * the oracle, which computes its own, must accept both outcomes. */
+/* Rounding can decide whether an edit moves a vertex. The edit and the oracle (the tests' own model
+ * of the edit) compute the new position in different ways, so the oracle must accept both
+ * outcomes. */
 #include "edit_script.h"
 #include "model/corpus.h"
 #include "model/marks.h"
@@ -15,11 +16,12 @@
 #include <cmocka.h>
 
 #define HEXAGON "012,023,034,045,056,061"
-/* Two doubles with none between them. */
+/* two neighbouring doubles, with no other double between them */
 #define TARGET 0.87518049095669803
 #define ORIGIN 0.87518049095669814
 
-/* Makes a mesh in which vertex 0 is at `x` and vertex 1 at TARGET, where a mark keeps vertex 1. */
+/* Makes a mesh with vertex 0 at `x` and vertex 1 at TARGET; the script `mark` marks elements so
+ * that vertex 1 must not move. */
 static he_mesh *kept(double x, const char *mark)
 {
     const he_vec3 positions[] = {{x, 0, 0},    {TARGET, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -76,8 +78,9 @@ test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves(void
     he_mesh_free(m);
 }
 
-/* face_collapse merges the corners of a face in several steps; if hedge refuses one, the oracle
- * must go back to before all of them. */
+/* In the oracle (the tests' own model of edits), face_collapse merges the corners of a face one
+ * after another; if the real edit refuses a merge, the oracle must go back to its state before the
+ * first. */
 static void the_oracle_goes_back_before_all_steps_of_a_face(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Which element keeps its id in an edit, and which parents and merges the edit reports. */
+/* Which of the old elements keep their ids in an edit, and which parents and merges the edit
+ * reports. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -48,7 +49,8 @@ static void edge_bisect_keeps_the_id_for_the_part_at_the_origin(void **state)
 {
     (void)state;
     edit e = edit_begin("0123");
-    /* Edge 0 runs from vertex 0 to vertex 1. */
+    /* Edge 0 runs from vertex 0 to vertex 1; the bisection must keep its id for the part at vertex
+     * 0. */
     edit_run(&e, "edge_bisect edge=#0 t=0.25");
     assert_int_equal(he_target(e.m, (he_halfedge){0}).i, 4);
     assert_int_equal(he_origin(e.m, (he_halfedge){8}).i, 4);
@@ -81,8 +83,8 @@ static void edge_split_keeps_the_ids_of_the_edge_and_both_faces(void **state)
     (void)state;
     edit e = edit_begin("012,103");
     edit_run(&e, "edge_split edge=#0");
-    /* The new vertex is 4. The new edges are the part of the split edge that ends at 3, then the
-     * diagonals to 2 and to 3. */
+    /* The split makes vertex 4. The new edges 5, 6 and 7 are the second half of the split edge, the
+     * edge from 4 to vertex 2, and that from 4 to vertex 3. */
     assert_ids(&e.changes.created[HE_EDGE], "5 6 7");
     assert_ids(&e.changes.created[HE_FACE], "2 3");
     assert_ids(&e.changes.parents[HE_EDGE], "5 0");
@@ -121,7 +123,8 @@ static void edge_collapse_keeps_the_target_and_the_edges_at_it(void **state)
     assert_ids(&e.changes.merged[HE_FACE], "");
     edit_end(&e);
 
-    /* `edge` stands for half-edge 2e, so the origin of this half-edge is deleted. */
+    /* If the request names an edge e and no half-edge, the operation takes half-edge 2e: the origin
+     * of this half-edge is deleted. */
     e = edit_begin("0123");
     edit_run(&e, "edge_collapse edge=#1 t=0");
     assert_face(e.m, 0, "023");
@@ -183,7 +186,7 @@ static void face_split_and_face_join_keep_the_id_of_the_first_face(void **state)
 
     e = edit_begin("012,023");
     edit_run(&e, "face_join edge=0-2");
-    /* Half-edge 2e of the edge 2-0 runs in face 0, so this face survives. */
+    /* Half-edge 2e of the joined edge e belongs to face 0, so face 0 must survive. */
     assert_face(e.m, 0, "0123");
     assert_ids(&e.changes.merged[HE_FACE], "1 0");
     edit_end(&e);
@@ -221,8 +224,8 @@ static void edge_flip_turns_the_edge_and_keeps_all_ids(void **state)
     edit e = edit_begin("012,103");
     he_halfedge h = {0};
     edit_run(&e, "edge_flip edge=#0");
-    /* Half-edge 2e ran from 0 to 1 with 2 on its left; after the flip it runs from 3 to 2 with 0 on
-     * its left. */
+    /* Before the flip, half-edge 0 ran from 0 to 1 with vertex 2 on its left; now it must run from
+     * 3 to 2 with vertex 0 on its left. */
     assert_int_equal(he_origin(e.m, h).i, 3);
     assert_int_equal(he_target(e.m, h).i, 2);
     assert_face(e.m, 0, "032");
@@ -247,7 +250,7 @@ static void deleting_removes_only_the_vertices_that_it_isolates(void **state)
     assert_true(he_is_isolated(e.m, (he_vertex){0}));
     edit_end(&e);
 
-    /* Vertices that were isolated before the edit must not be deleted. */
+    /* vertex_delete must not delete other vertices that were isolated before, like vertex 4. */
     e = edit_begin("0123+");
     edit_run(&e, "vertex_delete vertex=1");
     assert_ids(&e.changes.deleted[HE_VERTEX], "0 1 2 3");

@@ -1,4 +1,5 @@
-/* Triangulation of concave, long, tilted, degenerate and enclosed loops. */
+/* Triangulation of faces that are concave, long, tilted or degenerate, of faces whose diagonals
+ * exist as edges already, and of holes. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -21,7 +22,7 @@ typedef struct point {
     double x, y;
 } point;
 
-/* Puts points into a tilted plane far from the origin, at any scale. */
+/* Maps a point to a tilted plane far from the origin; all coordinates are multiplied by `scale`. */
 static he_vec3 lay(point p, double scale)
 {
     return (he_vec3){scale * (0.6 * p.x - 0.48 * p.y + 100), scale * (0.8 * p.y + 30),
@@ -48,8 +49,8 @@ static double area(point a, point b, point c)
     return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-/* Requires that all triangles turn left and that their areas add up to the polygon's area: then
- * they cover it once. */
+/* Requires that the triangles cover the polygon exactly once: all are oriented counterclockwise,
+ * and their areas add up to that of the polygon. */
 static void assert_covered(const he_mesh *m, const point *points, uint32_t n)
 {
     double whole = 0, sum = 0;
@@ -88,7 +89,7 @@ static void small_concave_polygons_are_triangulated(void **state)
     static const point angle[] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
     static const point spiral[] = {{0, 0}, {9, 0}, {9, 9}, {2, 9}, {2, 4}, {5, 4}, {5, 6}, {4, 6},
                                    {4, 5}, {3, 5}, {3, 8}, {8, 8}, {8, 1}, {1, 1}, {1, 9}, {0, 9}};
-    /* The polygon has corners within straight sides. */
+    /* A triangle with additional corners on its straight sides. */
     static const point flat[] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {0, 3}, {0, 2}, {0, 1}};
     check_polygon(dart, 4, 1);
     check_polygon(turned_dart, 4, 1);
@@ -107,13 +108,14 @@ static void a_dart_is_triangulated_at_any_scale(void **state)
     }
 }
 
-/* Polygons with more than HE_EXACT_CORNERS corners are cut by ear clipping. */
+/* Polygons with more than HE_EXACT_CORNERS corners are triangulated by ear clipping, not by the
+ * slower search for the best diagonals. */
 static void stars_combs_and_spirals_of_600_corners_are_triangulated(void **state)
 {
     (void)state;
     enum { N = 600 };
     static point points[N];
-    /* The polygons are a star, a comb and a spiral band. */
+    /* The points are first a star, then a comb, then a spiral. */
     for (uint32_t i = 0; i < N; i++) {
         double angle = 6.283185307179586 * i / N, radius = i % 2 ? 100 : 30;
         points[i] = (point){radius * cos(angle), radius * sin(angle)};
@@ -147,7 +149,8 @@ static void a_convex_face_of_20000_corners_takes_no_quadratic_time(void **state)
     free(points);
 }
 
-/* Faces without area, and faces whose sides cross, must be triangulated and reported. */
+/* Faces without area and faces whose sides cross must be triangulated, too, and be reported as
+ * degenerate. */
 static void degenerate_faces_are_triangulated_and_reported(void **state)
 {
     (void)state;
@@ -190,8 +193,8 @@ static he_mesh *flat_mesh(const char *faces, const point *points, uint32_t n)
     return script_mesh(faces, positions);
 }
 
-/* A diagonal that exists as an edge elsewhere must be avoided if another one is possible; otherwise
- * the edit must be refused. */
+/* If one diagonal of a quadrilateral exists as an edge elsewhere, the triangulation must take the
+ * other one; if that lies outside of the face, the edit must be refused. */
 static void diagonals_avoid_existing_edges_or_the_edit_is_refused(void **state)
 {
     (void)state;
@@ -207,7 +210,7 @@ static void diagonals_avoid_existing_edges_or_the_edit_is_refused(void **state)
     assert_true(edge_between(m, 0, 2).i < he_mesh_issued(m, HE_EDGE));
     he_mesh_free(m);
 
-    /* A dart, a concave quadrilateral, has only one diagonal inside. */
+    /* A dart (a concave quadrilateral) has only one diagonal that lies inside. */
     static const point dart[] = {{0, 0}, {4, 4}, {0, 1}, {-4, 4}, {9, 9}};
     he_mesh *before;
     m = flat_mesh("0123,024", dart, 5);
@@ -218,8 +221,9 @@ static void diagonals_avoid_existing_edges_or_the_edit_is_refused(void **state)
     he_mesh_free(m);
 }
 
-/* Makes a star of 66 corners or, with `inner` 1, a convex loop. `blocked` of its points cannot be
- * cut off, because the diagonal for it exists in a triangle elsewhere. */
+/* Makes a face of 66 corners: a star, or a convex polygon if `inner` is 1. At `blocked` of its
+ * points no triangle can be cut off, because the diagonal for it exists as an edge of another
+ * face. */
 static he_mesh *blocked_star(double inner, uint32_t blocked)
 {
     enum { N = 66 };
@@ -259,9 +263,9 @@ static void blocked_ears_are_passed_over_or_the_edit_is_refused(void **state)
     he_mesh_free(m);
 }
 
-/* Many faces share two corners of very high degree, and the last face would prefer a diagonal
- * between these: that the edge exists must be found in few steps, even if it is a diagonal made by
- * the same edit. */
+/* Many faces share two corners of very high degree, and the last face has its best diagonal between
+ * these two. The triangulation must find in few steps that this edge exists already, even if the
+ * same edit made it as a diagonal of an earlier face. */
 static void faces_that_share_two_hubs_take_no_quadratic_time(void **state)
 {
     (void)state;
@@ -290,7 +294,8 @@ static void faces_that_share_two_hubs_take_no_quadratic_time(void **state)
     he_mesh_free(m);
 }
 
-/* Two faces with equal corners must not both get the same diagonal. */
+/* Two faces have equal corners: only one of them may get the diagonal 0-2, the other must get
+ * 1-3. */
 static void two_faces_of_a_list_do_not_get_the_same_diagonal(void **state)
 {
     (void)state;
@@ -343,8 +348,8 @@ static he_triangulation triangulation_of(const he_mesh *m, uint32_t face, unsign
     return t;
 }
 
-/* If any diagonals will do, a star is cut in few steps; a polygon whose sides cross is cut as it is
- * when the best diagonals are wanted. */
+/* With the option HE_ANY_DIAGONALS a star is triangulated in fewer steps than with the best
+ * diagonals; a polygon whose sides cross gets the same triangles with and without the option. */
 static void any_diagonals_take_fewer_steps_than_the_best_ones(void **state)
 {
     (void)state;
@@ -376,8 +381,8 @@ static void any_diagonals_take_fewer_steps_than_the_best_ones(void **state)
     he_mesh_free(m);
 }
 
-/* Every face visits the same two vertices, so each diagonal has to be looked up among many edges,
- * and this must count toward the limit of work. */
+/* All faces share two vertices, so for each diagonal the triangulation searches many edges; these
+ * searches must count towards the limit on work. */
 static void searching_for_edges_counts_as_work(void **state)
 {
     (void)state;

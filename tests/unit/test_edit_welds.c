@@ -1,5 +1,5 @@
-/* Welds, separating bow-ties, and splitting, dissolving and bevelling vertices: cases, inverse
- * edits, surviving ids, and values. */
+/* Edits that weld vertices, separate bow-ties, and split, dissolve and bevel vertices: single
+ * cases, which edits undo each other, which ids survive, and attribute values. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -23,7 +23,8 @@
 
 /* --- inverses --- */
 
-/* Requires that two meshes are equal except for the half-edge that each vertex stores. */
+/* Requires that two meshes are equal except for the half-edge that each vertex stores, which is set
+ * to the one in `before`. */
 static void assert_same_rings(he_mesh *m, const he_mesh *before)
 {
     for (uint32_t v = 0; v < he_mesh_issued(before, HE_VERTEX); v++) {
@@ -45,8 +46,8 @@ static void collapsing_the_new_edge_undoes_a_split_at_the_boundary(void **state)
     he_mesh_free(m);
 }
 
-/* After each split of a vertex, collapsing the new edge must undo it, unless the collapse is not
- * allowed: an interior edge between two boundary vertices. */
+/* Splits a vertex and collapses the new edge. This must restore the mesh, or be refused if the new
+ * edge is an interior edge between two boundary vertices. */
 static void split_and_collapse(const he_mesh *before, uint32_t a, uint32_t b)
 {
     he_mesh *m = copy_of(before);
@@ -122,7 +123,7 @@ static void welds_undo_the_separation_of_bowties(void **state)
     he_mesh_free(before);
     he_mesh_free(m);
 
-    /* Two fans of faces meet at each of four vertices. */
+    /* In this mesh, four vertices are bow-ties of two fans each. */
     m = script_mesh(BOARD, NULL);
     script_prepare(m, "separate_bowties");
     assert_counts(m, 20, 20, 5);
@@ -173,13 +174,14 @@ static void a_cube_vertex_bevels_to_a_triangle_of_limited_width(void **state)
     assert_int_equal(results.id[2], 6);
     assert_int_equal(he_face_degree(m, (he_face){6}), 3);
     assert_int_equal(he_origin(m, he_face_halfedge(m, (he_face){6})).i, 0);
-    /* The remaining edge keeps its id, and one of its ends is one of the three new vertices. */
+    /* The old edge from 0 to 1 must keep its id; the bevel has replaced its end at 0 by one of the
+     * three new vertices. */
     he_halfedge h = he_edge_halfedge(kept, 0);
     he_vertex end = he_origin(m, h).i == 1 ? he_target(m, h) : he_origin(m, h);
     he_vec3 p = he_position(m, end);
     assert_true(p.x == 0.25 && p.y == 0 && p.z == 0);
     he_results_clear(&results);
-    /* A width beyond the longest one that is possible is reduced to it. */
+    /* If the width is too large for the edges, the bevel must use the largest possible width. */
     script_prepare(m, "vertex_bevel vertex=6 width=1e300");
     assert_counts(m, 12, 18, 8);
     p = he_position(m, (he_vertex){6});
@@ -187,8 +189,9 @@ static void a_cube_vertex_bevels_to_a_triangle_of_limited_width(void **state)
     he_mesh_free(m);
 }
 
-/* Each vertex is merged into the lowest remaining one within the tolerance. Vertex 1 is near both 0
- * and 2; this must not merge 2 into 0. */
+/* A weld merges each vertex into the vertex with the lowest id within the tolerance that is not
+ * merged itself. Vertex 1 is near both 0 and 2, but 2 is not near 0 and must not be merged into
+ * it. */
 static void a_weld_does_not_merge_along_a_chain(void **state)
 {
     (void)state;
@@ -206,8 +209,9 @@ static void a_weld_does_not_merge_along_a_chain(void **state)
     he_mesh_free(m);
 }
 
-/* Only the distance may decide, whatever cells the search uses: at negative coordinates, at borders
- * of cells, and where a cell is smaller than the step between doubles. */
+/* The weld searches near vertices by cells of a grid, but only the distance may decide what is
+ * merged: also at negative coordinates, at borders of cells, and where cells are smaller than the
+ * gap between neighbouring doubles. */
 static void only_distance_decides_what_a_weld_merges_at_any_scale(void **state)
 {
     (void)state;
@@ -239,8 +243,8 @@ static void only_distance_decides_what_a_weld_merges_at_any_scale(void **state)
     }
 }
 
-/* All vertices are in one cell of the search, or each in a cell of its own: neither may take
- * quadratic time. */
+/* The weld searches near vertices by cells of a grid. Neither if all vertices are in one cell nor
+ * if each has its own cell may the weld take quadratic time. */
 static void a_weld_of_100000_vertices_takes_no_quadratic_time(void **state)
 {
     (void)state;
@@ -323,8 +327,8 @@ static void edit_end(edit *e)
 static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
 {
     (void)state;
-    /* The edges of the face 012 are 0 (0-1), 1 (1-2) and 2 (2-0), those of 345 are 3 (3-4), 4 (4-5)
-     * and 5 (5-3). Vertex 4 moves to vertex 2, and 5 to 1. */
+    /* The edges of face 012 are 0 (from 0 to 1), 1 (1 to 2) and 2 (2 to 0); those of face 345 are 3
+     * (3 to 4), 4 (4 to 5) and 5 (5 to 3). The weld merges vertex 4 into 2, and vertex 5 into 1. */
     edit e =
         edit_run("012,345", "vertex_move vertices=2,4 to=5,0,0;vertex_move vertices=1,5 to=5,1,0",
                  "weld tolerance=0");
@@ -333,12 +337,12 @@ static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
     assert_ids(&e.changes.deleted[HE_EDGE], "4");
     assert_face(e.m, 0, "012");
     assert_face(e.m, 1, "321");
-    /* After two edges are merged, the one that remains must keep its direction. */
+    /* Edge 4 was merged into edge 1, which must still run from 1 to 2. */
     assert_int_equal(he_origin(e.m, (he_halfedge){2}).i, 1);
     assert_int_equal(he_face_of(e.m, (he_halfedge){3}).i, 1);
     edit_end(&e);
 
-    /* The weld makes two faces equal. */
+    /* The weld makes the two faces equal, so they must be merged, too. */
     e = edit_run("012,345",
                  "vertex_move vertices=0,4 to=0,0,0;vertex_move vertices=1,5 to=5,1,0;"
                  "vertex_move vertices=2,3 to=0,5,0",
@@ -375,8 +379,8 @@ static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
 
 /* --- values --- */
 
-/* Makes a mesh with a column of one double named "a", and runs a script: the row i holds 10 * i,
- * and the default is -1. */
+/* Makes a mesh with one double named "a" for each element of a kind, and runs a script on it. The
+ * value of element i is 10 * i before the script; the default is -1. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -440,8 +444,8 @@ static void vertex_values_follow_the_rule_of_their_column(void **state)
         assert_value(m, HE_VERTEX, cases[i].vertex, cases[i].value);
         he_mesh_free(m);
     }
-    /* The edges are cut at 99 hundredths of their length, so the values are nearly those of the
-     * neighbours. */
+    /* The bevel cuts each edge at 99 hundredths of its length, so interpolated values must be
+     * nearly those at the far ends. */
     he_mesh *m =
         after("021,013,032,123", HE_VERTEX, HE_INTERPOLATE, "vertex_bevel vertex=3 width=1e9");
     const uint32_t made[3] = {3, 4, 5};
@@ -486,8 +490,8 @@ static void edge_and_face_values_follow_the_rule_of_their_column(void **state)
     he_mesh_free(m);
 }
 
-/* The half-edges in face 012: 0 (0-1), 2 (1-2), 4 (2-0); in face 345: 6 (3-4), 8 (4-5), 10
- * (5-3). */
+/* The values belong to half-edges: in face 012 these are 0 (from 0 to 1), 2 (1 to 2) and 4 (2 to
+ * 0), in face 345 they are 6 (from 3 to 4), 8 (4 to 5) and 10 (5 to 3). */
 static void corners_keep_values_and_a_bevel_interpolates_new_ones(void **state)
 {
     (void)state;
@@ -500,8 +504,8 @@ static void corners_keep_values_and_a_bevel_interpolates_new_ones(void **state)
     assert_corner(m, 1, 1, 100);
     he_mesh_free(m);
 
-    /* The half-edges in face 0123: 0 (0-1), 2 (1-2), 4 (2-3), 6 (3-0); in face 3245 the side 3-2 is
-     * half-edge 5. */
+    /* The half-edges of face 0123 are 0 (from 0 to 1), 2 (1 to 2), 4 (2 to 3) and 6 (3 to 0); in
+     * face 3245 the half-edge from 3 to 2 is 5. */
     m = after(CF3, HE_HALFEDGE, HE_COPY, "vertex_split_corners a=3-0 b=3-2");
     assert_corner(m, 0, 3, 60);
     assert_corner(m, 0, 6, 60);
@@ -522,8 +526,8 @@ static void corners_keep_values_and_a_bevel_interpolates_new_ones(void **state)
     he_mesh_free(before);
     he_mesh_free(m);
 
-    /* The half-edges in face 021: 0 (0-2), 2 (2-1), 4 (1-0). Vertex 0 is cut off close to the other
-     * ends of its edges. */
+    /* The half-edges of face 021 are 0 (from 0 to 2), 2 (2 to 1) and 4 (1 to 0). The bevel cuts
+     * vertex 0 off at 99 hundredths of its edges. */
     m = after("021,013,032,123", HE_HALFEDGE, HE_INTERPOLATE, "vertex_bevel vertex=0 width=1e9");
     he_halfedge out = {0};
     assert_value(m, HE_HALFEDGE, out.i, 0.01 * 0 + 0.99 * 20);

@@ -1,13 +1,14 @@
-/* Polygons are triangulated for formats that have only triangles; in these meshes very many faces
- * share two vertices. */
+/* Polygons are triangulated for file formats that have only triangles. In the meshes of this test,
+ * very many faces share two vertices. */
 #include "unit/fixture.h"
 
 #include "format/io/export_triangles.h"
 #include "tests/failing.h"
 
-/* Makes quads 0 a 1 b of which both diagonals exist as edges: 0-1 in a triangle in the middle, a-b
- * in one triangle each. Another vertex is connected to every second a, so that three vertices have
- * a high degree. */
+/* Makes quadrilaterals with the corners 0, a, 1, b, where a and b differ for each. Both diagonals
+ * of each exist as edges: 0-1 in one triangle in the middle, and a-b in a triangle beside each
+ * quadrilateral. Vertex 2 is connected to every second a, so vertices 0, 1 and 2 have a high
+ * degree. */
 static he_mesh *two_hubs(uint32_t quads)
 {
     he_soup soup;
@@ -74,7 +75,7 @@ static void all_pairs_are_joined_as_turning_finds_them(void **state)
     he_mesh_free(m);
 }
 
-/* The table of connected vertices must contain the pairs that were noted, and no others. */
+/* The table of edges must contain exactly the pairs of vertices that were added to it. */
 static void what_is_noted_is_joined(void **state)
 {
     (void)state;
@@ -115,7 +116,8 @@ static void what_is_noted_is_joined(void **state)
     he_mesh_free(m);
 }
 
-/* If each face visited all edges of both shared vertices, the time would be quadratic. */
+/* If the triangulation of each face visited all edges of the two vertices that all faces share, it
+ * would take quadratic time. */
 static void faces_about_two_vertices_are_cut_in_linear_time(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* Attributes of an edited mesh come back from files of all formats that can hold them, bit by bit:
- * rows of dead elements are left out, and no value moves to another element. */
+/* Attributes of an edited mesh are written to files of all formats that can hold them. They must be
+ * read back bit by bit, without the values of deleted elements, and each value at its own
+ * element. */
 #include "unit/format_fixture.h"
 
 #include "edit/local/erase.h"
@@ -19,7 +20,7 @@ typedef struct attribute {
     he_kind domain;
     he_type type;
     uint32_t components;
-    /* whole numbers are below this, 0: any; fractions are k / (below - 1) */
+    /* whole numbers are less than this value, or any if it is 0; fractions are k / (below - 1) */
     uint32_t below;
 } attribute;
 
@@ -80,7 +81,7 @@ static void add_attribute(he_mesh *m, md_random *random, const attribute *a)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* Makes a grid with attributes, of which faces and vertices were deleted. */
+/* Makes a grid with attributes, and deletes some of its faces and vertices. */
 static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t count)
 {
     enum { SIDE = 8 };
@@ -111,8 +112,9 @@ static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t
     return m;
 }
 
-/* Requires the attribute `a` in an import. Rows of corners are in the order of faces; all other
- * rows are in the order of ids, which have no gaps here. */
+/* Requires that a file that was read has the attribute `a` with the values that it has in the mesh.
+ * Values of corners come face by face; all others come in the order of ids, which have no gaps
+ * here. */
 static void expect_column(const he_mesh *m, const he_import *import, const attribute *a)
 {
     const he_column *wanted = he_mesh_find_column(m, a->domain, a->name);
@@ -147,8 +149,8 @@ static void round_trip(const char *format, const char *encoding, const attribute
         he_warnings warnings;
         size_t length;
         char *bytes = write_encoded(format, encoding, m, 777, &warnings, &length);
-        /* a GLB stores positions as floats, and a warning says which attributes other programs do
-         * not see */
+        /* only GLB stores positions as floats, and warns of attributes that other programs cannot
+         * see */
         bool narrow = strcmp(format, "glb") == 0;
         assert_true(narrow || warnings.count == 0);
         he_import import = {0};

@@ -1,12 +1,14 @@
-/* Values of corners, in formats that have only values of vertices: other programs see split
- * vertices, and hedge reads the original mesh back. */
+/* Attribute values of corners, written in formats that have only values of vertices: other programs
+ * must see a separate vertex for each different value, and hedge must read the original mesh
+ * back. */
 #include "unit/format_fixture.h"
 
 #include "mesh/write.h"
 #include "tests/failing.h"
 
-/* A quadrilateral and a triangle share an edge in space, but not in the texture: the corners at
- * vertex 1 differ in uv and normal, those at 2 differ in uv, those at 3 do not differ. */
+/* A quadrilateral and a triangle that share the edge between the second and the third vertex. Their
+ * corners at the second vertex have different texture coordinates and normals, those at the third
+ * vertex only different texture coordinates. */
 static const char seam[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 9 9 9\n"
                            "vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nvt 0.75 0\nvt 1 0.25\nvt 0.75 1\n"
                            "vn 0 0 1\nvn 0 1 0\n"
@@ -28,8 +30,8 @@ static void replace_all(char *bytes, size_t length, const char *word, const char
     }
 }
 
-/* Makes the data that only hedge reads unreadable, so that the file is read as other programs read
- * it. */
+/* Renames the data in a file that only hedge reads, so that hedge reads the file like other
+ * programs. */
 static void hide_marks(char *bytes, size_t length)
 {
     replace_all(bytes, length, "\"hedge\":{", "\"Hedge\":{");
@@ -76,8 +78,8 @@ static void the_mesh_comes_back(void **state)
     }
 }
 
-/* Reads the corners of all faces as other programs do, each with the values of its vertex; they
- * must be the values of the corners. */
+/* In the file, as other programs read it, each corner must get the corner's value of the mesh from
+ * its vertex. */
 static void others_get_the_same_values_at_the_same_corners(void **state)
 {
     (void)state;
@@ -123,7 +125,7 @@ static void others_get_the_same_values_at_the_same_corners(void **state)
     }
 }
 
-/* MeshLab writes and reads texture coordinates as a list for each face. */
+/* MeshLab stores texture coordinates of corners as one list per face. */
 static void texcoord_lists_are_values_of_corners(void **state)
 {
     (void)state;
@@ -171,8 +173,8 @@ static void texcoord_lists_are_written(void **state)
     he_mesh_free(mesh);
 }
 
-/* Another program has moved one of the split vertices but kept the data that says which belong
- * together: hedge must then not join them. */
+/* Another program has moved one of the vertices that hedge had split, but kept hedge's notes about
+ * which vertices belong together: hedge must not join vertices at different positions. */
 static void marks_that_do_not_fit_are_not_believed(void **state)
 {
     (void)state;
@@ -204,8 +206,8 @@ static void marks_that_do_not_fit_are_not_believed(void **state)
     he_mesh_free(mesh);
 }
 
-/* Vertices and corners have attributes with one name: other programs must see that of the corners,
- * and hedge's data holds both. */
+/* Vertices and corners have attributes with the same name: in the file, other programs must see the
+ * one of corners, and hedge must read both. */
 static void corners_come_before_vertices(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* The files of the shared corpus, if it lies beside the project (or where CORPUS= says): each must
- * be read as the manifest of the corpus says. */
+/* Every file of the shared corpus of mesh files must be read as the corpus's manifest says. The
+ * corpus is looked up beside the project, or in the directory given by the environment variable
+ * CORPUS. */
 #include "unit/format_fixture.h"
 
 #include "format/io/export.h"
@@ -8,7 +9,7 @@
 
 static const char *corpus;
 
-/* Copies column k of a line of a tab-separated table. */
+/* Copies the k-th field of a line of tab-separated text. */
 static void cell(const char *line, size_t k, char *text, size_t size)
 {
     for (; k > 0; k--) {
@@ -72,7 +73,7 @@ static void expect_cell(const char *line, size_t k, uint64_t found, const char *
     }
 }
 
-/* Compares the defects found in a file with the counts that other programs found. */
+/* Compares the defects that hedge finds in a file with the counts that other programs found. */
 static void check_defects(const char *line, const he_mesh *mesh)
 {
     static he_defects found;
@@ -89,8 +90,8 @@ static void check_defects(const char *line, const he_mesh *mesh)
     assert_int_equal(inside_out, found.of[HE_DEFECT_INSIDE_OUT].total > 0);
 }
 
-/* Compares faces up to their first corner, because index compression may begin a triangle with any
- * of its corners. */
+/* Requires equal faces, but each may begin with any of its corners, because the compression of
+ * indices does not preserve the first corner of a triangle. */
 static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
 {
     assert_int_equal(found->face_count, wanted->face_count);
@@ -107,7 +108,8 @@ static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
     }
 }
 
-/* Exports the mesh and reads it back: it must have equal polygons or, in STL, as many triangles. */
+/* Exports the mesh and reads the file back: it must have equal polygons or, in STL, the number of
+ * triangles into which the polygons are cut. */
 static void check_export(const he_format *format, const char *encoding, const he_mesh *mesh,
                          const he_soup *wanted)
 {

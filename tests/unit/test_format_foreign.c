@@ -1,4 +1,4 @@
-/* A file that is no mesh is refused, and the refusal says what kind of file it is. */
+/* A file that contains no mesh is refused, and the error says what kind of file it is. */
 #include "unit/format_fixture.h"
 
 #include "format/io/foreign.h"
@@ -40,7 +40,7 @@ static void what_is_no_mesh_is_called_by_its_name(void **state)
             fail_msg("%s: %s", rows[i].name, name == NULL ? "not known" : name);
         }
         assert_null(he_format_sniff(rows[i].bytes, rows[i].length));
-        /* one byte is not enough to identify a file */
+        /* one byte must not be enough to recognize the kind of file */
         assert_null(he_foreign_find(rows[i].bytes, 1));
     }
     char tar[512] = "part.obj";

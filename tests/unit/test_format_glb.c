@@ -50,7 +50,7 @@ static void every_mode_and_every_type_of_index(void **state)
         expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
         he_import_clear(&import);
     }
-    /* without indices, the first three corners form the triangle */
+    /* if a primitive has no indices, its vertices in their order are the corners of triangles */
     he_import import = glb_square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
         "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
@@ -87,7 +87,7 @@ static void nodes_move_what_they_place(void **state)
     (void)state;
     static const struct {
         const char *nodes;
-        double at[3]; /* expected position of vertex 2, which is at 1 1 0 in the mesh */
+        double at[3]; /* position of vertex 2 in the scene; in the mesh it is at 1 1 0 */
         bool mirrored;
     } rows[] = {
         {"{'mesh':0}", {1, 1, 0}, false},
@@ -99,7 +99,7 @@ static void nodes_move_what_they_place(void **state)
          "'rotation':[0,0,0.70710678118654752,0.70710678118654752]}",
          {-1, 2, 0},
          false},
-        /* a matrix lists its columns one after another */
+        /* a matrix in glTF is stored column by column */
         {"{'mesh':0,'matrix':[0,2,0,0, -2,0,0,0, 0,0,2,0, 1,0,0,1]}", {-1, 2, 0}, false},
         {"{'children':[1],'translation':[5,0,0]},{'mesh':0,'scale':[2,2,2]}", {7, 2, 0}, false},
         {"{'children':[1],'scale':[2,2,2]},{'mesh':0,'translation':[5,0,0]}", {12, 2, 0}, false},
@@ -123,7 +123,8 @@ static void nodes_move_what_they_place(void **state)
     }
 }
 
-/* A quaternion must mean the same rotation whatever its length. */
+/* A quaternion need not have length 1: it must mean the same rotation as the quaternion of length 1
+ * in the same direction. */
 static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
 {
     (void)state;
@@ -179,7 +180,8 @@ static void the_scene_that_is_named_is_read(void **state)
         {"'scene':1,'scenes':[{'nodes':[0]},{'nodes':[1]}],", 1, 4},
         {"'scene':0,'scenes':[{'nodes':[0]},{'nodes':[1]}],", 0, 4},
         {"'scenes':[{'nodes':[1]},{'nodes':[0]}],", 1, 4},
-        {"", 0, 8}, /* without a scene: the nodes that are no children of others */
+        /* a file without a scene shows the nodes that are not children of other nodes */
+        {"", 0, 8},
         {"'scenes':[{}],", 0, 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -204,8 +206,9 @@ static void the_scene_that_is_named_is_read(void **state)
 static void sparse_accessors(void **state)
 {
     (void)state;
-    /* A sparse accessor replaces some values: here positions 1 and 2 of a list of zeros, or 0 and 2
-     * of existing positions, by the bytes of the corners. */
+    /* A sparse accessor stores only some of its values. Here positions 1 and 2 replace zeros, or
+     * positions 0 and 2 replace those of the square; the new values are bytes 12 to 35 of the
+     * square's corners. */
     static const struct {
         const char *view, *indices;
         double at[4][3];
@@ -258,7 +261,7 @@ static void quantized_positions(void **state)
 static void buffers_in_uris(void **state)
 {
     (void)state;
-    /* the file has three corners of the square, and no more bytes */
+    /* The file has only three corners of the square, 36 bytes. */
     static const char triangle[] =
         "{'asset':{'version':'2.0'},'buffers':[{'byteLength':36,'uri':'data:application/"
         "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA'}],"
@@ -281,7 +284,7 @@ static void buffers_in_uris(void **state)
         }
         expect_counts(&import, 3, 1, 3);
         assert_memory_equal(import.soup.positions, glb_square, 3 * sizeof *glb_square);
-        /* the places of faces are offsets in the JSON text */
+        /* the place of a face in the file is the offset of its primitive in the JSON text */
         assert_int_equal(he_source_map_find(&import.faces, 0),
                          (i == 0 ? f.json : 0) +
                              (size_t)(strstr(triangle, "{'attributes'") - triangle));
@@ -292,7 +295,7 @@ static void buffers_in_uris(void **state)
     assert_null(he_format_sniff("{\"vertices\":[]}", 15));
 }
 
-/* In JSON a character of a string may be written as an escape, of which there are two kinds. */
+/* JSON allows two kinds of escapes in strings, "\/" and "\u002f", also within a data: URI. */
 static void buffers_in_uris_with_escapes(void **state)
 {
     (void)state;
@@ -375,8 +378,8 @@ static void attributes_of_vertices(void **state)
 static void directions_turn_with_their_node(void **state)
 {
     (void)state;
-    /* the normal 1 1 0 at a corner must lean to y when the node scales x by two; if the node
-     * mirrors, it must still point away from the reversed triangle */
+    /* If the node scales x by two, the normal 1 1 0 must turn towards y. If it scales x by -2, the
+     * triangle is reversed, and the normal must be mirrored with it. */
     static const struct {
         const char *node;
         double x, y;
@@ -506,8 +509,8 @@ static void what_has_no_place_is_noted(void **state)
     he_import_clear(&import);
 }
 
-/* After a chunk with an unaligned length, the next chunk may follow at once, or at the next
- * multiple of 4. */
+/* If the length of a chunk is no multiple of 4, the next chunk may begin right after it or at the
+ * next multiple of 4: both must be read, with a warning. */
 static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* A GLB file separates objects, groups and materials for other programs, and hedge reads the
- * original mesh back: faces in their order, polygons, names, and materials. */
+/* A GLB file shows objects, groups and materials to other programs as separate parts. hedge must
+ * read the original mesh back from it: the order of faces, polygons, names and materials. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 
@@ -7,7 +7,7 @@
 #include "mesh/write.h"
 #include "tests/failing.h"
 
-/* Six faces of a box and a separate triangle; the faces are not in the order of their groups. */
+/* Six faces of a box and a separate triangle. Faces of one group do not all follow each other. */
 static const char box[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 5 0 0\nv 6 0 0\n"
     "v 5 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -67,15 +67,16 @@ static void other_programs_see_meshes_primitives_and_materials(void **state)
     expect_json(bytes, "{\"name\":\"unused\",");
     expect_json(bytes, "{\"name\":\"bare\",\"extras\":{\"hedge\":\"name\"}}]");
     expect_json(bytes, "\"extensionsUsed\":[\"KHR_materials_emissive_strength\"]");
-    /* The object bottom has the materials red and none, top has blue and red, other has red. */
+    /* Group `bottom` has faces of two materials, and so has `top`: each group must be one mesh of
+     * several primitives. */
     expect_json(bytes, "{\"name\":\"bottom\",\"primitives\":[{");
     expect_json(bytes, "{\"name\":\"top\",\"primitives\":[{");
     free(bytes);
     he_mesh_free(mesh);
 }
 
-/* Writes the mesh and reads it back: the result must be equal, except that deleted faces are
- * gone. */
+/* Writes the mesh to a file and reads it back: the two meshes must be equal, except for rows of
+ * deleted elements. */
 static void expect_back(he_mesh *mesh, const char *encoding)
 {
     size_t length;
@@ -114,8 +115,8 @@ static void the_mesh_comes_back_as_it_was(void **state)
     }
 }
 
-/* If all faces have one group and one material, the file must have one primitive with these
- * names. */
+/* If all faces have one group and one material, the file must have only one primitive, with the
+ * names of the group and the material. */
 static void one_material_is_one_primitive(void **state)
 {
     (void)state;
@@ -131,7 +132,8 @@ static void one_material_is_one_primitive(void **state)
     expect_back(mesh, "binary");
 }
 
-/* If another program has changed the file, it must be read as that program sees it. */
+/* If another program has changed the scene, hedge must ignore its own data in the file and read
+ * what that program wrote. */
 static void a_changed_scene_is_read_as_it_stands(void **state)
 {
     (void)state;
@@ -153,7 +155,8 @@ static void a_changed_scene_is_read_as_it_stands(void **state)
         memcpy(at, rows[i].to, size);
         he_import import = read_glb(bytes, length);
         assert_non_null(find_warning(&import.warnings, "stale_extras", ""));
-        assert_int_equal(import.soup.face_count, i == 2 ? 7 : 13); /* triangles */
+        /* without hedge's own data, the faces are triangles */
+        assert_int_equal(import.soup.face_count, i == 2 ? 7 : 13);
         assert_string_equal(face_label(&import, "material", 0), "red");
         assert_int_equal(import.soup.materials.count, 3);
         he_import_clear(&import);

@@ -1,4 +1,5 @@
-/* Invalid GLB and glTF files: each refusal must have a byte offset and the path in the JSON. */
+/* GLB and glTF files that must be refused: each error must name a byte of the file and the path in
+ * the JSON. */
 #include "unit/gltf_file.h"
 
 #include <time.h>
@@ -11,7 +12,7 @@ static void containers(void **state)
     glb_square_bin(bin);
     glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = good.bin - 8 - 20, at = good.bin - 8;
-    /* a file that is truncated at any length must be refused */
+    /* A file that is cut off must be refused, at whatever length it is cut. */
     for (size_t length = 0; length < good.length; length++) {
         he_import import = {0};
         he_error err = {0};
@@ -55,12 +56,12 @@ static void containers(void **state)
     glb_word(&f, 0);
     expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length,
                            "the file is longer than the");
-    /* the header of a chunk is invalid */
+    /* The four bytes after the last chunk are too few for the header of another chunk. */
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length,
                            "4 bytes follow the last chunk and are too few");
-    /* there is a third chunk, and it is of the binary kind */
+    /* A third chunk is of the binary kind, which only the second chunk may have. */
     f = good;
     glb_word(&f, 0);
     glb_word(&f, 0x004E4942);
@@ -68,7 +69,7 @@ static void containers(void **state)
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length + 4,
                            "a BIN chunk must be the second chunk");
-    /* the binary chunk is missing, or empty */
+    /* The file has no binary chunk, or an empty one, but a buffer refers to it. */
     glb_make(&f, "{" DATA "," MESHES "}", NULL, 0);
     he_import import = {0};
     he_error err = {0};
@@ -148,7 +149,7 @@ static void json_to_the_letter(void **state)
     he_import_clear(&import);
 }
 
-/* Builds a file in which the first accessor is replaced by `a`; the rest is valid. */
+/* A valid file, except that its first accessor is `a`. */
 #define WITH_ACCESSOR(a)                               \
     "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" a \
     ",{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}"
@@ -162,8 +163,8 @@ static void json_to_the_letter(void **state)
 #define WITH_SPARSE(s) \
     WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
 
-/* Padding in base64 is only allowed at the end, even where the decoder pauses, whether or not the
- * text has escapes. */
+/* The padding "=" may only stand at the end of base64 data. The mistake is at the border of two
+ * pieces of the decoder, with and without JSON escapes in the text. */
 static void base64_that_ends_too_early(void **state)
 {
     (void)state;
@@ -321,14 +322,15 @@ static void references_and_numbers(void **state)
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
         {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
-        /* without scenes, a cycle of nodes has no root from which it could be reached */
+        /* if there are no scenes, the reader begins at nodes without parents; a cycle of nodes has
+         * none, so it must be found in another way */
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0,'children':[0]}]}", HE_BAD_VALUE,
          "nodes/0/children/0: node 0 is inside itself"},
         {"{" DATA "," MESHES
          ",'nodes':[{'mesh':0},{'mesh':0},{'children':[1,3]},{'children':[2]}]}",
          HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
-        /* if a list is replaced by something else, it must not count as an empty list, because the
-         * mesh would be lost */
+        /* a value that is no list must not be read like an empty list, because the mesh would be
+         * missing without an error */
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0},{'children':'x'}]}", HE_BAD_VALUE,
@@ -368,7 +370,7 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE, "sparse/values: 3 elements of 12 bytes"},
         {WITH_SPARSE("{'count':3,'indices':{'bufferView':1,'componentType':5123},'values':{}}"),
          HE_BAD_VALUE, "sparse/values: 'bufferView' is missing"},
-        /* extensions that the reader does not know */
+        /* extensions that the reader does not support */
         {"{" ASSET ",'extensionsRequired':['KHR_draco_mesh_compression']}", HE_UNSUPPORTED,
          "extensionsRequired/0: Draco compression is not supported: unpack it first, as "
          "\"gltf-transform copy"},
@@ -413,7 +415,7 @@ static void numbers_in_the_buffer(void **state)
         expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_BAD_INDEX, f.bin + 56,
                                "meshes/0/primitives/0: index");
     }
-    /* a NaN in an attribute other than the position is read as 0, with a warning */
+    /* only positions must not be NaN; in another attribute NaN is read as 0, with a warning */
     he_import import = {0};
     he_error err = {0};
     glb_square_bin(bin);
@@ -476,7 +478,8 @@ static void bombs(void **state)
     (void)state;
     writing w = {0};
     char part[200];
-    /* nodes that refer twice to the next one: 2^40 instances if a node could have two parents */
+    /* each of 40 nodes has the next node as a child twice: if this were allowed, there would be
+     * 2^40 instances of the last node */
     put(&w, "{'asset':{'version':'2.0'},'scenes':[{'nodes':[0]}],'nodes':[");
     for (int i = 0; i < 40; i++) {
         snprintf(part, sizeof part, "{'children':[%d,%d]},", i + 1, i + 1);
@@ -484,14 +487,14 @@ static void bombs(void **state)
     }
     put(&w, "{}]}");
     expect_bomb(&w, HE_BAD_VALUE, "node 40 is reached twice");
-    /* JSON nested deeper than in any real file */
+    /* JSON that is nested deeper than in any real file */
     put(&w, "{'asset':{'version':'2.0'},'extras':");
     for (int i = 0; i < 90000; i++) {
         put(&w, i % 2 ? "{'a':" : "[");
     }
     expect_bomb(&w, HE_SYNTAX, "nesting is deeper than 128 levels");
-    /* an accessor of zeros, which needs no bytes in the file, used once or by many nodes and
-     * primitives */
+    /* an accessor without a buffer view consists of zeros and takes no bytes in the file: a large
+     * one is used once, and smaller ones by many nodes or many primitives */
     static const char zeros[] = "'accessors':[{'componentType':5126,'count':%d,'type':'VEC3'}]";
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 3000000);
@@ -516,7 +519,7 @@ static void bombs(void **state)
     }
     put(&w, "]}]}");
     expect_bomb(&w, HE_LIMIT, "the scene has more than");
-    /* attributes that use one accessor under ever new names */
+    /* many attributes with different names that all use one accessor */
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
     put(&w, part);
@@ -527,7 +530,8 @@ static void bombs(void **state)
     }
     put(&w, "}}]}]}");
     expect_bomb(&w, HE_LIMIT, "");
-    /* a primitive with many members, through which the reader must search for every node */
+    /* a primitive with many attributes is used by many nodes: the reader has to search all its
+     * attributes for each node */
     put(&w, "{'asset':{'version':'2.0'},'meshes':[{'primitives':[{'attributes':{");
     for (int i = 0; i < 100000; i++) {
         snprintf(part, sizeof part, "%s'_%d':0", i > 0 ? "," : "", i);
@@ -539,7 +543,8 @@ static void bombs(void **state)
     }
     put(&w, "]}");
     expect_bomb(&w, HE_LIMIT, "the scene has more than");
-    /* a long chain of nodes must be followed without recursion, and its length must be limited */
+    /* a long chain of nodes, each the child of the last one, must be read without recursion, and be
+     * refused beyond a maximal depth */
     for (int many = 0; many < 2; many++) {
         int depth = many ? 70000 : 60000;
         put(&w, "{'asset':{'version':'2.0'},'nodes':[");
@@ -550,8 +555,8 @@ static void bombs(void **state)
         put(&w, "{}]}");
         expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "deeper than 65536 levels" : "");
     }
-    /* the maximum number of values in a JSON tree, and one object that has all of them as
-     * members */
+    /* JSON with more values than the reader allows, then an object and a list with very many
+     * members, which it allows */
     put(&w, "{'asset':{'version':'2.0'},'extras':[0");
     for (int i = 0; i < (1 << 23); i++) {
         put(&w, ",0");
@@ -573,15 +578,15 @@ static void bombs(void **state)
     expect_bomb(&w, HE_OK, "");
 }
 
-/* hedge stores additional data in the `extras` of a glTF, which is read for every column and for
- * every node. */
+/* The member `extras` of a glTF file contains data that only hedge writes and reads. The reader
+ * goes through it for every column of attribute values and every node. */
 static void bombs_in_extras(void **state)
 {
     (void)state;
     static const char column[] = "'rule':'copy','components':1,'accessor':1";
     writing w = {0};
     char part[300];
-    /* one list of words, of which only the last is no bool, is used by many columns */
+    /* many columns of the type bool use one accessor, of which only the last value is no bool */
     for (int many = 0; many < 2; many++) {
         put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':120000,'uri':'data:;base64,");
         for (int i = 0; i < 39999; i++) {
@@ -599,7 +604,7 @@ static void bombs_in_extras(void **state)
         put(&w, "]}}}]}]}");
         expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene has more than" : "");
     }
-    /* one long name is used by many nodes */
+    /* many nodes use a primitive with one very long label */
     for (int many = 0; many < 2; many++) {
         put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':12,'uri':"
                 "'data:;base64,AAAAAAAAAAAAAAAA'}],'bufferViews':[{'buffer':0,'byteLength':12}],"

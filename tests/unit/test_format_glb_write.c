@@ -1,4 +1,4 @@
-/* Writing GLB files: hedge must read the original mesh back, and other programs must see
+/* GLB files that hedge writes: hedge must read the original mesh back, and other programs must see
  * triangles. */
 #include "unit/gltf_file.h"
 
@@ -33,8 +33,8 @@ static he_import read_back(const char *bytes, size_t length)
     return import;
 }
 
-/* Renames the member `extras`, which only hedge reads, so that the file is read as other programs
- * read it. */
+/* Renames the member `hedge` of `extras`, so that hedge reads the file like other programs, which
+ * do not know this member. */
 static void hide_extras(char *bytes, size_t length)
 {
     for (size_t i = 0; i + 7 < length; i++) {
@@ -79,7 +79,7 @@ static void polygons_come_back(void **state)
         assert_int_equal(find_warning(&warnings, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
-        /* without the renamed member, the file is read as other programs read it */
+        /* without hedge's own data, the file is read as other programs read it */
         hide_extras(bytes, length);
         import = read_back(bytes, length);
         expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);
@@ -169,7 +169,8 @@ static void what_is_not_carried_is_said(void **state)
     assert_int_equal(find_warning(&warnings, "triangulated", "")->count, 1);
     assert_non_null(find_warning(&warnings, "attribute_lost", "edge crease"));
     assert_null(
-        find_warning(&warnings, "in_extras", "halfedge uv")); /* other programs see it, too */
+        /* other programs can see this attribute, so it is not only in the extras */
+        find_warning(&warnings, "in_extras", "halfedge uv"));
     assert_null(find_warning(&warnings, "in_extras", "face material"));
     assert_non_null(find_warning(&warnings, "in_extras", "face mark"));
     he_import import = read_back(bytes, length);
@@ -186,9 +187,9 @@ static void what_is_not_carried_is_said(void **state)
     he_mesh_free(mesh);
 }
 
-/* glTF requires that numbered attributes have no gaps (TEXCOORD_1 needs TEXCOORD_0, JOINTS_0 needs
- * WEIGHTS_0): an attribute whose number is not valid must get another one, and keep its name for
- * hedge. */
+/* glTF requires that numbered attributes have no gaps (TEXCOORD_1 needs TEXCOORD_0) and that
+ * JOINTS_0 and WEIGHTS_0 come together. An attribute that would break this rule must be written
+ * under a name of its own, or only in the extras. */
 static void numbered_attributes_have_no_gaps(void **state)
 {
     (void)state;
@@ -197,7 +198,8 @@ static void numbered_attributes_have_no_gaps(void **state)
             const char *name;
             he_type type;
             uint32_t components;
-            const char *semantic; /* NULL: the attribute is in the extras only */
+            /* expected name in the file, or NULL if the attribute must be in the extras only */
+            const char *semantic;
         } columns[3];
     } rows[] = {
         {{{"uv1", HE_FLOAT, 2, "_uv1"}}},
@@ -263,8 +265,9 @@ static void numbered_attributes_have_no_gaps(void **state)
     "],'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,'extras':{'hedge':" \
     "{" hedge "}}}]}],'nodes':[{'mesh':0" node "}]}"
 
-/* The extras are replaced by inconsistent ones: they must be ignored, and the triangles be read.
- * The degree 4 and the corners 0 1 2 3 lie where the square has its colours and its strip. */
+/* hedge's data in the extras, which describes polygons and columns, is replaced by invalid data:
+ * hedge must then ignore it and read the triangles. Its numbers are stored in the bytes where the
+ * square has its colours (the degree 4) and its fan (the corners 0 1 2 3). */
 static void extras_are_not_believed(void **state)
 {
     (void)state;
@@ -277,9 +280,9 @@ static void extras_are_not_believed(void **state)
         const char *hedge, *node;
         uint32_t degree;
         uint32_t second;
-        uint32_t corner; /* expected last corner of the last triangle */
+        uint32_t corner; /* expected last corner of the last face */
         size_t faces;
-        const char *column; /* the expected column, or NULL */
+        const char *column; /* name of the column that must be read, or NULL if none must be */
         bool fits;
     } rows[] = {
         {"'polygons':{'degrees':5,'corners':6}", "", 4, 0, 3, 1, NULL, true},
@@ -369,15 +372,16 @@ static void extras_are_not_believed(void **state)
     }
 }
 
-/* Names in the extras apply to the faces of their own primitive; other faces keep the names that
- * they have from elsewhere. */
+/* Labels in the extras of a primitive apply to the faces of this primitive only; the other faces
+ * must keep the names that the mesh or the material gives them. */
 static void names_beside_names_in_extras(void **state)
 {
     (void)state;
     static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
                                  "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
     static const struct {
-        const char *name, *first, *second; /* a column, and its labels in two primitives */
+        /* name of a column, and its labels in the second and third primitive */
+        const char *name, *first, *second;
         const char *names[8];
     } rows[] = {
         {"object",
@@ -432,8 +436,8 @@ static void names_beside_names_in_extras(void **state)
     }
 }
 
-/* Another program has changed the triangles and kept the extras: the polygons in these do not fit
- * any more and must be ignored. */
+/* Another program has changed the triangles of a file but kept hedge's data, which describes the
+ * old polygons: polygons that do not fit the triangles must be ignored. */
 static void polygons_of_other_triangles(void **state)
 {
     (void)state;
@@ -442,7 +446,8 @@ static void polygons_of_other_triangles(void **state)
     char *bytes = write_glb(mesh, NULL, &length);
     size_t json = 0, at = 0;
     memcpy(&json, bytes + 12, 4);
-    at = 20 + json + 8 + 7 * 12; /* the 16-bit indices, which follow seven positions */
+    /* offset of the 16-bit indices, which follow seven positions in the binary chunk */
+    at = 20 + json + 8 + 7 * 12;
     for (size_t i = 0; i < 15; i++) {
         char other[4096];
         assert_true(length < sizeof other);

@@ -1,5 +1,6 @@
-/* Readers of mesh files under attack: failing allocations, mutated files, and sizes at which more
- * than linear time would show. SEED= repeats the mutations, ROUNDS= makes more. */
+/* Readers of mesh files under attack: allocations fail, files are changed at random, and files are
+ * so large that more than linear time would show. The environment variable SEED repeats the random
+ * changes, ROUNDS sets their number. */
 #include "unit/format_fixture.h"
 
 #include "tests/pace.h"
@@ -54,7 +55,8 @@ static const char facets[] =
     "\2\0\0\0" ZERO ZERO UNIT ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0" ZERO ZERO UNIT
     "\0\0\0\x80" ZERO ZERO UNIT UNIT ZERO ZERO UNIT UNIT "\1\0.";
 
-/* The glTF is given as JSON, because most mutations of a GLB only make its lengths wrong. */
+/* A glTF file as JSON (.gltf) and not binary (.glb): random changes of a GLB file would mostly give
+ * a chunk of a wrong length, and test little else. */
 static const char gltf[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
     "{\"name\":\"a\",\"mesh\":0,\"children\":[1]},{\"mesh\":0,\"scale\":[-1,1,1],"
@@ -79,7 +81,7 @@ static const char container[] =
     "5123,\"count\":3,\"type\":\"SCALAR\"}]}  "
     "\054\000\000\000BIN\0" ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0\1\0\2\0\0\0";
 
-/* The mesh has polygons, because the writers of some formats must triangulate them. */
+/* A mesh of quadrilaterals, because writers for formats with only triangles must divide them. */
 static const char cube[] = "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
                            "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
@@ -123,7 +125,8 @@ static void readers_without_memory(void **state)
     }
 }
 
-/* Returns the format to write: a format that is text is written in its binary container. */
+/* Returns the name of the format in which a mesh from this file is written again; some formats that
+ * the reader knows have no writer of their own. */
 static const char *writer_of(const char *name)
 {
     return strcmp(name, "gltf") == 0 ? "glb" : name;
@@ -180,8 +183,8 @@ static uint64_t next_random(void)
     return z ^ z >> 31;
 }
 
-/* Changes, removes, repeats or inserts bytes; inserted bytes are those that are special to
- * readers. */
+/* Changes, removes, repeats or inserts bytes at random; inserted bytes are such as have a meaning
+ * for readers. */
 static size_t mutate(char *text, size_t length, size_t room)
 {
     static const char *const bits[] = {"\n",
@@ -263,8 +266,9 @@ static size_t mutate(char *text, size_t length, size_t room)
     return length;
 }
 
-/* Any bytes must give an import or a refusal, the same when they are read in pieces. An import must
- * be built or refused; a mesh that was built must be written and read again. */
+/* Reading a file of any bytes must succeed or give an error, and the result must not depend on the
+ * pieces in which it comes. What was read must be built into a mesh or refused; a mesh must be
+ * written and read again. */
 static void mutated_files(void **state)
 {
     (void)state;
@@ -298,7 +302,7 @@ static void mutated_files(void **state)
         he_mesh *mesh = NULL;
         if (he_build(&import.soup, 0, &mesh, NULL, &err) == HE_OK) {
             fixture_check(mesh);
-            /* STL keeps all digits only as text */
+            /* the encoding of the PLY file that is written, if the format is PLY */
             static const char *const plys[] = {"binary", "ascii", "binary_big_endian"};
             name = writer_of(name);
             const char *encoding = strcmp(name, "ply") == 0   ? plys[i % 3]
@@ -332,7 +336,7 @@ static void mutated_files(void **state)
     assert_true(refused > rounds / 10 && built > rounds / 10);
 }
 
-/* A description of a long file that consists of `count` repetitions of a part. */
+/* A long file to be read: `part` repeated `count` times between `before` and `after`. */
 typedef struct flood {
     const char *what, *format, *before, *part, *after;
     size_t count;
@@ -362,8 +366,8 @@ static he_status pour(const flood *f, size_t count, he_import *import)
     return status;
 }
 
-/* Returns the time to read a file whose header declares 500,000 elements, of which only a tenth
- * follow. */
+/* Returns the seconds to read the file. If its header declares 500,000 elements, the file has only
+ * a tenth of them. */
 static double time_flood(const void *context, size_t count)
 {
     const flood *f = context;

@@ -1,13 +1,14 @@
-/* Writers note what a file cannot represent, and refuse meshes that it cannot hold at all. */
+/* Writers must warn of everything that a file format cannot represent, and refuse meshes that it
+ * cannot hold at all. */
 #include "unit/format_fixture.h"
 
 #include "model/random.h"
 #include "seed.h"
 
-/* --- STL: facets by position --- */
+/* --- STL, which stores positions of corners but no vertices --- */
 
-/* Reads an STL file that was written: reading must be refused exactly if the notes of the writer
- * said so, with as many defects. */
+/* Reads an STL file that was written. Building a mesh of it must fail exactly if the writer has
+ * warned of this, and with the number of defects named in the warning. */
 static void expect_foretold(const char *bytes, size_t length, const he_warnings *warnings)
 {
     he_import import = {0};
@@ -31,17 +32,19 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     (void)state;
     static const struct {
         const char *text;
-        uint64_t binary, ascii; /* number of defects that the notes announce */
+        /* expected number of defects in the writer's warning, for both encodings of STL */
+        uint64_t binary, ascii;
     } rows[] = {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", 0, 0},
         {"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", 0, 0},
-        /* two faces have equal positions and the same orientation */
+        /* two faces with equal corner positions and the same orientation */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n", 3, 3},
-        /* two corners of a face are equal as floats */
+        /* a face with two corners that differ as doubles but are equal as floats */
         {"v 1 0 0\nv 1.00000000001 0 0\nv 0 1 0\nf 1 2 3\n", 1, 0},
-        /* faces that meet at one position become a bow-tie, which a mesh can represent */
+        /* two faces with a corner at the same position, which become a bow-tie: a mesh can
+         * represent it */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n", 0, 0},
-        /* a fan of faces is closed around a position at which another fan lies, too */
+        /* a closed fan of faces around a position, at which another face has a corner, too */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nv 0 0 0\nv 1 0 5\n"
          "v 0 1 5\nf 5 6 7\n",
          1, 1},
@@ -62,8 +65,8 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     }
 }
 
-/* Makes a random soup that a mesh can represent: faces of three to five corners among a few
- * vertices on a grid. */
+/* Makes random faces of three to five corners among a few points of a grid; a mesh can represent
+ * them. */
 static void fill_randomly(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 4 + md_below(random, 8);
@@ -141,7 +144,8 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
         {"obj", "ascii", NULL},
         {"off", "ascii", NULL},
     };
-    /* the first vertex has no face, so an STL file does not contain it */
+    /* vertex 0 has no face, so it is not written to an STL file and its large coordinate does no
+     * harm */
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 1e39\nv 0 1e300 0\nv -1e39 0 -1e39\n"
                                         "v 0 3.4028234663852886e38 0\nf 2 3 4\n");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -160,7 +164,7 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
     he_mesh_free(mesh);
 }
 
-/* --- OBJ: values that faces refer to --- */
+/* --- OBJ, in which only faces refer to normals --- */
 
 static void normals_of_a_point_cloud_are_told(void **state)
 {

@@ -1,6 +1,6 @@
-/* Numbers must mean the same in every format: the v of a texture coordinate runs upward in a mesh,
- * OBJ, PLY and OFF, but down in glTF; a colour is 0 to 1 in a mesh, but a byte in files that store
- * bytes. */
+/* A number must mean the same in every format. The texture coordinate v runs upward in hedge's
+ * meshes, OBJ, PLY and OFF, but downward in glTF. A colour component is from 0 to 1 in hedge's
+ * meshes, but from 0 to 255 in files that store bytes. */
 #include "unit/format_fixture.h"
 
 #include "model/random.h"
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-/* Replaces a word by another one of equal length wherever it occurs in a file. */
+/* Replaces each occurrence of a word in a file by another word of equal length. */
 static void rename_all(char *bytes, size_t length, const char *word, const char *other)
 {
     size_t n = strlen(word);
@@ -29,8 +29,8 @@ static he_import read_whole(const char *format, const char *bytes, size_t length
     return import;
 }
 
-/* Writes a mesh as GLB and reads it as other programs do, with texture coordinates as they are
- * stored: their attribute is renamed, so that hedge does not convert it. */
+/* Writes a mesh as a GLB file and reads the texture coordinates as they are stored: the test
+ * renames the attribute in the file, so that hedge does not convert its values. */
 static he_import read_raw(const he_mesh *mesh)
 {
     size_t length;
@@ -76,7 +76,8 @@ static void v_runs_down_in_gltf_alone(void **state)
     }
 }
 
-/* Reading and writing a glTF flips v twice: each float must come back with the same bits. */
+/* The reader and the writer of glTF both replace v by 1 - v: in the end each float must have the
+ * same bits as at first. */
 static void no_bit_of_v_is_lost_on_the_way_through(void **state)
 {
     (void)state;
@@ -106,8 +107,8 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
         assert_memory_equal(he_column_value(uv, i) + sizeof(float), &given[i], sizeof(float));
     }
     he_import_clear(&raw);
-    /* floats of texture coordinates survive in glTF's own attribute, so the writer must not store
-     * them in the extras as well */
+    /* glTF's own attribute already holds these texture coordinates exactly, so the writer must not
+     * store them a second time in hedge's extras */
     he_warnings warnings;
     size_t length;
     free(write_encoded("glb", "binary", mesh, 4096, &warnings, &length));
@@ -116,7 +117,8 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     he_soup_clear(&soup);
 }
 
-/* Each of the 256 values of a byte must come back from each format. */
+/* A colour component that was one of the 256 values of a byte must have the same value after it was
+ * written to any format and read back. */
 static void bytes_of_colors_come_back_from_every_format(void **state)
 {
     (void)state;

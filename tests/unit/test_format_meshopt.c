@@ -1,5 +1,5 @@
-/* glTF files with buffer views compressed by EXT_meshopt_compression: they must be read as the same
- * geometry as uncompressed files, and invalid ones be refused. */
+/* glTF files whose buffer views are compressed by EXT_meshopt_compression: valid ones must give the
+ * same geometry as uncompressed files, invalid ones must be refused. */
 #include "unit/gltf_file.h"
 
 #include "format/gltf/gltf.h"
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-/* A square of four corners (16 bytes each, with padding) and two triangles. */
+/* The corners of a square, each of 16 bytes with padding; two triangles cover the square. */
 static const float corners[4][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 1, 0, 0}};
 static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
 
@@ -32,8 +32,9 @@ static packed pack(const he_meshopt_stream *stream, const void *elements)
     return p;
 }
 
-/* A binary chunk: compressed corners from byte 0 on, compressed indices from `at` on; it ends at
- * `length`. */
+/* Data for a binary chunk: the compressed corners take `corners` bytes from byte 0 on, the
+ * compressed indices take `indices` bytes from byte `at` on; `length` is the number of bytes in
+ * all. */
 typedef struct bin {
     unsigned char bytes[2048];
     size_t corners, at, indices, length;
@@ -50,8 +51,8 @@ static bin join(const packed *first, const packed *second)
     return b;
 }
 
-/* Writes the JSON for such a chunk: `of_corners` is the extension in the view of the corners,
- * `of_indices` that in the view of the indices. */
+/* Writes the JSON of a glTF file whose binary chunk is a `bin`. `of_corners` and `of_indices` are
+ * the contents of the compression extension for the corners and for the indices. */
 static void describe(char *json, size_t size, const char *of_corners, const char *of_indices)
 {
     int used = snprintf(
@@ -81,16 +82,17 @@ static he_status read_packed(const bin *b, const char *of_corners, const char *o
     return read_bytes("glb", f.bytes, f.length, import, err);
 }
 
-/* A compressed view: `length` bytes from `at` on decode to `count` elements of `stride` bytes. */
+/* A compressed buffer view: its `length` bytes from byte `at` on are decompressed to `count`
+ * elements of `stride` bytes each. */
 typedef struct packed_view {
     size_t at, length;
-    const char *mode, *filter; /* filter "": the member is left out */
+    const char *mode, *filter; /* the member "filter" is left out if this is an empty string */
     unsigned count, stride;
 } packed_view;
 
 enum { EXTENSION = 300 };
 
-/* Writes the extension of a view. */
+/* Writes the content of the compression extension for a buffer view, in JSON. */
 static const char *extension(char text[EXTENSION], const packed_view *v)
 {
     snprintf(text, EXTENSION,
@@ -142,7 +144,8 @@ static void packed_views_are_read_as_plain_ones(void **state)
     }
 }
 
-/* With the exponential filter a value is stored as 2^E * M: 1 is 2^-8 * 256. */
+/* With the exponential filter a value is stored as an exponent E and a number M, and means 2^E * M:
+ * the value 1 is stored as E = -8 and M = 256. */
 static void exponents_are_undone(void **state)
 {
     (void)state;
@@ -168,8 +171,8 @@ static void exponents_are_undone(void **state)
     he_import_clear(&import);
 }
 
-/* The filters store directions as points on an octahedron, and quaternions without their largest
- * component. */
+/* One filter stores directions as points on an octahedron, the other one stores quaternions without
+ * their largest component: decoding must restore the full vectors. */
 static void directions_and_turns_are_undone(void **state)
 {
     (void)state;
@@ -196,7 +199,8 @@ static void directions_and_turns_are_undone(void **state)
 /* --- refusals --- */
 
 typedef struct row {
-    const char *corners, *indices; /* %zu: the bytes of the stream; NULL: unchanged */
+    /* JSON of the extensions, with %zu in place of lengths; NULL for the valid one */
+    const char *corners, *indices;
     he_status status;
     const char *words;
 } row;
@@ -301,7 +305,8 @@ static void what_the_extension_forbids_is_refused(void **state)
     }
 }
 
-/* A stream marks its end, so a truncated one must be refused and not give other geometry. */
+/* The end of compressed data is marked in the data itself, so truncated data must be refused and
+ * not give other geometry. */
 static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
 {
     (void)state;
@@ -339,7 +344,8 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
                           "TRIANGLES were compressed by version 2");
 }
 
-/* Changed bytes must give a mesh, perhaps another one, or a refusal. */
+/* Flips each bit of the compressed data: the file must be read, perhaps as other geometry, or be
+ * refused with an error that names a byte. */
 static void streams_of_wrong_bytes_end_well(void **state)
 {
     (void)state;
@@ -368,8 +374,8 @@ static void streams_of_wrong_bytes_end_well(void **state)
     assert_true(read > 0 && refused > 0);
 }
 
-/* Views of zeros are compressed to 64 bytes each: the maximum number of them must be read, and one
- * more refused. */
+/* Buffer views full of zeros are compressed to very few bytes: hedge must decompress them up to a
+ * limit on their total size and refuse the file beyond it. */
 static void what_unpacks_to_too_much_is_refused(void **state)
 {
     (void)state;
@@ -382,7 +388,8 @@ static void what_unpacks_to_too_much_is_refused(void **state)
     size_t length = he_meshopt_encode(&stream, zeros, room, most);
     free(zeros);
     size_t padded = (length + 3) / 4 * 4;
-    /* each view is 16 MiB: two fit into the allowance of every file plus 16 times its own bytes */
+    /* each view is decompressed to 16 MiB; a file is allowed 32 MiB, which is two views, and 16
+     * times its own size */
     for (size_t views = 1; views <= 6; views++) {
         char json[4096];
         int used = snprintf(json, sizeof json,
@@ -482,8 +489,8 @@ static void without_memory_nothing_is_read(void **state)
 
 /* --- writing --- */
 
-/* The first mesh has corners that differ at a seam, polygons and groups; the second one has
- * triangles only. */
+/* `seam` has polygons, groups, and corners with different values at one vertex; the others have
+ * triangles only, or no faces. */
 static const char seam[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0.5 0.1\nv 9 9 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "vt 0.25 0.125\nvn 0 0 1\ng one\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nusemtl red\n"
@@ -507,8 +514,8 @@ static he_import read_glb(const he_mesh *mesh, const char *encoding, size_t piec
     return import;
 }
 
-/* Requires that two soups have equal corners face by face and, with `exact`, also equal first
- * corners. */
+/* Requires that two soups have equal faces. With `exact`, each face must also begin with the same
+ * corner. */
 static void expect_same_faces(const he_soup *a, const he_soup *b, bool exact)
 {
     assert_int_equal(a->face_count, b->face_count);
@@ -555,7 +562,7 @@ static void a_packed_file_has_what_a_plain_one_has(void **state)
     }
 }
 
-/* An empty mesh has no data, so the file must have no buffers to compress. */
+/* An empty mesh has no data to compress, so the file must be equal to an uncompressed one. */
 static void an_empty_mesh_is_not_packed(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* MTL files, libraries of materials: a library becomes the table of materials of a mesh and is
- * written back; OBJ files keep the names of their libraries. */
+/* MTL files, which are libraries of materials: reading one gives a mesh its table of materials, the
+ * table is written as a library again, and OBJ files keep the names of their libraries. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 
@@ -207,8 +207,9 @@ static void a_library_that_is_wrong_is_named(void **state)
     assert_int_equal(err.at, 5);
 }
 
-/* The table has names that need escaping in a line, a value for every number, and both values of
- * two_sided. */
+/* The table of materials has names that must be escaped in MTL, a value for every number of a
+ * material, and both values of two_sided: all must be read back from the library that is
+ * written. */
 static void a_table_comes_back_from_its_library(void **state)
 {
     (void)state;

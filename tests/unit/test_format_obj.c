@@ -1,4 +1,5 @@
-/* The OBJ reader: every form of every line that it knows, and every refusal with its line. */
+/* Reading OBJ files: every form of every line that the reader knows, and every error with its
+ * line. */
 #include "unit/format_fixture.h"
 
 static const char cube[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -69,7 +70,7 @@ static void lines_that_end_in_returns(void **state)
         assert_string_equal(he_format_sniff(texts[i], strlen(texts[i]))->name, "obj");
     }
     expect_refused("obj", "v 0 0 0\rv 1 0 x\r", HE_SYNTAX, 2, "'x' is not a number");
-    /* the first line of the file decides what ends a line */
+    /* the way in which the first line ends decides how all lines of the file end */
     expect_refused("obj", "v 0 0 0\r\r\nv 1 0 0\rv 0 1 0\r\n", HE_SYNTAX, 2, "is not a number");
 }
 
@@ -151,8 +152,8 @@ static void corner_forms(void **state)
         he_import_clear(&import);
     }
 
-    /* a third texture coordinate is kept if it is used; values may follow the face that uses
-     * them */
+    /* A third texture coordinate is kept if any corner uses it. Values may also follow the face
+     * that refers to them. */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/3 2/2 3/1\n"
                                         "vt 1 2 0\nvt 3 4 5\nvt 6\n");
     expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 3, 3},
@@ -229,7 +230,8 @@ static void names_and_smoothing(void **state)
     expect_warning(&import, "library_missing", "file.mtl", 1, 6);
     he_import_clear(&import);
 
-    /* a value that no face has, or that all faces have by default, makes no attribute */
+    /* A group or object that no face belongs to, or a setting that all faces have by default, makes
+     * no attribute. */
     import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng\ns off\nf 1 2 3\no late\ng late\n");
     assert_int_equal(import.soup.column_count, 0);
     he_import_clear(&import);
@@ -373,8 +375,8 @@ static void wrong_values_cost_the_corner_its_value(void **state)
         assert_memory_equal(he_column_row(uv, 1), rows[i].corner, sizeof rows[i].corner);
         he_import_clear(&import);
     }
-    /* the file has no texture coordinates to which the corners could refer, so no attribute
-     * is made */
+    /* The corners refer to texture coordinates, but the file has none: no attribute is made, and a
+     * warning counts the corners. */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n");
     assert_int_equal(import.soup.column_count, 0);
     assert_int_equal(find_warning(&import.warnings, "no_such_uv", "")->count, 3);
@@ -456,8 +458,8 @@ static void wrong_text_names_its_line(void **state)
     }
     expect_refused("obj", "", HE_SYNTAX, 1, "no vertices");
     expect_refused("obj", "hello world\nthis is not a mesh\n", HE_SYNTAX, 1, "not an OBJ file");
-    /* an empty mesh is written as a file of comments, so such a file must be read as an empty
-     * mesh */
+    /* hedge writes an empty mesh as a file of comments only, so such a file must be read as an
+     * empty mesh. */
     he_import import = read_text("obj", "# 0 vertices, 0 faces\n");
     expect_counts(&import, 0, 0, 0);
     he_import_clear(&import);
@@ -487,8 +489,8 @@ static void other_encodings_are_refused(void **state)
                          "UTF-16");
 }
 
-/* The reader accepts faces that no mesh can represent; he_build refuses them, and the refusal must
- * name the line in the file. */
+/* The reader accepts faces that no mesh can represent. When he_build refuses them later, the error
+ * must still name the line of the face. */
 static void refusals_of_the_builder_get_a_line(void **state)
 {
     (void)state;
@@ -551,7 +553,7 @@ static void limits_are_kept(void **state)
             assert_int_equal(err.at, rows[i].line);
         }
     }
-    /* a line that never ends must not fill the memory */
+    /* A line that does not end must be refused before it fills the memory. */
     he_limits limits = {.bytes = 1000};
     he_reader *reader;
     he_error err = {0};

@@ -1,4 +1,4 @@
-/* The OFF reader: headers, colours, counts, and every refusal with its line. */
+/* Reading OFF files: headers, colours, counts, and every error with its line. */
 #include "unit/format_fixture.h"
 #include "tests/failing.h"
 
@@ -14,10 +14,13 @@ static void plain_files(void **state)
         "off\n3 1 999999999999999999999\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         "3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         "# a\n\n  OFF # b\n 3 # d\n1 0#e\n\n0 0 0 # f\n\n1 0 0\n#\n0\t1 0\n # g\n3  0 1 2 # h\n#",
-        "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",        /* without a number of edges */
-        "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* that number in its own line */
-        "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* one number in each line */
-        "OFF\n3 1 3\n0 0\n0\n1\n0 0\n0 1\n0\n3\n0 1\n2\n", /* elements over several lines */
+        "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", /* the header has no number of edges */
+        /* the number of edges is on a line of its own */
+        "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        /* each number of the header is on a line of its own */
+        "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        /* each vertex and face takes several lines */
+        "OFF\n3 1 3\n0 0\n0\n1\n0 0\n0 1\n0\n3\n0 1\n2\n",
         "# a\rOFF\r3 1 3\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r",
         "\xEF\xBB\xBFOFF\n3 1 3\n0 0 0\n1e0 .0 0.\n0 +1 0\n3 0 1 2\n\n\n",
     };
@@ -68,7 +71,7 @@ static void vertex_data_in_every_mix(void **state)
     static const struct {
         const char *header, *first, *second;
         bool normal, uv;
-        uint32_t color; /* number of components of a colour */
+        uint32_t color; /* expected number of components of a colour, 0 if there are no colours */
     } rows[] = {
         {"COFF", "0 0 0 0.5 0 1", "1 0 0 1 1 0.25", false, false, 3},
         {"COFF", "0 0 0 0.5 0 1 0.25", "1 0 0 1 1 0.25 1", false, false, 4},
@@ -115,7 +118,7 @@ static void vertex_data_in_every_mix(void **state)
 static void integer_colors_are_bytes(void **state)
 {
     (void)state;
-    /* texture coordinates must not be taken for colours, nor decide whether colours are bytes */
+    /* Texture coordinates must not be read as colours, nor decide whether the colours are bytes. */
     he_import import = read_text("off", "STCOFF\n3 0 0\n0 0 0 255 0 7 0.5 0.25\n"
                                         "0 0 0 1 2 3 128 0 0\n0 0 0 0 0 0 0 0\n");
     expect_bytes(&import, HE_VERTEX, 4,
@@ -125,7 +128,7 @@ static void integer_colors_are_bytes(void **state)
     static const struct {
         const char *vertex;
         double color[3];
-        bool bytes; /* a warning must say that colours are bytes */
+        bool bytes; /* whether a warning must say that the colours were read as bytes */
     } rows[] = {
         {"1 0 1", {1 / 255.0, 0, 1 / 255.0}, false}, {"1 0 1.0", {1, 0, 1}, false},
         {"255 0 1e1", {1, 0, 10 / 255.0}, true},     {"255 0 .5", {255, 0, .5}, false},
@@ -143,8 +146,8 @@ static void integer_colors_are_bytes(void **state)
     }
 }
 
-/* A vertex that lacks its normal must not take numbers of the next vertex: its normal is 0, with a
- * note. */
+/* If the line of a vertex lacks the normal that the header announces, the normal must be 0, with a
+ * warning; it must not be read from the next vertex's line. */
 static void vertices_without_what_is_announced(void **state)
 {
     (void)state;
@@ -183,8 +186,8 @@ static void vertices_without_what_is_announced(void **state)
     expect_warning(&import, "missing_numbers", "", 1, 3);
     he_import_clear(&import);
 
-    /* A missing value can look like numbers on the next line: the refusal must then say what
-     * to do. */
+    /* If the normals or colours stand on lines of their own, these look like further vertices: the
+     * error must say what is wrong with the file. */
     expect_refused("off", "NOFF\n2 0 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n", HE_SYNTAX, 5,
                    "needs it in its own line");
     expect_refused("off", "COFF\n2 1 0\n0 0 0\n7 8 9\n1 0 0\n7 8 9\n3 0 1 2\n", HE_SYNTAX, 6,
@@ -279,8 +282,7 @@ static void wrong_text_names_its_line(void **state)
         {"COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", HE_SYNTAX, 3, "the line has 8 numbers"},
         {"NOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "the line has 5 numbers"},
         {"STCOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "the line has 5 numbers"},
-        /* a normal on a line of its own must not be taken for a vertex, nor a vertex for a
-         * normal */
+        /* a normal on a line of its own must not be read as a vertex, nor a vertex as a normal */
         {"NOFF\n2 1 0\n0 0 .5\n0 0 1\n1 0 .5\n0 0 1\n3 0 1 0\n", HE_SYNTAX, 6,
          "comes after the last face"},
         {"STOFF\n3 0 0\n0 0 0\n.5 .5\n1 0 0\n.5 .5\n0 1 0\n.5 .5\n", HE_SYNTAX, 5,
@@ -289,7 +291,8 @@ static void wrong_text_names_its_line(void **state)
         {"OFF\n2 0 0\n0 0\n1 0 0\n", HE_SYNTAX, 4, "the line has 5 numbers"},
         {"OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n", HE_SYNTAX, 5, "'3' comes after the last face"},
         {"OFF\n1 0 0\n0 0 0\nx\n", HE_SYNTAX, 4, "'x' comes after the last face"},
-        /* a wrong number of vertices must neither lose faces nor add any */
+        /* if the header says a wrong number of vertices, faces must be neither lost nor made of
+         * vertices */
         {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n", HE_SYNTAX, 7, "after the last face"},
         {"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", HE_SYNTAX, 6, "0 of the 1 faces"},
     };
@@ -329,7 +332,8 @@ static void limits_are_kept(void **state)
     }
 }
 
-/* A large number of elements in the header must allocate memory only as the elements arrive. */
+/* A header with a large number of elements must not make the reader allocate memory for them before
+ * they arrive. */
 static void a_count_allocates_nothing(void **state)
 {
     (void)state;
@@ -379,7 +383,8 @@ static void put_floats(body *b, const float *values, size_t count)
     }
 }
 
-/* Makes a square of two faces: the first has a colour, the second an invalid number. */
+/* Makes a binary OFF file of a square of two triangles, of which the first has a colour and the
+ * second has one number where a colour would be. */
 static body square_body(const char *header)
 {
     static const float vertices[4][12] = {
@@ -422,7 +427,7 @@ static void a_binary_body_is_read_with_a_note(void **state)
         he_error err = {0};
         body b = square_body(headers[i]);
         size_t header = strlen(headers[i]);
-        put_text(&b, "\n"); /* before the binary numbers */
+        put_text(&b, "\n"); /* an additional byte after the last face */
         assert_int_equal(read_bytes("off", b.bytes, b.length, &import, &err), HE_OK);
         expect_counts(&import, 4, 2, 6);
         expect_corners(&import, corners, 6);
@@ -449,7 +454,7 @@ static void a_wrong_binary_body_names_its_byte(void **state)
     static const char header[] = "OFF BINARY\n";
     enum { H = sizeof header - 1, FACES = H + 12 + 48 };
     static const struct {
-        size_t where; /* offset of the word to be changed */
+        size_t where; /* offset of the word of the file that is replaced by `word` */
         uint32_t word;
         he_status status;
         uint64_t at;

@@ -1,4 +1,4 @@
-/* PLY files: every type in every encoding, the meaning of properties, and refusals. */
+/* PLY files: every number type in every encoding, what the names of properties mean, and errors. */
 #include "unit/ply_file.h"
 
 #include <float.h>
@@ -15,7 +15,8 @@ static void expect_points(const he_import *import, const double (*points)[3], si
 
 /* --- types --- */
 
-/* Reads a square whose coordinates, counts and corners have each of the types. */
+/* Reads a square in every combination of number types for its coordinates, for the counts of
+ * corners, and for the corners. */
 static void every_type_in_every_encoding(void **state)
 {
     (void)state;
@@ -232,14 +233,14 @@ static void groups_have_several_spellings(void **state)
     }
 }
 
-/* Full intensity is 1 in a mesh; in a file it is 255 for bytes and other whole numbers, 65535 for
- * ushort, and 1 for fractions. */
+/* The brightest colour component is 1 in a mesh. In a PLY file it is 65535 for ushort, 255 for
+ * uchar and other whole numbers, and 1 for float and double. */
 static void colors_of_every_type_are_fractions(void **state)
 {
     (void)state;
     static const struct {
         const char *type, *values;
-        double first; /* expected first component of the colour */
+        double first; /* expected value of the first component of the colour */
     } rows[] = {{"uchar", "51 0 255", 0.2}, {"ushort", "13107 0 65535", 0.2},
                 {"int", "51 0 255", 0.2},   {"float", "0.2 0 1", 0.2},
                 {"double", "0.2 0 1", 0.2}, {"float", "1.5 0 1", 1.5}};
@@ -385,8 +386,8 @@ static void lines_that_end_in_returns(void **state)
     he_import_clear(&import);
 }
 
-/* Rhinoceros ends the lines of a header with carriage returns: the binary body begins right after
- * the last one, and its first byte may be a line feed. */
+/* Rhinoceros ends the lines of a header by a carriage return alone. The binary data begins right
+ * after the last one, even if its first byte looks like the line feed of a line end. */
 static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
 {
     (void)state;
@@ -446,7 +447,8 @@ static void strips_become_triangles(void **state)
         assert_int_equal(he_source_map_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
         he_import_clear(&import);
     }
-    /* the file has triangle strips in an element of their own, and faces with an attribute */
+    /* A file with triangle strips in an element of their own, and also with faces that have an
+     * attribute. */
     static const uint32_t both[] = {0, 1, 2, 2, 1, 3, 0, 2, 1}, marks[] = {0, 0, 7};
     he_import import = read_text(
         "ply", ASCII "element vertex 4\n" XYZ
@@ -462,7 +464,8 @@ static void strips_become_triangles(void **state)
 static void line_ends_of_the_header(void **state)
 {
     (void)state;
-    /* the first byte of the first coordinate is a line feed */
+    /* After the header, whose lines end in CR LF, the first byte of the first coordinate is also a
+     * line feed. */
     static const char crlf[] = "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\n"
                                "property short x\r\nproperty uchar y\r\nproperty char z\r\n"
                                "end_header\r\n\n\r\xFF\r";

@@ -1,5 +1,5 @@
-/* PLY files that are refused: the position that the refusal names, its words, and what the refusal
- * costs. */
+/* PLY files that must be refused: the place in the file that the error names, its words, and how
+ * much memory is taken before the error. */
 #include "unit/ply_file.h"
 
 #include <math.h>
@@ -136,7 +136,8 @@ static void wrong_bytes_name_their_place(void **state)
 {
     (void)state;
     static const struct {
-        double faces[10]; /* counts and corners; -9 ends the list */
+        /* for each face the number of corners, then its corners; -9 ends the list */
+        double faces[10];
         he_status status;
         size_t at;
         const char *words;
@@ -213,8 +214,8 @@ static void fractions_of_bytes_name_their_place(void **state)
     }
 }
 
-/* A file whose header promises elements that do not follow must be refused before memory for them
- * is allocated. */
+/* Size of the largest block of memory that a reader requests. If the header promises elements that
+ * do not follow, the file must be refused without allocating memory for them. */
 typedef struct largest {
     size_t size;
 } largest;
@@ -318,7 +319,8 @@ static void limits_are_kept(void **state)
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
-    /* an attribute may take more memory than the rest of the mesh */
+    /* The file has many values of an attribute and hardly any other data: the attribute must count
+     * for the limit on memory, too. */
     ply_file f;
     ply_begin(
         &f, LEAST_FIRST,

@@ -1,4 +1,4 @@
-/* PLY files that hedge writes: their content, and that they are read back as equal meshes. */
+/* PLY files that hedge writes: their text, and that reading them gives equal meshes. */
 #include "unit/format_fixture.h"
 
 #define ASCII  "ply\nformat ascii 1.0\n"
@@ -126,7 +126,7 @@ static void large_faces_are_counted_in_more_than_a_byte(void **state)
     he_mesh_free(mesh);
 }
 
-/* An attribute of `rows` rows, all of whose bytes are 1. */
+/* An attribute with values for `rows` elements; all bytes of the values are 1. */
 typedef struct attribute {
     const char *name;
     he_kind domain;

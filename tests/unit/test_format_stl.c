@@ -1,4 +1,4 @@
-/* STL files, text and binary: reading, refusals, and writing. */
+/* Text and binary STL files: reading, errors, and writing. */
 #include "unit/format_fixture.h"
 #include "tests/failing.h"
 
@@ -43,7 +43,8 @@ static void put_facet(file *f, const float *corners, unsigned attribute)
     f->bytes[f->length++] = (unsigned char)(attribute >> 8);
 }
 
-/* The facets of a tetrahedron; its zeros have both signs, and must still be one position. */
+/* The facets of a tetrahedron. Its corners have coordinates 0 and -0, which must be the same
+ * position. */
 static const float facets[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
                                    {-0.0f, 0, 0, 1, 0, 0, 0, 0, 1},
                                    {0, -0.0f, -0.0f, 0, 0, 1, -0.0f, 1, 0},
@@ -159,7 +160,8 @@ static void wrong_bytes_name_their_place(void **state)
         expect_refused_at_byte(&(format_file){"stl", f.bytes, f.length}, HE_NOT_FINITE,
                                HEADER + FACET, "not finite");
     }
-    /* a facet with repeated corners is refused when the mesh is built and not by the reader */
+    /* The reader accepts a facet with repeated corners, which is refused later, when the mesh is
+     * built. */
     static const float thin[9] = {0, 1, 0, -0.0f, 1, 0, 1, 0, 0};
     begin(&f, "x", 3);
     put_facet(&f, facets[0], 0);
@@ -324,8 +326,8 @@ static void limits_are_kept(void **state)
 
 /* --- many vertices --- */
 
-/* A grid in which each vertex belongs to six triangles, so each position must be recognized six
- * times. */
+/* A large grid of triangles. Most corners lie at one position with five others: all six must become
+ * one vertex. */
 static void large_grids_are_welded(void **state)
 {
     (void)state;
@@ -415,7 +417,7 @@ static void triangles_round_trip(void **state)
     he_import_clear(&import);
 }
 
-/* Returns twice the area of the triangles in an import, seen from above. */
+/* Returns twice the area of all triangles that were read, projected to the plane z = 0. */
 static double area_of(const he_import *import)
 {
     double sum = 0;
@@ -433,8 +435,8 @@ static double area_of(const he_import *import)
 static void polygons_are_cut_into_triangles(void **state)
 {
     (void)state;
-    /* the mesh has an L-shaped face, a triangle, a dart (a concave quadrilateral), and a vertex
-     * without faces */
+    /* A mesh with an L-shaped face, a triangle, a dart (a concave quadrilateral), and a vertex
+     * without faces. */
     he_mesh *mesh = mesh_of_text("off", "OFF 11 3 0\n0 0 0\n4 0 0\n4 2 0\n2 2 0\n2 4 0\n0 4 0\n"
                                         "6 0 0\n9 -3 0\n7 0 0\n9 3 0\n5 5 5\n"
                                         "6 0 1 2 3 4 5\n3 1 6 2\n4 6 7 8 9\n");
@@ -457,8 +459,8 @@ static void polygons_are_cut_into_triangles(void **state)
     he_mesh_free(mesh);
 }
 
-/* Both diagonals of the square exist as edges: the square must still be cut, although one edge is
- * then doubled. */
+/* Both diagonals of the square exist as edges of other faces. STL has no edges, so the square must
+ * be cut into triangles all the same. */
 static void diagonals_that_exist(void **state)
 {
     (void)state;
@@ -475,7 +477,8 @@ static void diagonals_that_exist(void **state)
 static void what_is_lost_is_named(void **state)
 {
     (void)state;
-    /* two vertices have equal positions, two are equal as floats, and one has no face */
+    /* A mesh in which two vertices have equal positions, two have positions that are equal as
+     * floats, and one has no face. */
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0 1\nv 0 1 0\nv 1e30 1 0\nv -0 0 0\n"
                                         "v 1.00000000001 0 5\nv 1 0 5\nv 7 7 7\n"
                                         "usemtl red\nf 1 2 3\nf 3 2 4\nf 5 6 7\n");
@@ -526,7 +529,7 @@ static void no_memory_to_cut_polygons(void **state)
     he_mesh_free(mesh);
 }
 
-/* The face is a star that winds around its centre thousands of times. */
+/* The face is a star polygon that winds around its centre thousands of times. */
 static void faces_that_cross_themselves_are_cut_all_the_same(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The OBJ and OFF writers: their files are read back as equal meshes, whatever the size of the
- * buffer. */
+/* The writers of OBJ and OFF: reading their files must give equal meshes, whatever the size of the
+ * buffer that the writer fills. */
 #include "unit/format_fixture.h"
 
 #include "mesh/write.h"
@@ -41,8 +41,8 @@ static void text_is_as_expected(void **state)
     he_mesh_free(mesh);
 }
 
-/* A column may store fewer rows than there are elements (column.h): the other rows have the
- * default, which must be written. */
+/* A column of attribute values may have fewer rows than there are elements (column.h): for the
+ * other elements the default value must be written. */
 static void rows_that_are_not_stored_are_the_default(void **state)
 {
     (void)state;
@@ -169,7 +169,8 @@ static void vertex_values_go_to_obj(void **state)
 static void dead_rows_are_skipped(void **state)
 {
     (void)state;
-    /* isolated vertices are deleted, so the remaining ones must be numbered without gaps */
+    /* Two isolated vertices are deleted, so the remaining ones must get numbers without gaps in the
+     * file. */
     he_mesh *mesh = mesh_of_text("obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 7 7 7\n"
                                         "g one\nf 2 3 5\n");
     he_delete_vertex(mesh, (he_vertex){0});
@@ -185,7 +186,7 @@ static void dead_rows_are_skipped(void **state)
     he_mesh_free(mesh);
 }
 
-/* An attribute whose value for element 0 is `row`; `labels` may be NULL. */
+/* An attribute whose value at element 0 is `row`. `labels` are the names of its values, or NULL. */
 typedef struct attribute {
     const char *name;
     he_kind domain;
@@ -262,7 +263,8 @@ static void what_is_lost_is_named(void **state)
     assert_int_equal(warnings.count, 4);
     assert_int_equal(find_warning(&warnings, "not_finite", "uv")->count, 1);
     assert_non_null(
-        find_warning(&warnings, "attribute_lost", "vertex color")); /* not with fractions */
+        /* the colours are of type bool and not fractions */
+        find_warning(&warnings, "attribute_lost", "vertex color"));
     assert_non_null(find_warning(&warnings, "attribute_lost", "face group"));
     assert_non_null(find_warning(&warnings, "attribute_lost", "edge weight"));
     char sentence[100];
@@ -273,7 +275,7 @@ static void what_is_lost_is_named(void **state)
     he_mesh_free(mesh);
 }
 
-/* The meshes have doubles of every size, and polygons of many corners. */
+/* Makes random meshes of polygons, with coordinates that are any finite doubles. */
 static void random_meshes_round_trip(void **state)
 {
     (void)state;
@@ -294,7 +296,7 @@ static void random_meshes_round_trip(void **state)
             assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){p[0], p[1], p[2]}, NULL), HE_OK);
         }
         uint32_t v = 0;
-        while (v < 190) { /* polygons that share no vertices */
+        while (v < 190) { /* the polygons share no vertices */
             uint32_t degree = 3 + (uint32_t)(random >> 8 & 7), corners[10];
             for (uint32_t i = 0; i < degree; i++) {
                 corners[i] = v++;

@@ -1,6 +1,6 @@
-/* A mesh from before a log of edits is brought forward by the deltas in the log, and has none of
- * the rows that they add. At every entry it must equal the mesh in the log, and undo and redo must
- * continue from there. */
+/* A store keeps old contents of a mesh and a log of edits. he_delta_forward brings such a content
+ * forward by the deltas of edits that this content has not seen. After every entry of the log it
+ * must equal the mesh that was edited, and undo and redo must work from there. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -12,8 +12,8 @@
 
 enum { ENTRIES = 60 };
 
-/* Makes a random log and undoes all of it: each delta then holds what its edit added, like a delta
- * that was loaded. */
+/* Makes a random log and undoes all of it. Each delta then holds the values after its edit, like a
+ * delta that was loaded from a file. */
 static edit_log *undone_log(md_random *random)
 {
     edit_log *log = edit_log_random(random, ENTRIES);
@@ -23,8 +23,8 @@ static edit_log *undone_log(md_random *random)
     return log;
 }
 
-/* Applies entry i of the log to the mesh as the start of a store does: an edit that was never
- * applied forward, otherwise by undo or redo. */
+/* Applies entry i of the log to the mesh like a store that loads it: an edit is brought forward the
+ * first time, and later undone or redone. */
 static he_status apply(const edit_log *log, size_t i, bool *seen, he_mesh *m)
 {
     const edit_log_entry *e = &log->entries[i];
@@ -88,7 +88,7 @@ static void without_memory_the_mesh_stays_as_it_was(void **state)
     }
 }
 
-/* Records `operation` and undoes it; returns its delta. */
+/* Runs `operation` on the mesh and returns the delta that records it. */
 static he_delta *delta_of(he_mesh *m, const char *operation)
 {
     he_delta *delta = he_delta_new();
@@ -118,7 +118,7 @@ static void another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     he_mesh *m = script_mesh("012,023", NULL), *other = script_mesh("012,023", NULL);
     script_add_columns(m);
     he_delta *values = delta_of(m, "edge_split edge=0-2 t=0.5");
-    size_t first = 0; /* number of equal links before the first value */
+    size_t first = 0; /* number of records before the first one that changes an attribute value */
     while (values->records[first].column < HE_COL_ATTRIBUTE) {
         first++;
     }
@@ -132,7 +132,8 @@ static void another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     uint32_t issued[HE_KIND_COUNT];
     edit_log_marks(m, issued);
     assert_int_equal(he_delta_forward(moved, other, issued, NULL, NULL), HE_OK);
-    expect_refusal(moved, other, m, 0); /* vertex 1 was moved already */
+    /* vertex 1 has the new position already, so the delta does not fit */
+    expect_refusal(moved, other, m, 0);
     he_delta_free(moved);
     he_mesh_free(m);
     he_mesh_free(other);
@@ -148,7 +149,8 @@ static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
     edit_log_add_column(m, &random, 1);
     he_mesh_record(m, NULL);
     he_delta_undo(delta, m);
-    edit_log_add_column(other, &same, 1); /* another column takes the slot */
+    /* another column takes the slot of attributes that the delta would use */
+    edit_log_add_column(other, &same, 1);
     expect_refusal(delta, other, m, 0);
     md_random another = {3};
     he_mesh_free(other);
@@ -156,7 +158,8 @@ static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
     edit_log_add_column(other, &another, 2);
     another = (md_random){3};
     edit_log_add_column(other, &another, 1);
-    assert_int_equal(he_mesh_drop_column(other, 0, NULL), HE_OK); /* its slot is free now */
+    /* the slot that the delta would use is free, but not the name */
+    assert_int_equal(he_mesh_drop_column(other, 0, NULL), HE_OK);
     expect_refusal(delta, other, m, 0);
     he_delta_free(delta);
     he_mesh_free(m);
