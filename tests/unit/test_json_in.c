@@ -129,7 +129,7 @@ static const body_case cases[] = {
     {"\"\xF8\x88\x80\x80\x80\"", API_MALFORMED_JSON, ""},
     {"\"\xFF\"", API_MALFORMED_JSON, ""},
     {"'a'", API_MALFORMED_JSON, ""},
-    /* a member given twice, however its name is spelled */
+    /* a member that occurs twice in an object, even if its name is escaped the second time */
     {"{\"a\":1,\"a\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"{\"a\":1,\"\\u0061\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"[{},{\"x\":{\"b\":1,\"c\":2,\"b\":1}}]", API_DUPLICATE_MEMBER, "/1/x/b"},
@@ -218,7 +218,7 @@ static void objects_have_a_bounded_number_of_members(void **state)
     }
 }
 
-/* How the member "v" of a document is read: as which type, and with which limits. */
+/* The type as which the member "v" of a document is read, and the limits of its value. */
 typedef enum reader {
     READ_BOOL,
     READ_NUMBER,

@@ -145,8 +145,9 @@ static void expect_faces(const he_mesh *m, const he_delta *delta, size_t from, b
     he_changes_clear(&changes);
 }
 
-/* Materials are assigned to faces, some of them new to the mesh, which at first has no material
- * attribute. In each case exactly the faces whose material changes must be reported as modified. */
+/* The edits assign materials to faces. Some of these materials are new to the mesh, and the first
+ * edit adds the material attribute itself. Each edit must report exactly the faces whose material
+ * changes as modified. */
 static void faces_whose_material_changes_are_modified(void **state)
 {
     (void)state;
@@ -205,8 +206,8 @@ static void a_material_set_before_a_compact_is_a_replacement(void **state)
     he_mesh_free(m);
 }
 
-/* A material_set that sets the values that are there already must record nothing, so that it makes
- * no revision. */
+/* If material_set sets only values that are there already, it must record nothing, so that no
+ * revision is made. */
 static void what_changes_nothing_is_no_edit(void **state)
 {
     (void)state;

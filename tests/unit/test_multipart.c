@@ -1,5 +1,5 @@
-/* Bodies of several files (multipart/form-data): their parts, however the body is split, and
- * refusals. */
+/* Tests of bodies with several files (multipart/form-data): which parts are found, however the body
+ * is split into pieces, and which bodies are refused. */
 #include "api/header/multipart.h"
 
 #include "unit/fixture.h"
@@ -145,7 +145,7 @@ static void empty_parts_are_parts(void **state)
 {
     (void)state;
     expect(PART("a") LAST, "[a];");
-    /* the line break before a delimiter belongs to the delimiter, even if the part is empty */
+    /* The line break before a delimiter belongs to the delimiter, even if the part is empty. */
     expect(PART("a") "--AbC--", "[a];");
     expect(PART("a") LINE PART("b") LINE PART("c") "x" LAST, "[a];[b];[c]x;");
     expect(PART("a") LINE LINE "--AbC--", "[a]\r\n;");

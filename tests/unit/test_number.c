@@ -157,8 +157,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
     }
 }
 
-/* Requires that the text of a double is read back as this double by the C library and by our
- * reader, and that no shorter text is. */
+/* Prints a double as text. The C library and our reader must both read the text as this double, and
+ * no text with fewer digits may have this value. */
 static void check_print(double value, bool try_all)
 {
     char text[HE_NUMBER_TEXT + 1], other[64];

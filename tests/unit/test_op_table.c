@@ -1,7 +1,7 @@
 /* Tests of every operation in the table of operations: it must be able to succeed; every declared
- * error must occur, and no other; V, E and F must change as declared; the result must pass the
- * checker; an error or a failed allocation must leave every bit of the mesh unchanged; and its
- * delta must undo and redo it. */
+ * error must occur, and no other; the numbers of vertices, edges and faces must change as declared;
+ * the result must pass the checker; an error or a failed allocation must leave every bit of the
+ * mesh unchanged; and its delta must undo and redo it. */
 #include "edit_script.h"
 #include "giants.h"
 #include "scenarios.h"
@@ -455,7 +455,8 @@ static void run_recorded(const scenario *s, bool columns)
     he_mesh_free(m);
 }
 
-/* Runs a scenario with the n-th allocation failing for every n, with or without recording. */
+/* Runs a scenario again and again with the n-th allocation failing, for every n, with or without
+ * recording changes. */
 static void run_short_of_memory(const scenario *s, bool columns, bool record)
 {
     failing f = {.what = s->operation};
@@ -515,7 +516,7 @@ static void too_much_work_is_refused_without_change(void **state)
     }
 }
 
-/* This test runs after all others: each operation must declare exactly the refusals that the
+/* This test must run after all others: each operation must declare exactly the errors that the
  * scenarios have produced. */
 static void each_declared_refusal_occurs_and_no_other(void **state)
 {

@@ -115,7 +115,7 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
     (void)state;
     double *values = malloc(PICKED * sizeof *values);
     assert_non_null(values);
-    uint64_t word = UINT64_C(0x3FF0000000000000); /* the bits of the double 1 */
+    uint64_t word = UINT64_C(0x3FF0000000000000); /* the bits of the number 1.0 */
     for (size_t count = 0; count < PICKED; word++) {
         if (number_lies_low(word)) {
             memcpy(&values[count++], &word, sizeof word);

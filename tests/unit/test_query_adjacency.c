@@ -346,7 +346,7 @@ static void relations_refuse_elements_that_do_not_exist(void **state)
                          HE_LIMIT);
         assert_null(dense.ids.ids);
         assert_null(dense.offsets.ids);
-        /* An empty list of elements must give an empty answer. */
+        /* If a query lists no elements, its answer must be empty. */
         assert_int_equal(he_relation_dense(m,
                                            &(he_neighbours){.relation = r, .of = list, .count = 0},
                                            0, &dense, &err),

@@ -1,4 +1,5 @@
-/* Corner normals, cotangent weights and curvature are compared with closed forms. */
+/* Tests of corner normals, cotangent weights and curvature: the results are compared with closed
+ * forms. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"

@@ -1,4 +1,5 @@
-/* Lengths, areas, normals and angles are compared with closed forms and with other formulas. */
+/* Tests of lengths, areas, normals and angles: the results are compared with closed forms and with
+ * other formulas. */
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
@@ -168,7 +169,7 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
         he_mesh *m = fixture_mesh(query_specimens[i]);
         assert_dihedrals_agree(m);
         if (m->c.vertices.issued > 2) {
-            m->c.position[1] = m->c.position[2]; /* faces with both vertices become degenerate */
+            m->c.position[1] = m->c.position[2]; /* faces with vertices 1 and 2 become degenerate */
         }
         assert_dihedrals_agree(m);
         he_mesh_free(m);
@@ -655,8 +656,8 @@ static void geometry_ends_on_broken_links(void **state)
         he_mesh_free(m);
     }
     assert_true(corrupt > 1000);
-    /* The links of one face lead into a loop beside it, and the turn around one vertex never
-     * ends. */
+    /* The links of the mesh are broken: following the half-edges of one face, or turning around one
+     * vertex, never comes back to the beginning. */
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     m->c.next[4] = 2;
     m->c.prev[8] = 8 ^ 1;

@@ -211,7 +211,7 @@ static void known_meshes_have_the_expected_topology(void **state)
     static const struct {
         const char *faces;
         uint32_t loops, isolated, bowties, components, by_edge;
-        int euler, genus; /* genus -1: it is undefined */
+        int euler, genus; /* a genus of -1 stands for none */
     } rows[] = {
         {"", 0, 0, 0, 0, 0, 0, 0},
         {"012", 1, 0, 0, 1, 1, 1, 0},

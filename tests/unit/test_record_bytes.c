@@ -1,5 +1,6 @@
-/* Records of the store as bytes (core/journal/record_bytes.h): what was written is read back, from
- * bytes that every later release must be able to read; damaged records are refused with the offset.
+/* Tests of the store's records as bytes (core/journal/record_bytes.h): reading must restore what
+ * was written, every later release must be able to read the bytes below, and damaged records must
+ * be refused with the offset of the damage.
  *
  * `test_record_bytes --write FOLDER` writes the records of this test as seeds of fuzz_record. */
 #include "journal/record_bytes.h"
@@ -12,7 +13,7 @@
 #define CHAIN UINT64_C(0x0123456789abcdef)
 
 static const unsigned char body[] = {1, 2, 3, 250};
-static char in_parts; /* a placeholder for staged parts, which belong to the journal */
+static char in_parts; /* a placeholder for parts that the journal has written */
 
 /* One record of each kind, and its bytes in version 1 of the format. */
 static const struct specimen {

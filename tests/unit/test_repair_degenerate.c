@@ -72,7 +72,7 @@ static void a_face_keeps_what_has_an_area(void **state)
     }
 }
 
-/* Returns twice the area of a triangle seen from above. */
+/* Returns twice the area of a triangle in the plane z = 0, positive if it is counter-clockwise. */
 static double twice_area(const he_soup *soup, size_t f)
 {
     const uint32_t *v = soup->corners + soup->starts[f];

@@ -26,7 +26,7 @@ static void pairs_between_the_same_fans_exchange_partners(void **state)
     static const char *const rows[] = {
         /* a tetrahedron and a reversed copy of it, both on the same vertices */
         "031,123,320,321,130,210,023,201",
-        /* two pairs of triangles back to back, the second pair in reverse order */
+        /* two pairs of triangles back to back, with the second pair in reverse order */
         "012,013,103,102",
         /* three pairs of triangles back to back, all at one edge, in a circle */
         "012,013,014,103,104,102",

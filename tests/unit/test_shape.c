@@ -21,8 +21,8 @@ static const he_shape *shape_named(const char *name)
     return shape;
 }
 
-/* Makes a shape; the arguments are in the order of its row in the table, and NAN takes the
- * default. */
+/* Makes a shape. The arguments are in the order in which the shape's row of the table lists its
+ * parameters; NAN stands for the default. */
 static he_mesh *make(const char *name, double a, double b, double c, double d)
 {
     const he_shape *shape = shape_named(name);

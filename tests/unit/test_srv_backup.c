@@ -1,4 +1,4 @@
-/* Backups of a store, and restoring them (core/journal/sqlite/sqlite_backup.h). */
+/* Tests of backups of a store, and of restoring them (core/journal/sqlite/sqlite_backup.h). */
 #include "tests/pace.h"
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"

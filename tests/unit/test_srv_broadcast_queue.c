@@ -217,7 +217,7 @@ static void a_listener_goes_back_to_a_key(void **state)
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
-    add(9, 4); /* a message that makes no new revision */
+    add(9, 4); /* a message about a change without a new revision */
     add(10, 5);
     st_queue_allow(&feed, 10);
     assert_true(st_queue_rewind(&listener, 3));

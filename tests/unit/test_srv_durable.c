@@ -41,7 +41,7 @@ static struct {
     note notes[NOTES + 1];
     uint64_t newest;
     bool losing;              /* whether the disk is full */
-    size_t out;               /* number of reservations */
+    size_t out;               /* reservations that have not ended */
     uint64_t removed[MESHES]; /* position of the last deletion of each mesh id */
     _Atomic uint64_t durable;
     st_journal_listener listener;

@@ -356,7 +356,8 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     assert_non_null(memory);
     const size_t left = in_memory();
     assert_true(left < MESHES);
-    /* A request for more memory than the budget must remove no mesh from memory. */
+    /* If a request needs more memory than the whole budget, no mesh must be removed from memory for
+     * it. */
     assert_null(he_mem_alloc(st_memory_budget()));
     assert_int_equal(in_memory(), left);
     st_store_serve(NULL);
@@ -512,7 +513,7 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     assert_int_equal(in_memory(), MESHES - 1);
     st_mesh *mesh = NULL;
     assert_int_equal(st_find(store, ids[1], &mesh), ST_COLD);
-    /* With enough memory all meshes must stay. */
+    /* While there is enough memory, all meshes must stay. */
     st_memory_set_budget(BUDGET);
     for (size_t i = 0; i < store->count; i++) {
         atomic_store(&store->meshes[i]->used, 1);

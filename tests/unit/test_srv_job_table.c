@@ -112,7 +112,7 @@ static void take_facts(void *context, const api_job *job)
     *(api_job *)context = *job;
 }
 
-/* Returns a question about the job with this id, by a client without a token. */
+/* Returns the parameters for looking up the job with this id, by a client without a token. */
 static api_job_wanted wanted(const char *id)
 {
     return (api_job_wanted){.viewer = NULL, .id = id};

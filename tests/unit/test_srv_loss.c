@@ -119,8 +119,8 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     st_release(again);
 }
 
-/* If a mesh was made from a state, and a change to this state is lost, the new mesh must be lost,
- * too. After the loss, making a mesh from this state must be refused. */
+/* If a mesh was made from a changed state of another mesh, and this change is lost, the new mesh
+ * must be lost, too. After the loss, making a mesh from this state must be refused. */
 static void nothing_is_made_of_what_was_lost(void **state)
 {
     (void)state;

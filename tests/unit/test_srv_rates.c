@@ -11,7 +11,7 @@
 #include <time.h>
 
 #define SECOND UINT64_C(1000000)
-/* The clock of the test starts at an arbitrary time. */
+/* The clock of the test begins at an arbitrary time. */
 #define START UINT64_C(77000000)
 
 static api_rate_key key_of(uint64_t client)

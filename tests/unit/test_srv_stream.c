@@ -19,7 +19,7 @@ typedef struct talk {
     void *context;
     unsigned told, read, starts, finishes;
     bool waiting, finished;
-    /* The members below are for the threads that do the work of the server. */
+    /* The members below are used by the threads that stand for the server's workers. */
     bool aside, begun, ended;
     unsigned comments;
     struct talk *next;

@@ -70,7 +70,7 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
 {
     (void)state;
     pairs p;
-    const srv_deadline_options options = {.max_connections = LATE}; /* no connection may be idle */
+    const srv_deadline_options options = {.max_connections = LATE}; /* idle for 0 s at most */
     srv_deadlines *d = srv_deadlines_new(&options);
     assert_non_null(d);
     open_pairs(d, &p);

@@ -165,7 +165,7 @@ static he_column *labelled_column(const he_mesh *m)
     return column;
 }
 
-/* Adds a column, writes a value to it, issues rows, and removes the column again. Another column is
+/* Adds a column, writes a value to it, adds faces, and removes the column again. Another column is
  * added and stays. */
 static void change_columns(he_mesh *m)
 {
