@@ -1,4 +1,4 @@
-/* Paths, media types, entity tags, cursors: the small grammars in the headers of a request. */
+/* Tests of the small grammars in a request: paths, media types, entity tags, cursors. */
 #include "api/header/cursor.h"
 #include "api/header/etag.h"
 #include "api/header/media.h"
@@ -189,7 +189,7 @@ static void content_codings_are_chosen_by_weight(void **state)
         const char *header;
         bool any;
         api_coding best;
-        bool identity; /* an uncompressed answer is allowed */
+        bool identity; /* whether an uncompressed answer is allowed */
     } rows[] = {
         {NULL, true, API_IDENTITY, true},
         {"", true, API_IDENTITY, true},
@@ -280,8 +280,8 @@ static void one_content_coding_is_taken(void **state)
 
 static const st_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
 
-/* Returns whether `header`, an If-None-Match, has the entity tag in a coding that a client with
- * Accept-Encoding: gzip can use. */
+/* Returns whether `header`, the value of If-None-Match, lists this entity tag for this coding, if
+ * the client sends Accept-Encoding: gzip. */
 static bool listed(const char *header, const char *etag, api_coding coding)
 {
     const api_codings codings = {.allowed = {[API_GZIP] = true, [API_IDENTITY] = true}};
@@ -301,12 +301,14 @@ static void entity_tags_name_state_and_representation(void **state)
     assert_false(listed("0000000000000abc-2-41-obj", etag, API_IDENTITY));
     assert_false(listed("", etag, API_IDENTITY));
     assert_false(listed("\"", etag, API_IDENTITY));
-    /* The tag may also have the name of a coding that the client accepts. */
+    /* An entity tag may end with the name of a coding; it matches only if the client accepts that
+     * coding. */
     assert_true(listed("\"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_true(listed("\"y\", \"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_false(listed("\"0000000000000abc-2-41-obj-zstd\"", etag, API_ZSTD));
     assert_false(listed("\"0000000000000abc-2-41-obj-identity\"", etag, API_IDENTITY));
-    /* In the condition of a write, the tag of any representation of the present state is valid. */
+    /* The If-Match of a write may have the entity tag of any representation of the present
+     * state. */
     assert_true(api_etag_is_present("\"0000000000000abc-2-41-stl\"", &facts));
     assert_true(api_etag_is_present("\"a\",\"0000000000000abc-2-41-obj\"", &facts));
     assert_true(api_etag_is_present("*", &facts));
@@ -332,7 +334,8 @@ static void cursors_come_back_or_are_refused(void **state)
         char shorter[API_CURSOR] = "";
         memcpy(shorter, text, cut);
         problem = (api_problem){0};
-        /* A cursor of position 1000 that is truncated to 100 is a valid cursor, too. */
+        /* If a cursor with position 1000 is truncated so that it ends in 100, it is still a valid
+         * cursor. */
         if (!api_cursor_read(shorter, "vertices", &facts, &position, &problem)) {
             assert_true(problem.code == API_BAD_CURSOR);
         }
@@ -351,8 +354,8 @@ static void cursors_come_back_or_are_refused(void **state)
         assert_false(api_cursor_read(bad[i], "vertices", &facts, &position, &problem));
         assert_int_equal(problem.code, API_BAD_CURSOR);
     }
-    /* A cursor keeps its revision while the mesh is edited; it is invalid for another mesh that
-     * gets the id. */
+    /* A cursor keeps its revision while the mesh is edited, and becomes invalid if the mesh is
+     * deleted and another one is created with its id. */
     st_mesh_info later = facts;
     uint64_t pinned = 0;
     later.revision++;

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* A JSON body, its outcome, and the JSON pointer in the problem ("-": not checked). */
+/* A JSON body, the expected error code, and the expected JSON pointer to the error ("-": any). */
 typedef struct body_case {
     const char *body;
     int code;
@@ -30,7 +30,7 @@ static const body_case cases[] = {
     {"[true,false,null]", HE_OK, "-"},
     {"{\"a\":{\"a\":{\"a\":1}}}", HE_OK, "-"},
     {"{\"a\":1,\"A\":2}", HE_OK, "-"},
-    /* empty bodies, and text after the value */
+    /* empty bodies, and bodies with more text after the JSON value */
     {"", API_MALFORMED_JSON, ""},
     {"   ", API_MALFORMED_JSON, ""},
     {"{} {}", API_MALFORMED_JSON, ""},
@@ -129,7 +129,7 @@ static const body_case cases[] = {
     {"\"\xF8\x88\x80\x80\x80\"", API_MALFORMED_JSON, ""},
     {"\"\xFF\"", API_MALFORMED_JSON, ""},
     {"'a'", API_MALFORMED_JSON, ""},
-    /* a member given twice, however its name is spelled */
+    /* a member that occurs twice in an object, even if its name is escaped the second time */
     {"{\"a\":1,\"a\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"{\"a\":1,\"\\u0061\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"[{},{\"x\":{\"b\":1,\"c\":2,\"b\":1}}]", API_DUPLICATE_MEMBER, "/1/x/b"},
@@ -138,14 +138,14 @@ static const body_case cases[] = {
     {"{\"a/b\":[01]}", API_MALFORMED_JSON, "/a~1b/0"},
 };
 
-/* A body that has been parsed, or the problem with it. */
+/* The values of a body that was parsed, or the problem for which it was refused. */
 typedef struct parsed {
     api_document document;
     api_in root;
     api_problem problem;
 } parsed;
 
-/* Parses a body of at most `values` values. */
+/* Parses a body, which may have at most `values` JSON values. */
 static bool parse(const char *body, size_t length, size_t values, parsed *p)
 {
     const api_in_options options = {.values = values};
@@ -194,7 +194,7 @@ static void depth_and_number_of_values_are_bounded(void **state)
     api_document_clear(&p.document);
     assert_false(parse("[1,2,3]", 7, 3, &p));
     assert_int_equal(api_problem_http(&p.problem), 413);
-    /* Brackets that are opened and never closed must not use the stack. */
+    /* A hundred thousand brackets, opened and never closed, must not overflow the stack. */
     static char deep[100000];
     memset(deep, '[', sizeof deep);
     p.problem = (api_problem){0};
@@ -218,17 +218,17 @@ static void objects_have_a_bounded_number_of_members(void **state)
     }
 }
 
-/* How the member "v" of a document is read: as which type, and with which limits. */
+/* The type as which the member "v" of a document is read, and the limits of its value. */
 typedef enum reader {
     READ_BOOL,
     READ_NUMBER,
-    READ_OPEN_RANGE, /* a number between 0 and 1, without these */
-    READ_U64,        /* 1..10 */
+    READ_OPEN_RANGE, /* a number greater than 0 and less than 1 */
+    READ_U64,        /* a whole number from 1 to 10 */
     READ_ID,
     READ_IDS,
     READ_VEC3,
-    READ_STRING, /* at most 4 bytes */
-    READ_CHOICE, /* "a", "b" */
+    READ_STRING, /* a string of at most 4 bytes */
+    READ_CHOICE, /* the string "a" or "b" */
     READ_ELEMENT
 } reader;
 

@@ -1,12 +1,12 @@
-/* The JSON lexer: which tokens a text has, where it is wrong, and that neither depends on where the
- * pieces of a text are cut. */
+/* Tests of the JSON lexer: which tokens it finds in a text, and where it reports a mistake. Both
+ * must be independent of how the text is cut into pieces. */
 #include "format/text/json_lexer.h"
 
 #include "fixture.h"
 #include "json_tokens.h"
 #include "seed.h"
 
-/* --- tables --- */
+/* --- tables of texts and their tokens --- */
 
 typedef struct good_case {
     const char *text, *told;
@@ -88,7 +88,7 @@ static void a_fault_has_its_kind_and_place(void **state)
     }
 }
 
-/* --- depth, place, limits --- */
+/* --- limits of nesting, and offsets of mistakes --- */
 
 static void depth_is_refused_beyond_its_limit(void **state)
 {
@@ -184,11 +184,11 @@ static void a_long_string_is_interrupted(void **state)
     free(text);
 }
 
-/* --- rows --- */
+/* --- arrays of numbers, read in one call --- */
 
 typedef struct row_case {
     const char *text;
-    size_t numbers, indices; /* how many are read in one call */
+    size_t numbers, indices; /* how many values one call reads */
 } row_case;
 
 static const row_case rows[] = {
@@ -291,7 +291,7 @@ static void put_value(writer *w, int depth)
     ONE_OF(blanks);
 }
 
-/* Changes, removes or inserts a byte, in most cases one that has a meaning in JSON. */
+/* Changes, removes or inserts one byte; the new byte mostly has a meaning in JSON. */
 static void damage(writer *w)
 {
     static const char bytes[] = "{}[]:,\"\\0-+.eEtfnu \n\x01\xC3\xFF";
@@ -335,8 +335,8 @@ static void random_texts_are_the_same_wherever_they_are_cut(void **state)
         for (uint32_t i = any(3); i > 0 && w.length > 1; i--) {
             damage(&w);
         }
-        /* A line feed is added, because a number at the end of a text that comes in pieces could
-         * still go on. */
+        /* A line feed ends the text: without it, a number at the end of a text in pieces might
+         * continue in the next piece. */
         w.length -= w.length == TEXT;
         w.text[w.length++] = '\n';
         json_tokens_of_text(&whole, w.text, w.length);

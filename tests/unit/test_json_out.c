@@ -122,8 +122,8 @@ static void many_ids_grow_the_text(void **state)
     api_out out;
     api_out_init(&out, &text);
     api_out_ids(&out, ids, COUNT);
-    /* The list has 10 numbers of one digit, 90 of two, 900 of three and 9000 of four, and commas
-     * and brackets. */
+    /* The list has the ids 0 to 9999: 10 of one digit, 90 of two, 900 of three and 9000 of four.
+     * The commas between them and two brackets are added. */
     assert_int_equal(text.length, 10 + 180 + 2700 + 36000 + COUNT - 1 + 2);
     assert_memory_equal(text.bytes + text.length - 11, ",9998,9999]", 11);
     api_text_clear(&text);

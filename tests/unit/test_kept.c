@@ -1,5 +1,5 @@
-/* A body that never changes is compressed once for each coding, by whichever thread asks first, and
- * decodes to what it was. */
+/* A constant answer body must be compressed once for each content coding, by the first thread that
+ * needs it, and must decode to the original bytes. */
 #include "api/header/kept.h"
 
 #include "fixture.h"
@@ -12,7 +12,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
-enum { LONGEST = 300 * 1000 }; /* more than a compressor reads at once */
+enum { LONGEST = 300 * 1000 }; /* more bytes than a compressor reads at once */
 
 static char body[LONGEST], decoded[LONGEST];
 

@@ -1,4 +1,5 @@
-/* A refusal of an unknown name says which names exist, or which one was probably meant. */
+/* Tests of errors about unknown names: the message must list the names that exist, or suggest the
+ * one that was probably meant. */
 #include "api/json/known_names.h"
 
 #include "fixture.h"

@@ -1,5 +1,5 @@
-/* Materials of a mesh: the table of materials follows every edit that makes a new mesh, faces keep
- * their materials, and two meshes with different tables can be joined. */
+/* Tests of materials: the table of materials must survive every edit that makes a new mesh, faces
+ * must keep their materials, and two meshes with different tables must be joinable. */
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
@@ -43,7 +43,7 @@ static void a_material_is_made_changed_and_given(void **state)
     script_prepare(m, "material_set name=red base_color=0,1,0 emission=3,0,0 two_sided=1");
     const he_look *look = look_of(m, "red");
     assert_true(look->base_color[0] == 0 && look->base_color[1] == 1);
-    assert_true(look->base_color[3] == 0.5); /* three numbers do not change the opacity */
+    assert_true(look->base_color[3] == 0.5); /* a colour of three numbers keeps the opacity */
     assert_true(look->emission[0] == 3 && look->two_sided);
     script_prepare(m, "material_set name=red rename=green;material_set name=blue faces=1,2");
     assert_string_equal(name_of(m, 0), "green");
@@ -80,13 +80,13 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     assert_string_equal(name_of(m, 0), "");
     assert_string_equal(name_of(m, 2), "b");
     assert_string_equal(name_of(m, 3), "c");
-    assert_int_equal(label_count(m), 3); /* including the empty name */
+    assert_int_equal(label_count(m), 3); /* the empty name counts as a label, too */
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
     script_prepare(m, "material_delete name=c to=b");
     assert_string_equal(name_of(m, 3), "b");
     assert_int_equal(label_count(m), 2);
-    /* a deleted material is replaced by another one, which no face had before, and new faces get
-     * the material of the face that they came from */
+    /* The faces of a deleted material must get the replacement `d`, even if no face had it before;
+     * the faces that face_poke makes must get the material of the face that was poked. */
     script_prepare(m, "material_set name=d;material_delete name=b to=d;face_poke face=3");
     assert_string_equal(name_of(m, 1), "d");
     assert_string_equal(name_of(m, he_mesh_issued(m, HE_FACE) - 1), "d");
@@ -119,7 +119,7 @@ static void a_default_material_is_deleted_like_any(void **state)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     assert_string_equal(name_of(m, 5), "elm");
     script_prepare(m, "material_delete name=elm");
-    assert_string_equal(name_of(m, 5), ""); /* added in place of "elm" */
+    assert_string_equal(name_of(m, 5), ""); /* the empty name replaces "elm" */
     script_prepare(m, "material_delete name=oak;vertex_add position=9,9,9");
     assert_int_equal(label_count(m), 1);
     assert_string_equal(name_of(m, 5), "");
@@ -145,8 +145,9 @@ static void expect_faces(const he_mesh *m, const he_delta *delta, size_t from, b
     he_changes_clear(&changes);
 }
 
-/* The edits name materials that are new and that are known, first in a mesh without the attribute:
- * in each case exactly the faces whose material changes must be reported as modified. */
+/* The edits assign materials to faces. Some of these materials are new to the mesh, and the first
+ * edit adds the material attribute itself. Each edit must report exactly the faces whose material
+ * changes as modified. */
 static void faces_whose_material_changes_are_modified(void **state)
 {
     (void)state;
@@ -178,8 +179,8 @@ static void faces_whose_material_changes_are_modified(void **state)
     he_mesh_free(m);
 }
 
-/* The records of material_set refer to slots of columns that the compacted content does not have,
- * so the whole edit must be reported as a replacement. */
+/* The delta has changes of attribute columns that `compact` removes, so the whole edit must be
+ * reported as a replacement of the content. */
 static void a_material_set_before_a_compact_is_a_replacement(void **state)
 {
     (void)state;
@@ -205,8 +206,8 @@ static void a_material_set_before_a_compact_is_a_replacement(void **state)
     he_mesh_free(m);
 }
 
-/* A material_set that sets the values that are there already must record nothing, so that it makes
- * no revision. */
+/* If material_set sets only values that are there already, it must record nothing, so that no
+ * revision is made. */
 static void what_changes_nothing_is_no_edit(void **state)
 {
     (void)state;
@@ -218,7 +219,7 @@ static void what_changes_nothing_is_no_edit(void **state)
                       "material_set name= face=3");
     assert_int_equal(delta->count, 0);
     script_prepare(m, "material_set name=red roughness=0.5");
-    assert_int_equal(delta->count, 1); /* one record per row, whatever the size of the table */
+    assert_int_equal(delta->count, 1); /* a change of one material is one record */
     he_mesh_record(m, NULL);
     he_delta_free(delta);
     he_mesh_free(m);
@@ -291,12 +292,14 @@ static void append_merges_equal_rows_and_numbers_others(void **state)
     assert_true(look_of(m, "red_2")->base_color[2] == 1);
     assert_true(look_of(m, "red")->base_color[1] == 0);
     he_appended_clear(&appended);
-    /* a second append finds the numbered names that the first one made */
+    /* A second append must find the names with numbers, such as "red_2", that the first one
+     * made. */
     assert_int_equal(he_append(m, other, NULL, NULL), HE_OK);
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 4);
     assert_valid(m);
     he_mesh_free(m);
-    /* if no face of the mesh has a material yet, the appended labels are renamed at once */
+    /* If no face of the mesh has a material yet, the material names of the appended mesh must be
+     * renamed at once. */
     m = script_mesh("012", NULL);
     script_prepare(m, "material_set name=red roughness=0.5");
     assert_int_equal(he_append(m, other, &appended, NULL), HE_OK);
@@ -326,8 +329,8 @@ static void the_checker_sees_a_table_that_cannot_be(void **state)
     he_mesh_free(m);
 }
 
-/* The rows of the table of materials must be counted in the memory of the mesh, and those that an
- * edit changes in the memory of its delta. */
+/* The rows of the table of materials must be counted in the memory of the mesh; rows that an edit
+ * changes must be counted in the memory of its delta. */
 static void memory_of_rows_is_counted(void **state)
 {
     (void)state;
@@ -340,7 +343,7 @@ static void memory_of_rows_is_counted(void **state)
     before = he_delta_bytes(delta);
     script_prepare(m, "material_set name=m1 metallic=1");
     assert_true(he_delta_bytes(delta) >= before + sizeof(he_record) + sizeof(he_material));
-    /* labels that an edit removes belong to its delta and are counted there */
+    /* The memory of labels that an edit removes must be counted in its delta. */
     char name[HE_MATERIAL_NAME + 30];
     snprintf(name, sizeof name, "material_set name=%0200d face=0", 1);
     script_prepare(m, name);

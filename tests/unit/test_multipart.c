@@ -1,5 +1,5 @@
-/* Bodies of several files (multipart/form-data): their parts, however the body is split, and
- * refusals. */
+/* Tests of bodies with several files (multipart/form-data): which parts are found, however the body
+ * is split into pieces, and which bodies are refused. */
 #include "api/header/multipart.h"
 
 #include "unit/fixture.h"
@@ -14,7 +14,8 @@
 
 enum { MOST = 8192 };
 
-/* The parts that were read, as text: "[name|type]bytes;" for each, and why the body was refused. */
+/* The parts that were read, as text in the form "[name|type]bytes;", and the problem if the body
+ * was refused. */
 typedef struct told {
     char text[MOST];
     size_t length;
@@ -34,8 +35,8 @@ static void add_text(told *t, const char *text)
     add(t, text, strlen(text));
 }
 
-/* Reads a body in pieces of `piece` bytes, each in a block of its own; returns the code of a
- * refusal, or HE_OK. */
+/* Reads a body in pieces of `piece` bytes, each in a heap block of its own; returns HE_OK, or the
+ * code of the problem if the body was refused. */
 static int read_in(const char *type, const char *body, size_t length, size_t piece, told *out)
 {
     api_problem *problem = &out->problem;
@@ -84,8 +85,7 @@ static int read_in(const char *type, const char *body, size_t length, size_t pie
     return problem->code;
 }
 
-/* Requires the same result whether the body is read whole, byte by byte or in pieces of any size
- * between. */
+/* Requires that the result is `wanted` in pieces of any size, from one byte to the whole body. */
 static void expect_of(const char *type, const char *body, size_t length, const char *wanted)
 {
     for (size_t piece = 1; piece <= length; piece += piece < 9 ? 1 : length / 5 + 1) {
@@ -128,7 +128,7 @@ static void parts_come_with_their_names_types_and_bytes(void **state)
     expect("--AbC" LINE "Content-Disposition: form-data; name=\"f\"; filename=\"x.bin\"" LINE
            "Content-Type: application/octet-stream" LINE LINE "123" LAST,
            "[x.bin|application/octet-stream]123;");
-    /* headers without quotes, in other letter case, with blanks, and unknown ones */
+    /* part headers without quotes, in other letter case, with blanks, and with unknown names */
     expect("--AbC" LINE "x-other: 1" LINE "CONTENT-TYPE:text/plain ; charset=utf-8  " LINE
            "content-disposition:Form-Data;NAME=f ;\tFileName=x.bin;" LINE LINE "1" LAST,
            "[x.bin|text/plain ; charset=utf-8]1;");
@@ -145,7 +145,7 @@ static void empty_parts_are_parts(void **state)
 {
     (void)state;
     expect(PART("a") LAST, "[a];");
-    /* the line break before a delimiter belongs to the delimiter, even if the part is empty */
+    /* The line break before a delimiter belongs to the delimiter, even if the part is empty. */
     expect(PART("a") "--AbC--", "[a];");
     expect(PART("a") LINE PART("b") LINE PART("c") "x" LAST, "[a];[b];[c]x;");
     expect(PART("a") LINE LINE "--AbC--", "[a]\r\n;");
@@ -186,7 +186,7 @@ static void names_are_taken_as_they_are_given(void **state)
            "[\xC3\xBC\xE2\x82\xAC\xF0\x9F\x98\x80.gltf];");
     expect(NAMED("name=f; filename=\"../../etc/passwd\""), "[../../etc/passwd];");
     expect(NAMED("filename=\"x\"; name=f"), "[x];");
-    expect(NAMED("name=f; filename=\"\""), "[f];"); /* a form in which no file was chosen */
+    expect(NAMED("name=f; filename=\"\""), "[f];"); /* what a browser sends if no file was chosen */
     expect(NAMED("filename=\"\"; name=f"), "[f];");
     expect(NAMED("name=f; other=\"filename=x\""), "[f];");
 }
@@ -274,7 +274,8 @@ static void there_are_maxima(void **state)
     body = repeat("", PART("a") LINE, API_MAX_PARTS + 1, "--AbC--");
     expect_refused(body, "more than 64 parts");
     free(body);
-    /* the limit counts all bytes of the headers of a part, including the empty line after them */
+    /* The limit counts all bytes of the headers of a part, including the empty line that ends
+     * them. */
     size_t room = API_MAX_PART_HEADERS - strlen(HEAD("a") "x: " LINE LINE);
     for (size_t more = 0; more < 2; more++) {
         body = repeat("--AbC" LINE HEAD("a") "x: ", "x", room + more, LINE LINE "1" LAST);

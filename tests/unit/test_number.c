@@ -1,5 +1,6 @@
-/* Numbers as text: reading and writing are compared with the C library (which is exact in the "C"
- * locale) and with big integers. SEED= repeats a run, ROUNDS= makes it longer. */
+/* Tests of reading and writing numbers as text: the results are compared with the C library (which
+ * is exact in the "C" locale) and with big integers. The environment variable SEED sets the random
+ * numbers, ROUNDS how many are tried. */
 #include "format/text/number.h"
 
 #include "format/text/decimal_exact.h"
@@ -43,7 +44,7 @@ static bool is_finite_bits(uint64_t bits)
     return (bits >> 52 & 0x7FF) != 0x7FF;
 }
 
-/* Returns a random double: random bits, or a number as it occurs in files. */
+/* Returns a random double: random bits, or a number of a kind that is frequent in mesh files. */
 static double random_double(void)
 {
     for (;;) {
@@ -89,7 +90,8 @@ static void expect_bits(const char *text, double wanted)
     }
 }
 
-/* A big integer, for checking the table of powers: base 2^32, least significant word first. */
+/* A big integer in base 2^32, least significant word first, for checking the table of powers of
+ * five. */
 typedef struct whole {
     uint32_t words[100];
 } whole;
@@ -143,8 +145,9 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
         assert_int_equal(got.high, wanted.high);
         assert_int_equal(got.low, wanted.low);
     }
-    /* for negative k the table must have floor(2^3199 / 5^-k): a floor of a floor is the floor, and
-     * enough bits are left */
+    /* If k is negative, the table must have the leading bits of floor(2^3199 / 5^-k). Dividing by
+     * five repeatedly, and rounding down each time, gives exactly this number, and it has enough
+     * bits. */
     memset(&n, 0, sizeof n);
     n.words[99] = 0x80000000;
     for (int k = 0; k >= HE_POW5_MIN; k--, divide_by_five(&n)) {
@@ -154,8 +157,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
     }
 }
 
-/* Requires that the text of a double is read back as this double by the C library and by our
- * reader, and that no shorter text is. */
+/* Prints a double as text. The C library and our reader must both read the text as this double, and
+ * no text with fewer digits may have this value. */
 static void check_print(double value, bool try_all)
 {
     char text[HE_NUMBER_TEXT + 1], other[64];
@@ -252,7 +255,7 @@ static void random_text_parses_like_the_c_library(void **state)
         if (i % 2 == 0) {
             snprintf(text, sizeof text, "%.*e", precision, value);
         } else {
-            /* texts of random digits, which no double was written as */
+            /* random digits, mostly not what is printed for any double */
             snprintf(text, sizeof text, "%llu%s%0*llu%se%d",
                      (unsigned long long)next_random() >> next_random() % 64, i % 3 ? "." : "",
                      precision, (unsigned long long)next_random(), i % 5 ? "" : "00000",
@@ -270,8 +273,8 @@ static void random_text_parses_like_the_c_library(void **state)
     }
 }
 
-/* Reads the exact middle between two doubles, with all its digits, and the numbers one less and one
- * more in the last digit: only the middle itself must be rounded to even. */
+/* Reads the decimal text of the exact middle between two doubles, and of the numbers one more and
+ * one less in its last digit: only the middle itself must be rounded to the even double. */
 static void middles_go_to_even(void **state)
 {
     (void)state;
@@ -287,7 +290,7 @@ static void middles_go_to_even(void **state)
         if (bits >> 52 >= 0x7FE) {
             continue;
         }
-        /* the middle fits into a long double, which has more bits, and printf is exact */
+        /* A long double has enough bits to hold the middle, and printf prints it exactly. */
         long double middle = ((long double)from_bits(bits) + (long double)from_bits(bits + 1)) / 2;
         int length = snprintf(text, sizeof text - 2, "%.1100Lf", middle);
         assert_true(length > 0 && length < (int)sizeof text - 2);
@@ -309,8 +312,8 @@ static void middles_go_to_even(void **state)
     }
 }
 
-/* he_double_parse rarely needs the exact rounding, so this test calls it directly, with bad
- * guesses. */
+/* he_double_parse rarely needs he_decimal_exact_round, so this test calls that function directly,
+ * with bad guesses of the result. */
 static void exact_rounding_from_any_near_guess(void **state)
 {
     (void)state;
@@ -461,7 +464,7 @@ static void parse_edges(void **state)
                                         "+-1", ",", " 1", "--1", "na", "in", "0x", "+e1"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         he_status status = parse(wrong[i], HE_FILE_NUMBER, &value, &used);
-        if (strcmp(wrong[i], "0x") == 0) { /* read as 0; the caller sees the x */
+        if (strcmp(wrong[i], "0x") == 0) { /* "0x" is read as 0, without the x */
             assert_int_equal(status, HE_OK);
             assert_int_equal(used, 1);
             value = 7;
@@ -494,7 +497,7 @@ static void long_digit_strings(void **state)
     (void)state;
     enum { LENGTH = 1000000, ROOM = LENGTH + 64 };
     char *text = test_malloc(ROOM);
-    for (size_t n = 1; n < 1200; n += 13) { /* 0.000...1234e+n, and 777...e-n */
+    for (size_t n = 1; n < 1200; n += 13) { /* 0.000...1234e+n and 777...e-n */
         memset(text, '0', n + 2);
         text[1] = '.';
         snprintf(text + n + 2, 64, "12345678901234567890123e%zu", n);

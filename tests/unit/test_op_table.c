@@ -1,6 +1,7 @@
-/* The promises of the table of operations, row by row: every operation succeeds, every declared
- * refusal occurs and no other, V, E and F change as declared, the checker passes, a refusal or a
- * failed allocation leaves the mesh identical in every bit, and the delta undoes and redoes. */
+/* Tests of every operation in the table of operations: it must be able to succeed; every declared
+ * error must occur, and no other; the numbers of vertices, edges and faces must change as declared;
+ * the result must pass the checker; an error or a failed allocation must leave every bit of the
+ * mesh unchanged; and its delta must undo and redo it. */
 #include "edit_script.h"
 #include "giants.h"
 #include "scenarios.h"
@@ -25,7 +26,7 @@
 /* The Csaszar torus, in which all seven vertices are neighbours of each other. */
 #define CSASZAR "013,032,124,143,235,254,346,365,450,406,561,510,602,621"
 
-/* A list of more vertices than are compared pair by pair. */
+/* A list of so many vertices that they are not compared pair by pair. */
 #define MANY \
     "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33"
 #define MANY_MORE "+++++++++++++++++++++++++++++++++"
@@ -377,7 +378,7 @@ static const scenario *const groups[] = {scenarios,        border_scenarios,  we
 
 enum { MAX_OPS = 128 };
 
-/* Which outcomes the scenarios have produced in this run, for each operation. */
+/* Whether the scenarios of this run have produced this status, for each operation and status. */
 static bool produced[MAX_OPS][HE_STATUS_COUNT];
 
 static void mark(const he_op *op, he_status status)
@@ -412,8 +413,8 @@ static void check_change(const scenario *s, const he_mesh *before, const he_mesh
     }
 }
 
-/* Runs a scenario while changes are recorded: a success must undo and redo, a refusal must record
- * nothing. */
+/* Runs a scenario while changes are recorded: if it succeeds, the delta must undo and redo it; if
+ * it is refused, nothing must be recorded. */
 static void run_recorded(const scenario *s, bool columns)
 {
     he_mesh *m = start_of(s, columns), *before = copy_of(m);
@@ -454,7 +455,8 @@ static void run_recorded(const scenario *s, bool columns)
     he_mesh_free(m);
 }
 
-/* Runs a scenario with the n-th allocation failing for every n, with or without recording. */
+/* Runs a scenario again and again with the n-th allocation failing, for every n, with or without
+ * recording changes. */
 static void run_short_of_memory(const scenario *s, bool columns, bool record)
 {
     failing f = {.what = s->operation};
@@ -514,7 +516,7 @@ static void too_much_work_is_refused_without_change(void **state)
     }
 }
 
-/* This test runs after all others: each operation must declare exactly the refusals that the
+/* This test must run after all others: each operation must declare exactly the errors that the
  * scenarios have produced. */
 static void each_declared_refusal_occurs_and_no_other(void **state)
 {
@@ -581,7 +583,7 @@ static void results_are_reported_and_a_refusal_leaves_them_empty(void **state)
     assert_int_equal(results.list[1].ids[0], 5);
     assert_int_equal(results.list[2].count, 2);
     assert_int_equal(results.list[2].ids[1], 3);
-    /* A refusal must leave the results empty. */
+    /* An operation that fails must clear the results. */
     assert_int_equal(script_run(m, "edge_split edge=#99", &results, NULL), HE_NO_SUCH_ELEMENT);
     assert_false(results.present[0]);
     assert_int_equal(results.list[1].count, 0);

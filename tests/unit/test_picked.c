@@ -1,5 +1,5 @@
-/* A client chooses values that would all collide in a hash table with a known hash function: the
- * work must still be linear in their number, because the hashes have a random seed. */
+/* A client may choose values that would all collide in a hash table whose hash function is known.
+ * The work must nevertheless be linear in their number, because the hashes have a random seed. */
 #include "unit/fixture.h"
 
 #include "build/build.h"
@@ -13,10 +13,10 @@
 
 enum { PICKED = 50000 };
 
-/* --- names of labels --- */
+/* --- names of labels that would collide --- */
 
-/* Returns whether the name would collide with the others in every table of up to a million slots,
- * if the hash were FNV-1a. */
+/* Returns whether the FNV-1a hash of the name has a value in a small range, so that such names
+ * would collide in any hash table of up to a million slots. */
 static bool lies_low(const char *name)
 {
     uint64_t h = 14695981039346656037u;
@@ -60,10 +60,10 @@ static void names_cannot_be_picked_to_collide(void **state)
     free(names);
 }
 
-/* --- values of corners, numbered for an export --- */
+/* --- values of face corners that would collide when they are numbered for an export --- */
 
-/* Returns whether the number would collide with the others, if the hash began with the number of
- * bytes. */
+/* Returns whether the number has a hash value in a small range, so that such numbers would collide,
+ * if the hash began with the number of bytes and not with a random seed. */
 static bool number_lies_low(uint64_t word)
 {
     uint64_t h = (sizeof word ^ word) * 0x9E3779B97F4A7C15;
@@ -115,7 +115,7 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
     (void)state;
     double *values = malloc(PICKED * sizeof *values);
     assert_non_null(values);
-    uint64_t word = UINT64_C(0x3FF0000000000000); /* the double 1; larger ones follow */
+    uint64_t word = UINT64_C(0x3FF0000000000000); /* the bits of the number 1.0 */
     for (size_t count = 0; count < PICKED; word++) {
         if (number_lies_low(word)) {
             memcpy(&values[count++], &word, sizeof word);
@@ -125,7 +125,7 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
     free(values);
 }
 
-/* --- records of a delta, combined --- */
+/* --- rows whose records in a delta would collide --- */
 
 static double fold_rows(const void *context, size_t count)
 {
@@ -159,12 +159,12 @@ static void rows_of_records_cannot_be_picked_to_collide(void **state)
     free(rows);
 }
 
-/* --- edges that are merged by a weld --- */
+/* --- edges that would collide when they are merged by a weld --- */
 
 enum { PAIRS = PICKED / 4 };
 
-/* Makes two triangles for each vertex in `lows`, which a weld then joins along the edge from this
- * vertex to the next one; returns the time of the weld. */
+/* Makes two triangles for each vertex in `lows`, which coincide along the edge from this vertex to
+ * the next one, then welds them all; returns the seconds that the weld took. */
 static double weld_pairs(const void *context, size_t count)
 {
     const uint32_t *lows = context;

@@ -1,5 +1,6 @@
-/* The search for near points in a grid of cells: the lowest point within the tolerance must be
- * found wherever the points lie; the results are compared with checking all points. */
+/* Tests of the search for near points in a grid of cells: it must find the lowest-numbered point
+ * within the tolerance wherever the points lie. The results are compared with checking all
+ * points. */
 #include "unit/fixture.h"
 
 #include "geometry/point_grid.h"
@@ -22,8 +23,8 @@ static double distance(he_vec3 a, he_vec3 b)
     return hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
 }
 
-/* Compares the search with checking all points, for random points around `origin` in a box of a few
- * tolerances. */
+/* Compares the search with checking all points. The points are random in a box around `origin`
+ * whose size is a few times the tolerance. */
 static void compare(double origin, double tolerance)
 {
     static he_vec3 points[POINTS];
@@ -44,7 +45,7 @@ static void compare(double origin, double tolerance)
         HE_OK);
     for (uint32_t i = 0; i < POINTS; i++) {
         uint32_t home, wanted = HE_NONE;
-        bool sure = true; /* no distance is exactly at the limit */
+        bool sure = true; /* no distance is close to the tolerance */
         for (uint32_t k = i; k-- > 0;) {
             double d = distance(points[i], points[k]);
             sure &= !kept[k] || d == 0 || fabs(d / tolerance - 1) > 1e-9;

@@ -1,5 +1,5 @@
-/* Progress of long work must never decrease and have enough steps to be visible; cancelled work
- * must leave nothing behind. */
+/* The progress that long work reports must never decrease, and must have enough steps to be
+ * visible; cancelled work must leave nothing behind. */
 #include "tests/unit/fixture.h"
 
 #include "algo/shape.h"
@@ -20,7 +20,7 @@
 #include "query/curvature.h"
 #include "query/topology.h"
 
-/* --- counted memory --- */
+/* --- a hook that counts allocated blocks --- */
 
 static size_t blocks;
 
@@ -39,10 +39,10 @@ static void *count_blocks(void *context, void *memory, size_t size)
 
 static const he_mem_hook counting = {count_blocks, NULL};
 
-/* --- a listener --- */
+/* --- a listener that receives progress and can cancel --- */
 
 typedef struct listener {
-    long told, give_up_at; /* the call that cancels; 0: none */
+    long told, give_up_at; /* number of the call that cancels; 0: none */
     size_t distinct;
     double last;
     bool fell;
@@ -59,7 +59,7 @@ static bool hear(void *context, const char *phase, double done)
     return l->told != l->give_up_at;
 }
 
-enum { SIDE = 130 }; /* cells of a grid: enough work for more than one call in each phase */
+enum { SIDE = 130 }; /* so large that each phase reports progress more than once */
 
 static he_status make(he_progress *progress, he_mesh **out)
 {
@@ -138,7 +138,7 @@ static void making_is_given_up_anywhere_and_leaves_nothing(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* --- files that are read when complete --- */
+/* --- file formats that are parsed after the last byte arrived --- */
 
 typedef struct file {
     const char *format;
@@ -146,7 +146,7 @@ typedef struct file {
     size_t length;
 } file;
 
-/* Makes a GLB file of a grid of quads with an attribute of faces, which is stored in the extras. */
+/* Makes a GLB file of a grid of quads with a face attribute, which glTF stores in `extras`. */
 static file grid_glb(void)
 {
     he_mesh *mesh = NULL;
@@ -168,7 +168,7 @@ static file grid_glb(void)
     return f;
 }
 
-/* Makes a glTF file of triangles at the origin, in base64. */
+/* Makes a glTF file of triangles with all corners at the origin, with the data in base64. */
 static file zeros_gltf(void)
 {
     enum { VERTICES = 30000, TEXT = VERTICES * 16 };
@@ -232,7 +232,7 @@ static void a_file_that_is_read_at_its_end_is_given_up_anywhere(void **state)
     }
 }
 
-/* --- work before an answer --- */
+/* --- computing what a request reads: files and queries --- */
 
 typedef struct finding {
     const char *name;
@@ -286,8 +286,8 @@ static he_status find_vertex_normals(const he_mesh *m, he_progress *progress)
     return status;
 }
 
-/* The mesh has quads whose corners have texture coordinates of their own. The work on it before an
- * answer must be cancellable at each call. */
+/* The mesh has quads with different texture coordinates at each corner. Everything that a request
+ * may compute from it must be cancellable at each report of progress. */
 static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **state)
 {
     (void)state;
@@ -483,7 +483,7 @@ static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
         blocks = 0;
         assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
         size_t before = blocks;
-        /* Cancelled work must leave the mesh unchanged, so it is tried again on the same mesh. */
+        /* Cancelled work must leave the mesh unchanged, so the next attempt uses the same mesh. */
         for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 23) {
             listener l = {.give_up_at = n};
             status = run_recorded(operations[i], copy, &l);
@@ -534,7 +534,8 @@ static void a_cancelled_edit_of_an_expendable_mesh_is_left_half_done(void **stat
 
 enum { WORDS = 5000, WRITES = 400000 };
 
-/* Writes to places all over `words` while changes are recorded; returns the delta. */
+/* Writes values to scattered places in `words` and returns the delta with a record of each
+ * write. */
 static he_delta *write_words(uint32_t *words)
 {
     he_delta *delta = he_delta_new();

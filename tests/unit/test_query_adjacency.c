@@ -1,5 +1,5 @@
-/* Relations between elements (neighbours): the answers are compared with a search through all
- * half-edges. */
+/* Tests of the queries for neighbours of elements: the answers are compared with a search through
+ * all half-edges. */
 #include "query_specimens.h"
 
 #include "query/adjacency.h"
@@ -34,8 +34,8 @@ static size_t times_in(const he_ids *ids, uint32_t id)
     return n;
 }
 
-/* Returns whether the relation of `id` contains `related`, decided for every pair by definition and
- * without following links from element to element. */
+/* Returns whether element `related` belongs to the relation of element `id`. This is decided by the
+ * definition of the relation, without following links from element to element. */
 static bool belongs(const he_mesh *m, he_kind of, const char *name, uint32_t id, uint32_t related)
 {
     const uint32_t *origin = m->c.origin, *face = m->c.face;
@@ -113,8 +113,8 @@ static void try_all(const he_mesh *m)
     }
 }
 
-/* Requires that the answers are in the order that the definitions of a turn around a vertex and of
- * a loop give. */
+/* Requires that answers are in the defined order: around a vertex by turning from half-edge to
+ * half-edge, around a face along its loop. */
 static void try_order(const he_mesh *m)
 {
     for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
@@ -159,8 +159,8 @@ static void try_order(const he_mesh *m)
     }
 }
 
-/* Requires that the answer about all elements equals the answers about single elements, one after
- * another. */
+/* Requires that the answer about all elements equals the answers about single elements,
+ * concatenated. */
 static void try_dense(const he_mesh *m)
 {
     for (size_t i = 0; i < he_relation_count(); i++) {
@@ -181,7 +181,7 @@ static void try_dense(const he_mesh *m)
                 if (one.count > 0) {
                     assert_memory_equal(all.ids.ids + from, one.ids, 4 * one.count);
                 }
-                /* A list of elements may have an element twice. */
+                /* A query may name an element twice and must then answer twice. */
                 uint32_t twice[] = {id, id};
                 he_dense two = {0};
                 assert_int_equal(
@@ -259,8 +259,8 @@ static void relations_of_known_meshes_list_each_id_once_in_order(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,034,056");
-    /* Vertex 0 has three fans of faces: the boundary half-edge comes first, then each fan
-     * counter-clockwise. */
+    /* Vertex 0 has three separate fans of faces. In the answer, each fan begins with its boundary
+     * half-edge and continues counter-clockwise. */
     he_ids faces = ids_of(m, HE_VERTEX, "faces", 0, 0);
     assert_int_equal(faces.count, 3);
     he_ids_clear(&faces);
@@ -271,7 +271,7 @@ static void relations_of_known_meshes_list_each_id_once_in_order(void **state)
     assert_ids(ids_of(m, HE_EDGE, "halfedges", 4, 0), "8 9");
     assert_ids(ids_of(m, HE_EDGE, "faces", 4, 0), "1");
     he_mesh_free(m);
-    /* A face that shares two edges with another one must be listed once. */
+    /* A neighbouring face must be listed once even if it shares two edges. */
     m = fixture_mesh("0123,2104");
     assert_ids(ids_of(m, HE_FACE, "faces", 0, 0), "1");
     assert_ids(ids_of(m, HE_FACE, "faces", 1, 0), "0");
@@ -283,8 +283,8 @@ static void relations_of_known_meshes_list_each_id_once_in_order(void **state)
     he_mesh_free(m);
 }
 
-/* The face has more neighbours than are compared one by one, and shares two edges with each of
- * them. */
+/* The face has so many neighbours that duplicates are not found by comparing pairs; it shares two
+ * edges with each neighbour. */
 static void neighbours_of_a_large_face_are_listed_once(void **state)
 {
     (void)state;
@@ -346,7 +346,7 @@ static void relations_refuse_elements_that_do_not_exist(void **state)
                          HE_LIMIT);
         assert_null(dense.ids.ids);
         assert_null(dense.offsets.ids);
-        /* An empty list of elements must give an empty answer. */
+        /* If a query lists no elements, its answer must be empty. */
         assert_int_equal(he_relation_dense(m,
                                            &(he_neighbours){.relation = r, .of = list, .count = 0},
                                            0, &dense, &err),
@@ -366,14 +366,14 @@ static void relations_refuse_elements_that_do_not_exist(void **state)
     he_mesh_free(m);
 }
 
-/* The links of the mesh are broken: a turn around a vertex never closes, and links lead out of the
- * mesh. The queries must still end. */
+/* The links of the mesh are broken: turning around a vertex never comes back, and links lead out of
+ * the mesh. The queries must still end. */
 static void relations_end_on_broken_links(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     uint32_t h = m->c.vertex_halfedge[0], turned = m->c.prev[h] ^ 1u;
-    m->c.prev[turned] = turned ^ 1u; /* the turn stays at this half-edge for ever */
+    m->c.prev[turned] = turned ^ 1u; /* turning around the vertex never leaves this half-edge */
     he_ids ids = {0};
     he_error err = {0};
     assert_int_equal(he_relation_append(m, relation_named(HE_VERTEX, "vertices"), 0, 0, &ids, &err),

@@ -1,5 +1,5 @@
-/* Rays, nearest points and self-intersections, which are found with a tree of bounding boxes, are
- * compared with testing all triangles. */
+/* Tests of the queries that use a tree of bounding boxes: rays, nearest points and
+ * self-intersections are compared with testing all triangles. */
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
@@ -63,7 +63,7 @@ static he_mesh *tangle(uint64_t *seed)
     return m;
 }
 
-/* Requires that the members of a hit are consistent with each other. */
+/* Requires that the face, point, weights and distance of a hit are consistent with each other. */
 static void check_hit(const he_mesh *m, const he_hit *hit)
 {
     he_vec3 sum = {0, 0, 0};
@@ -86,8 +86,8 @@ static void check_hit(const he_mesh *m, const he_hit *hit)
 
 /* --- rays --- */
 
-/* Returns the distance of a ray's hit by the method of Moeller and Trumbore (1997), which is
- * another one than the tree's and less careful at edges. */
+/* Returns the distance at which a ray hits the triangle, by the method of Moeller and Trumbore
+ * (1997). The tree uses another method, which is more careful at edges. */
 static double ray_triangle(he_vec3 o, he_vec3 d, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     he_vec3 u = he_vec3_sub(b, a), v = he_vec3_sub(c, a), p = he_vec3_cross(d, v);
@@ -160,7 +160,7 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
     he_mesh *m = query_shape("cube", 2, 0, 0, 0);
     he_bvh *tree = tree_of(m);
     for (int sign = -1; sign <= 1; sign += 2) {
-        /* The rays go through the middle of an edge, then through a corner. */
+        /* The first ray meets the middle of an edge of the cube, the second one meets a corner. */
         he_vec3 to[2] = {{sign, 1, 0}, {sign, 1, 1}};
         for (int i = 0; i < 2; i++) {
             he_vec3 from = he_vec3_scale(to[i], 3), back = he_vec3_scale(to[i], -1);
@@ -180,8 +180,8 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
     /* A ray that begins on the surface itself must hit there, at distance 0. */
     he_hit hit = cast(tree, m, (he_vec3){0.25, 0.25, 1}, (he_vec3){0, 0, 1}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 0);
-    /* The ray runs exactly in the plane of a face, which it must not hit; it must hit the face
-     * beside it. */
+    /* The ray lies in the plane of the cube's top face, which it must not hit; it must hit the side
+     * face. */
     hit = cast(tree, m, (he_vec3){-5, 0.25, 1}, (he_vec3){1, 0, 0}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 4);
     he_bvh_free(tree);
@@ -230,8 +230,8 @@ static void rays_from_far_out_along_an_axis_are_exact(void **state)
 
 /* --- nearest points --- */
 
-/* Returns the distance of the nearest of many points in the triangle: it is never less than the
- * exact distance, and hardly more. */
+/* Returns the distance from p to the nearest of many sample points in the triangle. It is never
+ * less than the exact distance, and hardly more. */
 static double sampled(he_vec3 p, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     enum { STEPS = 40 };
@@ -276,8 +276,8 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
     }
 }
 
-/* Requires that p is not nearer to any corner of the triangles below a node than the bounds of the
- * node's box and disc allow. */
+/* Requires that the lower bounds from the box and the disc of a node do not exceed the distance
+ * from p to any corner of the triangles below the node. */
 static void check_bounds(const he_bvh *tree, const he_mesh *m, uint32_t at, he_vec3 p)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -316,8 +316,8 @@ static void boxes_and_discs_hold_what_is_below_them(void **state)
                 static const double reaches[] = {0.5, 2, 1e3, 1e9};
                 check_bounds(tree, m, at, random_point(&seed, reaches[i]));
             }
-            /* The points are on the normal of the disc and across it, where the bounds are
-             * tight. */
+            /* One point is on the normal through the centre of the disc, the other in the plane of
+             * the disc: there the bounds are tight. */
             const he_bvh_disc *d = &tree->discs[at];
             he_vec3 c = {d->center[0], d->center[1], d->center[2]},
                     n = {d->normal[0], d->normal[1], d->normal[2]}, x = random_point(&seed, 1);
@@ -370,8 +370,8 @@ static void faces_without_area_are_the_segments_they_look_like(void **state)
     he_mesh_free(m);
 }
 
-/* A vertex without faces cannot be hit, so however far away it is, it must not determine the scale
- * of the tree. */
+/* A vertex without faces cannot be hit. However far away it is, the tree must not take its scale
+ * from it. */
 static void a_far_vertex_does_not_hide_faces(void **state)
 {
     (void)state;
@@ -393,7 +393,8 @@ static void a_far_vertex_does_not_hide_faces(void **state)
     }
 }
 
-/* bvh.h says up to which ratio of distances a far face leaves near ones findable. */
+/* The faces are near and far within the ratio of distances for which bvh.h promises that the near
+ * ones are found. */
 static void a_far_face_does_not_hide_near_ones(void **state)
 {
     (void)state;
@@ -419,7 +420,7 @@ static void a_far_face_does_not_hide_near_ones(void **state)
 static void a_tree_of_triangles_in_one_place_has_a_budget(void **state)
 {
     (void)state;
-    /* All triangles have their centre at one place, so there is nothing by which to divide them. */
+    /* All triangles have the same centre, so the tree cannot divide them. */
     he_mesh *m = query_shape("grid", 40, 40, 1, 1);
     memset(m->c.position, 0, he_mesh_issued(m, HE_VERTEX) * sizeof *m->c.position);
     he_bvh *tree = tree_of(m);
@@ -474,13 +475,13 @@ static void hostile_coordinates_give_finite_hits(void **state)
     }
 }
 
-/* --- orientation --- */
+/* --- on which side of a plane a point lies --- */
 
 static void orientation_is_exact_where_doubles_round(void **state)
 {
     (void)state;
-    /* Three points lie in a plane that doubles represent exactly; the fourth is moved out of it by
-     * one unit in the last place. */
+    /* Three points lie in a plane, and their coordinates are exact doubles; the fourth point is off
+     * the plane by one unit in the last place. */
     uint64_t seed = 41;
     for (int i = 0; i < 2000; i++) {
         double base = ldexp(1, (int)(query_random(&seed) % 30));
@@ -512,7 +513,7 @@ static void triangles_meet_where_they_should_not(void **state)
     (void)state;
     static const struct {
         const char *what;
-        he_vec3 b[3]; /* tried with the triangle (0,0,0) (2,0,0) (0,2,0) */
+        he_vec3 b[3]; /* second triangle; the first is (0,0,0) (2,0,0) (0,2,0) */
         bool meet;
     } rows[] = {
         {"far away", {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}, false},
@@ -683,7 +684,7 @@ static void starved_trees_and_searches_say_so(void **state)
     he_mesh *m = tangle(&seed), *polygon = fixture_mesh("01234567");
     const he_mesh *meshes[] = {m, polygon};
     for (int i = 0; i < 2; i++) {
-        failing f = {.may_succeed = true}; /* to shrink a block is optional */
+        failing f = {.may_succeed = true}; /* a block may stay as it is if shrinking it fails */
         while (failing_next(&f)) {
             he_bvh *tree = NULL;
             he_ids pairs = {0};

@@ -1,4 +1,5 @@
-/* Corner normals, cotangent weights and curvature are compared with closed forms. */
+/* Tests of corner normals, cotangent weights and curvature: the results are compared with closed
+ * forms. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -54,12 +55,13 @@ static void corner_normals_of_a_cube_follow_the_crease(void **state)
     he_mesh_free(m);
 }
 
-/* A crease between two faces must separate their corner normals at a vertex, and not those of the
- * other faces there. */
+/* At a vertex, a crease between two faces must separate the corner normals of these faces, and not
+ * those of the other faces. */
 static void a_crease_parts_only_the_faces_across_it(void **state)
 {
     (void)state;
-    /* Three faces meet at vertex 0; the edge 0-3 is folded sharply, the other two edges hardly. */
+    /* Three faces meet at vertex 0. There is a sharp fold at edge 0-3 and hardly any fold at the
+     * other edges. */
     he_mesh *m = fixture_mesh("012,023,034");
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 0.5, 0}, {0.2, 1, 0.02}, {-0.3, 0, 1}};
     memcpy(m->c.position, places, sizeof places);
@@ -110,7 +112,7 @@ static void corner_normals_alone_are_those_of_the_whole(void **state)
 static void a_degenerate_face_parts_no_others(void **state)
 {
     (void)state;
-    /* The three triangles lie in a plane; the one between the other two, 0-2-3, has no area. */
+    /* The three triangles lie in a plane; the middle one, 0-2-3, has no area. */
     he_mesh *m = fixture_mesh("012,023,034");
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {2, 2, 0}, {-1, 1, 0}};
     memcpy(m->c.position, places, sizeof places);
@@ -158,7 +160,7 @@ static void cotangents_of_a_square_are_those_of_its_triangles(void **state)
     he_mesh *m = query_shape("cube", 3, 0, 0, 0);
     double *weights = cotangents(m);
     for (uint32_t e = 0; e < 12; e++) {
-        assert_close(weights[e], 1, 1e-14); /* the opposite angles are 45 degrees */
+        assert_close(weights[e], 1, 1e-14); /* the angles opposite the edge are 45 degrees */
     }
     free(weights);
     he_mesh_free(m);
@@ -213,7 +215,7 @@ static void a_sphere_turned_inside_out_bends_the_other_way(void **state)
     (void)state;
     he_mesh *m = query_shape("icosphere", 2, 1, 0, 0);
     for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
-        m->c.position[v] = he_vec3_scale(m->c.position[v], -1); /* mirrors the mesh */
+        m->c.position[v] = he_vec3_scale(m->c.position[v], -1); /* turns the mesh inside out */
     }
     he_curvature *c = curvatures(m);
     for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
@@ -243,8 +245,8 @@ static void planes_do_not_bend(void **state)
     he_mesh_free(m);
 }
 
-/* The sum of the angle defects is 2 pi times the Euler number for any faces and positions, even
- * with bow-ties and reflex corners. */
+/* The sum of the angle defects must be 2 pi times the Euler number for any faces and positions,
+ * even with bow-ties and reflex corners. */
 static void angle_defects_sum_to_the_euler_number(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Defects of meshes whose links are valid: found in meshes made by hand, and compared with checking
- * all pairs of elements. */
+/* Tests of the search for defects in meshes whose links are valid: in small meshes with known
+ * defects, and compared with checking all pairs of elements. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -25,7 +25,7 @@ static he_mesh *mesh_at(const char *faces, const he_vec3 *positions)
     return m;
 }
 
-/* Requires these numbers of defects, in the order of their codes. */
+/* Requires that this many defects of each code were found; `totals` is indexed by the code. */
 static void expect_totals(const uint64_t totals[HE_DEFECTS])
 {
     for (he_defect_code code = 0; code < HE_DEFECTS; code++) {
@@ -84,7 +84,7 @@ static void bowties_and_isolated_vertices_are_named(void **state)
     assert_int_equal(first(HE_DEFECT_BOWTIE)->id, 0);
     assert_true(first(HE_DEFECT_BOWTIE)->value == 3);
     he_mesh_free(m);
-    m = query_with_dead_rows(); /* vertex 3 is isolated; those from 4 on are deleted */
+    m = query_with_dead_rows(); /* vertex 3 is isolated; 4 and higher are deleted */
     find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_ISOLATED].total, 1);
     assert_int_equal(first(HE_DEFECT_ISOLATED)->id, 3);
@@ -113,7 +113,7 @@ static void faces_without_area_or_width_are_named(void **state)
 {
     (void)state;
     const he_vec3 at[] = {{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {1, 0.001, 0}, {2, -5, 1}};
-    he_mesh *m = mesh_at("012,023,104", at); /* a face without area, a thin one, another one */
+    he_mesh *m = mesh_at("012,023,104", at); /* the first face has no area, the second is thin */
     find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_DEGENERATE].total, 1);
     assert_int_equal(first(HE_DEFECT_DEGENERATE)->id, 0);
@@ -136,7 +136,7 @@ static void faces_that_are_not_flat_are_named(void **state)
     assert_int_equal(found.of[HE_DEFECT_NONPLANAR].total, 1);
     assert_int_equal(first(HE_DEFECT_NONPLANAR)->id, 0);
     assert_true(fabs(first(HE_DEFECT_NONPLANAR)->value - 0.05) < 1e-12);
-    /* Faces of one form must be judged alike, however large or small they are. */
+    /* Faces of equal shape must be judged alike, however large or small they are. */
     for (int k = -1000; k <= 1000; k += 100) {
         for (uint32_t v = 0; v < 4; v++) {
             m->c.position[v] = (he_vec3){ldexp(at[v].x, k), ldexp(at[v].y, k), ldexp(at[v].z, k)};
@@ -168,7 +168,8 @@ static void small_components_are_named_by_their_lowest_face(void **state)
     he_mesh_free(m);
 }
 
-/* The mesh is two tetrahedra: one faces outward, and one inside of it faces inward. */
+/* The mesh is two tetrahedra, one inside the other: the faces of the outer one point outward, those
+ * of the inner one inward. */
 static const he_vec3 nested[] = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8},
                                  {1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}};
 
@@ -179,15 +180,15 @@ static void closed_components_of_negative_volume_are_inside_out(void **state)
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 0);
     he_mesh_free(m);
-    /* The inner tetrahedron is the wall of a cavity, which correctly faces inward, and must still
-     * be listed. */
+    /* The inner tetrahedron is the wall of a cavity, so its faces point the right way. The query
+     * cannot know that and must list it as inside out. */
     m = mesh_at("021,013,032,123,456,475,467,576", nested);
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 1);
     assert_int_equal(first(HE_DEFECT_INSIDE_OUT)->id, 4);
     assert_true(fabs(first(HE_DEFECT_INSIDE_OUT)->value + 1.0 / 6) < 1e-12);
     he_mesh_free(m);
-    /* The face 123 is missing, so the mesh has no inside that could be on the wrong side. */
+    /* The outer tetrahedron lacks the face 123, so it is not closed and cannot be inside out. */
     m = mesh_at("012,031,023", nested);
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 0);
@@ -233,8 +234,8 @@ static void labels_of_components_are_those_of_the_list(void **state)
 
 /* --- positions --- */
 
-/* Counts the vertices that must be listed: those near an earlier vertex that is not listed
- * itself. */
+/* Counts the vertices that must be listed as duplicates: each vertex that is within `merge` of an
+ * earlier vertex that is not listed itself. */
 static uint64_t search_all(const he_mesh *m, double merge, bool *listed)
 {
     uint64_t total = 0;
@@ -261,8 +262,8 @@ static void duplicates_are_those_that_trying_all_finds(void **state)
         for (uint32_t v = 0; v < 100; v++) {
             double *x = &m->c.position[v].x;
             for (int k = 0; k < 3; k++) {
-                /* The coordinates are on a lattice, so that distances often equal the limit
-                 * exactly, and contain zeros of both signs. */
+                /* The coordinates are on a lattice, so that distances are often exactly the limit,
+                 * and zeros of both signs occur. */
                 x[k] = ldexp((double)(query_random(&seed) % 256) - 128, -8) + far;
                 x[k] = round % 2 == 0 ? x[k] : floor(x[k] * 4) / 4 * -1;
             }

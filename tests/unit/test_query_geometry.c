@@ -1,4 +1,5 @@
-/* Lengths, areas, normals and angles are compared with closed forms and with other formulas. */
+/* Tests of lengths, areas, normals and angles: the results are compared with closed forms and with
+ * other formulas. */
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
@@ -99,8 +100,8 @@ static void normals_of_vertices_depend_on_their_weights(void **state)
     assert_true(he_vertex_normal(m, (he_vertex){6}, HE_WEIGHT_ANGLE, &normal));
     assert_vector(normal, 1 / sqrt(3), 1 / sqrt(3), 1 / sqrt(3));
     he_mesh_free(m);
-    /* If the normals of faces are weighted by angle, dividing a face at the vertex must make no
-     * difference; with equal weights it does. */
+    /* Dividing a face into two at the vertex must not change a vertex normal weighted by angle; a
+     * vertex normal with equal weights does change. */
     m = fixture_mesh("0123,034,045,051");
     place(m, 0, 0, 0, 0);
     place(m, 1, 0, 1, 0);
@@ -124,14 +125,14 @@ static void dihedral_angles_tell_ridges_from_valleys(void **state)
     place(m, 1, 1, 0, 0);
     place(m, 2, 0, 1, 0);
     for (int i = -8; i <= 8; i++) {
-        /* Face 103 is folded down by the angle, which makes a ridge, or up, which makes a
-         * valley. */
+        /* Face 103 is folded by the angle: down for positive angles, which makes a ridge, or up,
+         * which makes a valley. */
         double wanted = i * PI / 9;
         place(m, 3, 0, -cos(wanted), -sin(wanted));
         assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
         assert_near(angle, wanted);
     }
-    place(m, 3, 0, 1, 0); /* folds face 103 onto the other face */
+    place(m, 3, 0, 1, 0); /* face 103 lies on the other face */
     assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
     assert_near(angle, PI);
     assert_false(he_edge_dihedral(m, (he_edge){edge_between(m, 1, 2)}, &angle));
@@ -168,7 +169,7 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
         he_mesh *m = fixture_mesh(query_specimens[i]);
         assert_dihedrals_agree(m);
         if (m->c.vertices.issued > 2) {
-            m->c.position[1] = m->c.position[2]; /* makes faces degenerate */
+            m->c.position[1] = m->c.position[2]; /* faces with vertices 1 and 2 become degenerate */
         }
         assert_dihedrals_agree(m);
         he_mesh_free(m);
@@ -379,8 +380,8 @@ static void geometry_of_extreme_coordinates_is_finite(void **state)
     }
 }
 
-/* Functions for the whole mesh must give the results of those for one element; the area vector is
- * compared with the other form of Newell's sum. */
+/* The functions for the whole mesh must give the same results as those for one element. The area
+ * vector is compared with another form of Newell's sum. */
 static void geometry_of_a_whole_mesh_agrees_with_single_elements(void **state)
 {
     (void)state;
@@ -437,8 +438,8 @@ static void geometry_of_a_whole_mesh_agrees_with_single_elements(void **state)
     }
 }
 
-/* The volume is compared with a sum of tetrahedra with a point far away; it must be negative if the
- * mesh is inside out. */
+/* The volume of a mesh is compared with a sum of tetrahedra, one for each triangle, whose tips are
+ * at one point far away. The volume must be negative if the mesh is inside out. */
 static void volumes_agree_with_a_sum_of_tetrahedra_and_have_a_sign(void **state)
 {
     (void)state;
@@ -500,7 +501,7 @@ static void assert_measures(const he_mesh *m, double area, double volume)
     }
 }
 
-/* The coordinates of the far vertices in the tests below. */
+/* coordinates of far vertices */
 static const double far_away[] = {1e60, 1e81, 1e108, 1e160, -1e200, 1e300, DBL_MAX};
 enum { DISTANCES = sizeof far_away / sizeof *far_away };
 
@@ -519,8 +520,8 @@ static void a_far_vertex_does_not_change_the_area(void **state)
     }
 }
 
-/* A component that is far away and small has no area in the result; a near component must keep its
- * own area. */
+/* The mesh has a component near the origin and one far away whose vertices coincide. The area and
+ * volume of the mesh must be those of the near component. */
 static void a_far_face_without_size_does_not_change_area_and_volume(void **state)
 {
     (void)state;
@@ -655,8 +656,8 @@ static void geometry_ends_on_broken_links(void **state)
         he_mesh_free(m);
     }
     assert_true(corrupt > 1000);
-    /* The links of one face lead into a loop beside it, and the turn around one vertex never
-     * ends. */
+    /* The links of the mesh are broken: following the half-edges of one face, or turning around one
+     * vertex, never comes back to the beginning. */
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     m->c.next[4] = 2;
     m->c.prev[8] = 8 ^ 1;

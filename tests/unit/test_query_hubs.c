@@ -1,6 +1,6 @@
-/* Very many triangles meet at one position, a hub. The search for intersections must find the same
- * pairs as testing all pairs, in steps that grow with the number of triangles and not with its
- * square. */
+/* Tests of the search for intersections where very many triangles meet at one position, the hub.
+ * The search must find the same pairs as testing all pairs, in a number of steps that is about
+ * proportional to the number of triangles, not to its square. */
 #include "query_specimens.h"
 
 #include "geometry/triangle_intersection.h"
@@ -22,7 +22,7 @@ static uint32_t below(uint64_t *seed, uint32_t most)
     return (uint32_t)(query_random(seed) % most);
 }
 
-/* --- specimens: triangles that share no vertices, only positions --- */
+/* --- test meshes: triangles that share positions, but no vertices --- */
 
 enum { MOST = 400 };
 
@@ -45,21 +45,21 @@ static he_vec3 around(double turn, double radius, double z)
     return (he_vec3){radius * cos(turn), radius * sin(turn), z};
 }
 
-/* Returns a position with whole coordinates from -3 to 3. */
+/* Returns a position whose coordinates are whole numbers from -3 to 3. */
 static he_vec3 on_grid(uint64_t *seed)
 {
     he_vec3 p = {(double)below(seed, 7), (double)below(seed, 7), (double)below(seed, 7)};
     return he_vec3_sub(p, (he_vec3){3, 3, 3});
 }
 
-/* A cone with its tip at `hub` and its rim z above that, a disc if z is 0; it goes around `turns`
- * times. */
+/* A cone of triangles with its tip at `hub`. Its rim is higher than the tip by z; if z is 0, the
+ * cone is a flat disc. The rim goes around the axis `turns` times. */
 typedef struct cone {
     he_vec3 hub;
     double z, turns, radius;
 } cone;
 
-/* Makes a cone of n triangles around its hub. */
+/* Adds a cone of n triangles, which all meet at its hub. */
 static void fan(specimen *s, uint32_t n, cone c)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -70,8 +70,8 @@ static void fan(specimen *s, uint32_t n, cone c)
     }
 }
 
-/* Makes triangles from `hub` to points of a small grid, so that equal directions, folds, equal
- * triangles and triangles without area occur. */
+/* Adds n triangles from `hub` to random points of a small grid. The grid is so small that equal
+ * directions, folds, equal triangles and triangles without area occur. */
 static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_flat)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -84,7 +84,8 @@ static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_
     }
 }
 
-/* Makes triangles that share an edge at `hub`, some of them twice. */
+/* Adds n triangles that share an edge at `hub`, like the pages of a book; some of them are
+ * equal. */
 static void book(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -111,14 +112,14 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     const he_vec3 zero = {0, 0, 0}, up = {0, 0, 1}, aside = {1, 2, -1};
     uint32_t n = 33 + below(seed, 60);
     switch (kind) {
-    case 0: /* a disc, or a disc that goes around more than once */
+    case 0: /* a disc, which may go around more than once */
         fan(s, n, (cone){zero, 0, 1 + below(seed, 3), 1});
         break;
     case 1: /* nested cones */
         fan(s, n, (cone){zero, -1, 1, 1});
         fan(s, n, (cone){below(seed, 2) == 0 ? zero : up, -1, 1, 0.7});
         break;
-    case 2: /* two closed cones that touch at their tips, and a bow-tie of flat fans */
+    case 2: /* a cone closed by a disc, and a second cone that touches its tip */
         fan(s, n, (cone){up, -1, 1, 1});
         fan(s, n, (cone){zero, 0, 1, 1});
         fan(s, n, (cone){up, 1, 1, 1});
@@ -134,7 +135,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
         book(s, seed, n, aside);
         fan(s, n, (cone){aside, 0.5, 2, 1});
         break;
-    default: /* hubs together with ordinary triangles */
+    default: /* hubs and ordinary triangles together */
         fan(s, n, (cone){zero, 0.1, 1, 2});
         burst(s, seed, 40, zero, false);
         litter(s, seed, 60);
@@ -142,7 +143,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     }
 }
 
-/* Rotates the triangles, so that no plane is parallel to an axis, and moves them. */
+/* Rotates the triangles, so that no plane is parallel to an axis, and translates them. */
 static void turn(specimen *s, uint64_t *seed)
 {
     he_vec3 x = {uniform(seed, -1, 1), uniform(seed, -1, 1), 0.3}, y = {0.2, 0.9, -0.7};
@@ -174,7 +175,7 @@ static he_mesh *mesh_of(const specimen *s)
     return m;
 }
 
-/* --- equal pairs --- */
+/* --- the pairs found equal those of testing all pairs --- */
 
 static void expect_pairs(const specimen *s, uint64_t seed)
 {
@@ -224,7 +225,7 @@ static void pairs_at_a_hub_are_those_that_trying_all_finds(void **state)
     free(s);
 }
 
-/* --- steps that grow with the number of triangles --- */
+/* --- the steps are proportional to the number of triangles --- */
 
 typedef struct searched {
     uint64_t steps;
@@ -249,7 +250,8 @@ static searched search_for(const he_mesh *m, uint64_t most)
     return out;
 }
 
-/* Makes a mesh of one vertex with n triangles to a rim. */
+/* Makes a fan of n triangles around one vertex, which is higher than the rim by z. If `is_closed`,
+ * a second fan below closes the mesh. */
 static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
 {
     he_soup soup;
@@ -270,8 +272,8 @@ static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
     return m;
 }
 
-/* Two hubs that share a rim take more steps, because the boxes around one fan overlap those around
- * the other, but still fewer than all pairs would. */
+/* If two hubs share a rim, the boxes around the triangles of one fan overlap those of the other.
+ * This takes more steps, but still fewer than testing all pairs. */
 static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
 {
     (void)state;
@@ -292,8 +294,8 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
                          (unsigned long long)found.steps);
             }
             last = found.steps;
-            /* The steps must be counted exactly, on every thread: a limit of this number suffices,
-             * and one step less is refused. */
+            /* The search must count its steps exactly: with a limit of this number of steps it
+             * completes, and with one less it does not. */
             assert_int_equal(search_for(m, found.steps).steps, found.steps);
             assert_true(search_for(m, found.steps).complete);
             assert_false(search_for(m, found.steps - 1).complete);
@@ -302,7 +304,7 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
     }
 }
 
-/* All triangles of one polygon have its first corner, so they meet there and must not be tried with
+/* All triangles of one polygon share the polygon's first corner, so they must not be tested against
  * each other. */
 static void a_wide_polygon_is_not_tried_with_itself(void **state)
 {
@@ -359,7 +361,8 @@ static bool ask(void *context, const char *phase, double done)
     return p->calls++ < p->most;
 }
 
-/* However many pairs there are, a cancelled search must end within a known number of steps. */
+/* However many pairs of triangles there are, a cancelled search must end within a known number of
+ * steps. */
 static void a_search_at_a_hub_ends_when_it_is_given_up(void **state)
 {
     (void)state;
@@ -402,8 +405,8 @@ static void starved_hubs_say_so(void **state)
         if (status == HE_OK) {
             status = he_bvh_intersections(tree, m, 1000, &budget, &pairs, &complete, NULL);
         }
-        /* If a block that is only to be shrunk cannot be moved, it is kept, so the search may
-         * succeed. */
+        /* If shrinking a block fails, the block stays as it is, so the search may succeed
+         * nevertheless. */
         assert_true(!failing_status(&f, status) || complete);
         assert_int_equal(pairs.count, 0);
         he_ids_clear(&pairs);

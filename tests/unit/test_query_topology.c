@@ -1,5 +1,5 @@
-/* Components, holes and handles are compared with counting, and with relabelling in place of
- * union-find. */
+/* Tests of counting components, holes and handles: the results are compared with counts made in
+ * another way, such as relabelling faces again and again where the query uses union-find. */
 #include "query_specimens.h"
 
 #include "query/topology.h"
@@ -22,7 +22,7 @@ static bool has_corner(const he_mesh *m, uint32_t f, uint32_t v)
 
 enum { SMALL = 64 };
 
-/* Gives every face the lowest label among the faces that it touches, again and again until nothing
+/* Gives every face the lowest label among the faces that touch it, and repeats this until no label
  * changes. */
 static void label_faces(const he_mesh *m, he_connection by, uint32_t *label)
 {
@@ -177,8 +177,8 @@ static void topology_agrees_with_counting(void **state)
     }
 }
 
-/* The meshes are random squares of a grid, with holes, bow-ties, and islands that touch at
- * corners. */
+/* Each mesh is a random selection of the squares of a grid, so it has holes, bow-ties, and islands
+ * that touch at corners. */
 static void topology_agrees_with_counting_on_random_holes(void **state)
 {
     (void)state;
@@ -211,7 +211,7 @@ static void known_meshes_have_the_expected_topology(void **state)
     static const struct {
         const char *faces;
         uint32_t loops, isolated, bowties, components, by_edge;
-        int euler, genus; /* -1: the mesh has none */
+        int euler, genus; /* a genus of -1 stands for none */
     } rows[] = {
         {"", 0, 0, 0, 0, 0, 0, 0},
         {"012", 1, 0, 0, 1, 1, 1, 0},
@@ -226,7 +226,7 @@ static void known_meshes_have_the_expected_topology(void **state)
         he_mesh *m = fixture_mesh(rows[i].faces);
         he_topology t;
         assert_int_equal(he_topology_find(m, &t, NULL), HE_OK);
-        if (rows[i].bowties == 0) { /* at a bow-tie, the order of the fans decides what a loop is */
+        if (rows[i].bowties == 0) { /* at a bow-tie, loops depend on the order of the fans */
             assert_int_equal(t.boundary_loops, rows[i].loops);
         }
         assert_int_equal(t.isolated_vertices, rows[i].isolated);

@@ -1,5 +1,5 @@
-/* Walks over the mesh are compared with distances by the algorithm of Floyd and Warshall, and with
- * results found by hand. */
+/* Tests of searches and paths from element to element: they are compared with distances by the
+ * algorithm of Floyd and Warshall, and with results found by hand. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -21,7 +21,7 @@ static void assert_ids(const he_ids *ids, const char *wanted)
 
 enum { SMALL = 100 };
 
-/* The distances between all vertices (or all faces), INFINITY if not connected. */
+/* The distances between all pairs of vertices, or of faces; INFINITY if they are not connected. */
 typedef struct distances {
     double d[SMALL][SMALL];
     uint32_t n;
@@ -85,7 +85,8 @@ static void try_breadth_first(const he_mesh *m, he_kind kind)
             for (uint32_t i = 0; i < t.n; i++) {
                 assert_int_equal(seen[i], t.d[from][i] <= bound && !isinf(t.d[from][i]));
             }
-            /* With a limit, a walk must give the beginning of the same answer. */
+            /* With a limit on the number of elements, the answer must be the beginning of the full
+             * answer. */
             for (size_t limit = 1; limit <= ids.count + 1; limit++) {
                 he_ids some = {0}, at = {0};
                 assert_int_equal(
@@ -184,8 +185,8 @@ static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
     he_mesh *m = fixture_mesh("012,023");
     he_ids ids = {0};
     he_halfedge start = {0};
-    /* The first face has the half-edges 0 (0>1), 2 (1>2) and 4 (2>0); the second has 5 (0>2), 6
-     * (2>3) and 8 (3>0). */
+    /* The half-edges of the first face are 0 (from vertex 0 to 1), 2 (1 to 2) and 4 (2 to 0); those
+     * of the second are 5 (0 to 2), 6 (2 to 3) and 8 (3 to 0). */
     assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 4, HE_UNTIL_COUNT, 0},
                                       NULL, &ids, NULL),
                      HE_OK);
@@ -212,16 +213,16 @@ static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
                      HE_OK);
     assert_ids(&ids, "0 2 4");
     ids.count = 0;
-    /* The path turns at vertex 0 across the diagonal 5 to half-edge 9 (0>3), which belongs to the
-     * hole. */
+    /* The path turns around vertex 0, from the first face across the diagonal 5 to half-edge 9 (0
+     * to 3), which is on the boundary. */
     assert_int_equal(he_traverse_path(m, start,
                                       &(he_path_steps){turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0},
                                       NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0 4 5 8 9");
     ids.count = 0;
-    /* The path never meets a hole, so it must end when the list of steps leads back to a place
-     * where it began. */
+    /* The path never meets the boundary. It must end when it is back at a half-edge from which it
+     * has already begun its list of steps. */
     assert_int_equal(he_traverse_path(m, start,
                                       &(he_path_steps){next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0},
                                       NULL, &ids, NULL),
@@ -233,7 +234,7 @@ static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
                                       NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1");
-    /* The limit is a number of steps, and what the list contained before must stay. */
+    /* A path of at most 3 steps is appended to the list, which must keep its earlier ids. */
     assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 3, HE_UNTIL_COUNT, 3},
                                       NULL, &ids, NULL),
                      HE_OK);
@@ -263,8 +264,8 @@ static void a_loop_follows_next_around_a_face_or_a_hole(void **state)
     assert_int_equal(he_traverse_loop(m, (he_halfedge){2}, &ids, NULL), HE_OK);
     assert_ids(&ids, "2 4 0");
     ids.count = 0;
-    /* The loop along a hole must be walked in the direction of its half-edges, which is opposite to
-     * that of the faces beside it. */
+    /* The loop along a boundary follows the boundary half-edges, against the direction of the faces
+     * beside them. */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){1}, &ids, NULL), HE_OK);
     assert_ids(&ids, "1 9 7 3");
     assert_int_equal(he_traverse_loop(m, (he_halfedge){99}, &ids, NULL), HE_NO_SUCH_ELEMENT);
@@ -315,7 +316,7 @@ static void expect_chain(const he_mesh *m, bool ring, uint32_t edge, size_t coun
 static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **state)
 {
     (void)state;
-    /* On a torus of quads every loop and every ring must close. */
+    /* On a torus of quads every edge loop and every edge ring must be closed. */
     he_mesh *m = query_shape("torus", 5, 4, 2, 1);
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
         bool tube = m->c.origin[2 * e] / 4 == m->c.origin[2 * e + 1] / 4;
@@ -323,8 +324,8 @@ static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **st
         expect_chain(m, true, e, tube ? 5 : 4, true);
     }
     he_mesh_free(m);
-    /* On a grid a loop runs from side to side, and a ring has one edge more than it crosses
-     * cells. */
+    /* On a grid an edge loop goes from one side to the opposite side. An edge ring does, too, and
+     * has one edge more than the quads that it crosses. */
     m = query_shape("grid", 4, 3, 1, 1);
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
         bool along_x = m->c.origin[2 * e] / 5 == m->c.origin[2 * e + 1] / 5;
@@ -334,8 +335,8 @@ static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **st
     }
     he_ids ids = {0};
     bool closed;
-    /* The edges are listed in order, from the end that lies beyond the origin of half-edge 2e; the
-     * grid has 5 vertices in each row. */
+    /* The edges of a loop are listed in order, beginning at the end of the loop on the side of the
+     * origin of half-edge 2e; the grid has 5 vertices in each row. */
     uint32_t e = edge_between(m, 6, 7);
     uint32_t a = edge_between(m, 5, 6), c = edge_between(m, 7, 8), d = edge_between(m, 8, 9);
     assert_int_equal(he_traverse_edge_loop(m, (he_edge){e}, &ids, &closed, NULL), HE_OK);
@@ -348,15 +349,16 @@ static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **st
     assert_ids(&ids, wanted);
     he_ids_clear(&ids);
     he_mesh_free(m);
-    /* On a cube no vertex has four edges, so a loop is one edge; each ring has four edges. */
+    /* On a cube no vertex has degree 4, so each edge loop is a single edge; each edge ring has four
+     * edges. */
     m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     for (e = 0; e < 12; e++) {
         expect_chain(m, false, e, 1, false);
         expect_chain(m, true, e, 4, true);
     }
     he_mesh_free(m);
-    /* On an octahedron the loops are its three equators; a ring ends at once, because the faces are
-     * triangles. */
+    /* On an octahedron the edge loops are its three equators; an edge ring is a single edge,
+     * because a ring does not cross triangles. */
     m = query_shape("octahedron", 1, 0, 0, 0);
     for (e = 0; e < 12; e++) {
         expect_chain(m, false, e, 4, true);
@@ -409,7 +411,7 @@ static void walks_from_deleted_or_missing_elements_are_refused(void **state)
     he_mesh_free(m);
 }
 
-/* Sums of lengths that overflow a double must be replaced by finite ones. */
+/* If a sum of lengths overflows a double, the result must be finite. */
 static void a_path_of_huge_lengths_has_a_finite_length(void **state)
 {
     (void)state;
@@ -426,7 +428,7 @@ static void a_path_of_huge_lengths_has_a_finite_length(void **state)
     he_mesh_free(m);
 }
 
-/* Runs every walk on a mesh with broken links; it only matters that each one ends. */
+/* Runs every search and path on a mesh with broken links, and requires only that each one ends. */
 static void walk_all(const he_mesh *m, he_status *worst)
 {
     static const he_step steps[] = {HE_STEP_NEXT, HE_STEP_TWIN, HE_STEP_PREV};
@@ -470,7 +472,7 @@ static void every_walk_ends_on_broken_links(void **state)
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     he_ids ids = {0};
     bool closed;
-    m->c.next[m->c.next[0]] = m->c.next[0]; /* a loop that never comes back to 0 */
+    m->c.next[m->c.next[0]] = m->c.next[0]; /* makes a loop that never comes back to half-edge 0 */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){0}, &ids, NULL), HE_CORRUPT);
     m->c.next[0] = 1000;
     he_error err = {0};
@@ -548,7 +550,7 @@ static void a_walk_without_memory_gives_nothing(void **state)
     he_mesh_free(m);
 }
 
-/* The memory that a local walk needs must not grow with the mesh. */
+/* The memory that a local search needs must not grow with the size of the mesh. */
 static void a_local_walk_allocates_no_more_in_a_larger_mesh(void **state)
 {
     (void)state;

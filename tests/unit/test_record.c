@@ -1,4 +1,4 @@
-/* Structs that are written as JSON objects from tables of members. */
+/* Tests of writing C structs as JSON objects by tables that list their members. */
 #include "api/json/record.h"
 
 #include "api/describe/schema_rows.h"

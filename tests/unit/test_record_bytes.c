@@ -1,5 +1,6 @@
-/* Records of the store as bytes (core/journal/record_bytes.h): what was written is read back, from
- * bytes that every later release must be able to read; damaged records are refused with the offset.
+/* Tests of the store's records as bytes (core/journal/record_bytes.h): reading must restore what
+ * was written, every later release must be able to read the bytes below, and damaged records must
+ * be refused with the offset of the damage.
  *
  * `test_record_bytes --write FOLDER` writes the records of this test as seeds of fuzz_record. */
 #include "journal/record_bytes.h"
@@ -7,13 +8,14 @@
 #include "journal/crc32c.h"
 #include "unit/fixture.h"
 
-/* The value of the chain of checksums with which the records of this test are sealed. */
+/* The checksum of the record before, from which the checksums of the records of this test
+ * continue. */
 #define CHAIN UINT64_C(0x0123456789abcdef)
 
 static const unsigned char body[] = {1, 2, 3, 250};
-static char in_parts; /* stands for staged parts, which the journal owns */
+static char in_parts; /* a placeholder for parts that the journal has written */
 
-/* A record of each kind, and its bytes in version 1 of the format. */
+/* One record of each kind, and its bytes in version 1 of the format. */
 static const struct specimen {
     const char *name;
     st_record record;
@@ -210,7 +212,7 @@ static void a_cut_or_a_flipped_bit_is_refused(void **state)
         size_t size = frame_of(&specimens[i].record, CHAIN, bytes);
         for (size_t n = 0; n < 9 * size; n++) {
             size_t cut = n < size ? n : size, bit = n - size;
-            unsigned char *exact = malloc(cut + 1); /* the record fills the block to its end */
+            unsigned char *exact = malloc(cut + 1); /* a sanitizer detects reads past its end */
             memcpy(exact + 1, bytes, cut);
             if (n >= size) {
                 exact[1 + bit / 8] ^= (unsigned char)(1u << bit % 8);
@@ -227,8 +229,8 @@ static void a_cut_or_a_flipped_bit_is_refused(void **state)
     printf("note: %u damaged records: all refused\n", refused);
 }
 
-/* Changes a byte of a record and corrects the checksum, then reads it: this is what a reader meets
- * if the checksum does not detect some damage. */
+/* Changes a byte of a record, corrects the checksum and reads the record. A reader meets such a
+ * record if the checksum fails to detect damage. */
 static he_status read_resealed(const st_record *record, size_t at, unsigned value, he_error *err)
 {
     unsigned char bytes[ROOM];
@@ -251,10 +253,10 @@ static void what_no_release_wrote_is_refused_by_name(void **state)
     assert_int_equal(read_resealed(edit, 5, 0, &err), HE_CORRUPT);
     assert_int_equal(read_resealed(edit, 5, 7, &err), HE_CORRUPT);
     assert_int_equal(read_resealed(edit, 6, 8, &err), HE_CORRUPT);
-    assert_int_equal(read_resealed(edit, 6, 2 | 4, &err), HE_CORRUPT); /* parts and a body */
-    assert_int_equal(read_resealed(edit, 5, ST_RECORD_UNDO, &err), HE_CORRUPT);    /* and a body */
-    assert_int_equal(read_resealed(edit, 8, 0, &err), HE_CORRUPT);                 /* number 0 */
-    assert_int_equal(read_resealed(edit, 16, 0, &err), HE_CORRUPT);                /* revision 0 */
+    assert_int_equal(read_resealed(edit, 6, 2 | 4, &err), HE_CORRUPT);          /* parts and body */
+    assert_int_equal(read_resealed(edit, 5, ST_RECORD_UNDO, &err), HE_CORRUPT); /* a body */
+    assert_int_equal(read_resealed(edit, 8, 0, &err), HE_CORRUPT);              /* number 0 */
+    assert_int_equal(read_resealed(edit, 16, 0, &err), HE_CORRUPT);             /* revision 0 */
     assert_int_equal(read_resealed(&specimens[6].record, 6, 4, &err), HE_CORRUPT); /* no content */
     assert_int_equal(read_resealed(edit, 4, 1, &err), HE_OK);
 }
@@ -269,12 +271,14 @@ static void the_chain_covers_all_that_came_before(void **state)
     uint64_t next = st_frame_seal(first, size, chain);
     assert_true(next == st_frame_next_chain(first, size));
     assert_true(next != chain);
-    /* If two meshes have equal records, their chains of checksums must differ all the same. */
+    /* Equal records of two meshes must have different checksums, because these continue from
+     * different origins. */
     memcpy(second, first, size);
     assert_true(st_frame_seal(second, size, st_chain_of_origin(origin + 1)) != next);
 }
 
-/* The expected values are those of RFC 3720, B.4, for both implementations. */
+/* The expected values are those of RFC 3720, B.4. Both implementations of the checksum must give
+ * them. */
 static void checksums_are_those_of_the_standard(void **state)
 {
     (void)state;

@@ -1,9 +1,9 @@
-/* Each repair by itself; then failing allocations, cancelling, and soups that cannot be
- * repaired. */
+/* Tests of each repair by itself; then of failing allocations, of cancelling, and of soups that
+ * cannot be repaired. */
 #include "repair_fixture.h"
 #include "tests/failing.h"
 
-/* --- one by one --- */
+/* --- one repair at a time --- */
 
 #define CUBE "0321,4567,0154,1265,2376,3047"
 
@@ -16,7 +16,8 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         unsigned which;
         unsigned v, e, f;
     } rows[] = {
-        /* three faces on an edge; four on an edge, of two tetrahedra with a common face */
+        /* an edge with three faces, and an edge with four faces, where two tetrahedra share a
+         * face */
         {"012,103,014", HE_NONMANIFOLD_EDGE, SPLIT, 7, 8, 3},
         {"021,032,013,123,132,124,234,314", HE_NONMANIFOLD_EDGE, SPLIT, 8, 12, 8},
         /* faces with a repeated corner, faces with too few corners, and a soup without any valid
@@ -24,20 +25,21 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         {"012,0230", HE_REPEATED_CORNER, DEGENERATE, 4, 5, 2},
         {"012,23", HE_TOO_FEW_CORNERS, DEGENERATE, 4, 3, 1},
         {"011,22", HE_REPEATED_CORNER, DEGENERATE, 3, 0, 0},
-        /* neighbours whose orientations do not agree */
+        /* neighbouring faces whose orientations do not agree */
         {"012,123,032", HE_ORIENTATION, ORIENT, 4, 6, 3},
         {CUBE ",0", HE_TOO_FEW_CORNERS, DEGENERATE, 8, 12, 6},
         {"0321,4567,0154,1562,2376,3047", HE_ORIENTATION, ORIENT, 8, 12, 6},
-        /* a closed fan of faces at a vertex, together with another closed one, and with an
-         * open one */
+        /* a vertex with a closed fan of faces and a second fan, which is closed or open */
         {"021,032,013,123,354,365,346,456", HE_CLOSED_FAN, SPLIT, 8, 12, 8},
         {"021,032,013,123,345", HE_CLOSED_FAN, SPLIT, 7, 9, 5},
-        /* a face given twice: with equal orientation, and inside a surface */
+        /* a face that occurs twice, alone and in a closed surface, in equal or opposite
+         * orientation */
         {"012,012", HE_ORIENTATION, DUPLICATES, 3, 3, 1},
         {"021,032,013,123,231", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
         {"021,032,013,123,132", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
-        /* a duplicate beside an edge of three faces, and a duplicate of one of these faces; the
-         * wall between two tetrahedra must not count as a duplicate */
+        /* A duplicate in a soup that also has an edge with three faces; a duplicate of one of three
+         * faces on an edge; and two tetrahedra on either side of a common face, which must not
+         * count as a duplicate. */
         {"021,032,013,123,231,456,547,458", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 11, 14, 7},
         {"012,103,014,012", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 7, 8, 3},
         /* a Moebius band of five triangles */
@@ -118,11 +120,11 @@ static void a_moebius_band_is_not_orientable(void **state)
     fixture_soup(&soup, "01,012,123,234,340,401");
     assert_int_equal(he_repair_soup(&soup, &plan, &done, &err), HE_NOT_ORIENTABLE);
     static const uint32_t left[] = {0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 0, 4, 0, 1};
-    assert_int_equal(soup.face_count, 5); /* drop_degenerate was done, and nothing reversed */
+    assert_int_equal(soup.face_count, 5); /* only drop_degenerate changed the faces */
     assert_int_equal(soup.corner_count, sizeof left / sizeof *left);
     assert_memory_equal(soup.corners, left, sizeof left);
     assert_int_equal(err.kind, HE_FACE);
-    assert_in_range(err.id, 1, 5); /* a face number of the input */
+    assert_in_range(err.id, 1, 5); /* the face is named by its number in the input */
     assert_int_equal(he_repair_advise(&soup, plan.which, &which, NULL), HE_OK);
     assert_int_equal(which, DEGENERATE | ORIENT | SPLIT);
     he_repaired_clear(&done);
@@ -144,7 +146,7 @@ static void the_larger_part_keeps_its_direction(void **state)
     assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->count, 1);
     assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->parts, 1);
     assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->pairs[0].a, 0);
-    /* the face is reversed, and its first corner stays the first */
+    /* The face was reversed, but its first corner must stay the first. */
     he_halfedge h = he_face_halfedge(mesh, (he_face){0});
     assert_int_equal(he_origin(mesh, h).i, 0);
     assert_int_equal(he_target(mesh, h).i, 3);
@@ -183,7 +185,7 @@ static void small_holes_are_filled(void **state)
 {
     (void)state;
     he_repaired done = {0};
-    /* a cube without its lid and without the two sides at vertex 7 */
+    /* The mesh is a cube without its three faces at vertex 7. */
     he_mesh *mesh = repair_mend_faces("0321,0154,1265,2376,3047", FILL, &done);
     fixture_counts(mesh, 8, 12, 6);
     assert_int_equal(repair_account_of(&done, HE_REPAIR_FILL)->count, 1);
@@ -192,7 +194,8 @@ static void small_holes_are_filled(void **state)
     he_mesh_free(mesh);
     he_repaired_clear(&done);
 
-    /* the outline of a single face must not be filled, nor a hole that is longer than allowed */
+    /* The outline of a single face must not be filled, nor must a hole that is longer than
+     * allowed. */
     done = (he_repaired){0};
     mesh = repair_mend_faces("0123", FILL, &done);
     fixture_counts(mesh, 4, 4, 1);
@@ -209,7 +212,7 @@ static void small_holes_are_filled(void **state)
     he_soup_clear(&soup);
 }
 
-/* --- failures --- */
+/* --- failing allocations, cancelling, and soups that cannot be repaired --- */
 
 static he_status mend_or_fail(const he_soup *soup, unsigned which, he_progress *progress)
 {

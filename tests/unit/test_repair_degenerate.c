@@ -1,9 +1,10 @@
-/* The repair drop_degenerate: what it keeps of faces that repeat a vertex. */
+/* Tests of the repair drop_degenerate: what it keeps of a face that uses a vertex more than
+ * once. */
 #include "repair_fixture.h"
 
 #include <math.h>
 
-/* Writes the faces of a soup as text, as in "012,230". */
+/* Writes the faces of a soup as text, for example "012,230" for two triangles. */
 static void faces_of(const he_soup *soup, char *text)
 {
     for (size_t f = 0; f < soup->face_count; f++) {
@@ -23,29 +24,30 @@ static void a_face_keeps_what_has_an_area(void **state)
         const char *before, *after;
         unsigned gone, mended;
     } rows[] = {
-        /* a quadrilateral that is a triangle, wherever the repeated vertex is */
+        /* faces that use a vertex twice in a row, at any place in the face */
         {"0122", "012", 0, 1},
         {"0012", "012", 0, 1},
         {"0120", "012", 0, 1},
         {"00122", "012", 0, 1},
         {"0000123", "0123", 0, 1},
-        /* faces with spikes at the end, at the beginning and around it */
+        /* Faces with spikes (paths that go out and straight back) at the end, at the beginning or
+         * around it. */
         {"01232", "012", 0, 1},
         {"012343", "0123", 0, 1},
         {"20123", "201", 0, 1},
         {"0123432", "012", 0, 1},
         {"30123", "3012", 0, 1},
         {"3012333", "3012", 0, 1},
-        /* faces of which nothing is left, or which had nothing */
+        /* faces that must be dropped, because fewer than three corners are left */
         {"011", "", 1, 0},
         {"0101", "", 1, 0},
         {"01210", "", 1, 0},
         {"0", "", 1, 0},
         {"01", "", 1, 0},
-        /* the loop of the face goes around twice, so it has no outline */
+        /* faces whose corners go around twice, so they have no outline and must be dropped */
         {"012012", "", 1, 0},
         {"01230123", "", 1, 0},
-        /* the face is among others, which must keep their order */
+        /* a face that is mended among other faces, which must keep their order */
         {"045,0122,11,123", "045,012,123", 1, 1},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -70,7 +72,7 @@ static void a_face_keeps_what_has_an_area(void **state)
     }
 }
 
-/* Returns twice the area of a triangle seen from above. */
+/* Returns twice the area of a triangle in the plane z = 0, positive if it is counter-clockwise. */
 static double twice_area(const he_soup *soup, size_t f)
 {
     const uint32_t *v = soup->corners + soup->starts[f];
@@ -78,8 +80,9 @@ static double twice_area(const he_soup *soup, size_t f)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/* Makes the ring between two regular polygons of `sides` corners as one face: it goes along an edge
- * to the inner polygon, around that in the opposite direction, and back. */
+/* Makes one face that covers the ring between two regular polygons of `sides` corners: its outline
+ * goes along an edge to the inner polygon, around it in the opposite direction, and back along the
+ * edge. */
 static void make_keyhole(he_soup *soup, uint32_t sides)
 {
     const double turn = 6.283185307179586 / sides;
@@ -122,7 +125,7 @@ static void a_keyhole_is_cut_into_triangles(void **state)
         he_repaired_clear(&done);
         he_soup_clear(&copy);
         he_mesh *mesh = repair_mend(&soup, &plan, &done);
-        fixture_counts(mesh, 2 * n, 4 * n, 2 * n); /* V - E + F = 0, as for a ring */
+        fixture_counts(mesh, 2 * n, 4 * n, 2 * n); /* the Euler number of a ring is 0 */
         assert_int_equal(he_mesh_boundary_halfedges(mesh), 2 * n);
         he_mesh_free(mesh);
         he_repaired_clear(&done);
@@ -130,7 +133,7 @@ static void a_keyhole_is_cut_into_triangles(void **state)
     }
 }
 
-/* The faces consist of two loops that touch at a vertex, side by side or one inside the other. */
+/* Each face consists of two loops that touch at a vertex, side by side or one inside the other. */
 static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
 {
     (void)state;
@@ -168,8 +171,8 @@ static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
     }
 }
 
-/* A face that visits a vertex many times must be dropped without being divided, because that would
- * take too long. */
+/* A face that uses a vertex very often must be dropped; dividing it into loops would take too
+ * long. */
 static void a_face_that_repeats_its_corners_is_left_out(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Repairs are compared with obvious checks, on random soups of every kind. SEED=n in the
- * environment repeats a run. */
+/* Repairs of random soups of every kind are compared with simple, slow checks. The environment
+ * variable SEED sets the random numbers, to repeat a run. */
 #include "repair_fixture.h"
 
 #include "model/random.h"
@@ -28,7 +28,8 @@ static bool is_near(he_vec3 a, he_vec3 b, double tolerance)
                                  1;
 }
 
-/* Checks the weld by the definition in the header, comparing all pairs of vertices. */
+/* Checks the result of a weld against its definition in the header, by comparing all pairs of
+ * vertices. */
 static void expect_welded(const he_soup *soup, double tolerance)
 {
     he_soup copy;
@@ -101,9 +102,9 @@ static void welding_is_what_comparing_all_would_do(void **state)
     }
 }
 
-/* --- soups of every kind --- */
+/* --- random soups and all repairs --- */
 
-/* Makes random faces with few vertices, mostly triangles on an edge of the face before. */
+/* Makes random faces on few vertices; most are triangles on an edge of the face before. */
 static void random_soup(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 3 + md_below(random, 8), corners[8] = {0, 1, 2};
@@ -154,7 +155,8 @@ static bool is_degenerate(const he_soup *soup, size_t f)
     return end - begin < 3;
 }
 
-/* Returns whether the two faces have equal corners, from any corner on, in either direction. */
+/* Returns whether two faces have the same cycle of corners, in the same or the opposite
+ * direction. */
 static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
 {
     uint32_t n = he_soup_end(soup, f) - soup->starts[f];
@@ -174,7 +176,8 @@ static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
     return found;
 }
 
-/* Removes repeated neighbours and spikes from a loop, in the order in which they are found. */
+/* Removes spikes and repeated neighbouring corners from a loop, in the order in which they are
+ * found. */
 static uint32_t reduce(uint32_t *loop, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -189,7 +192,7 @@ static uint32_t reduce(uint32_t *loop, uint32_t n)
     return n;
 }
 
-/* The edges of some loops, each with both its ends. */
+/* The directed edges of some loops; `ends` has the two vertices of each edge. */
 typedef struct runs {
     uint32_t ends[32][2];
     uint32_t count;
@@ -222,7 +225,8 @@ static bool runs_twice(const runs *r)
     return twice;
 }
 
-/* Requires that both use the same edges, apart from edges that are used in both directions. */
+/* Requires that a and b have the same directed edges, not counting edges used in both directions,
+ * which cancel out. */
 static void expect_same_rim(const runs *a, const runs *b)
 {
     for (uint32_t v = 0; v < 11; v++) {
@@ -233,7 +237,8 @@ static void expect_same_rim(const runs *a, const runs *b)
     }
 }
 
-/* Checks the faces, from `at` on, that replaced face f of the soup; returns how many there are. */
+/* Checks the faces with which the repair replaced face f of the soup; they begin at face `at` of
+ * the result. Returns how many there are. */
 static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
                             const uint32_t *from, size_t at)
 {
@@ -259,8 +264,8 @@ static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
     return made;
 }
 
-/* Requires that a soup is without degenerate faces after the repair, which `out` becomes; the
- * caller must clear it. */
+/* Repairs a copy of the soup and requires that it has no degenerate faces left. The copy becomes
+ * `out`, which the caller must clear. */
 static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cut)
 {
     he_repaired done = {0};
@@ -288,8 +293,8 @@ static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cu
     he_repaired_clear(&done);
 }
 
-/* Requires that no duplicates are left. Degenerate faces are dropped first, because they may be
- * duplicates, too. */
+/* Removes duplicate faces and requires that none are left. Degenerate faces are dropped before
+ * that, because two of them may be duplicates. */
 static void expect_no_duplicates(const he_soup *soup)
 {
     he_soup copy;
@@ -318,7 +323,7 @@ static void expect_no_duplicates(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Counts the faces that run along the edge a-b in each direction. */
+/* Counts the faces that have the edge a-b, separately for each direction. */
 static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
 {
     *up = *down = 0;
@@ -332,9 +337,9 @@ static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up
     }
 }
 
-/* Returns whether faces can be reversed so that each edge with two faces has one in each direction.
- * Each face is entered twice into a union-find, as it is and reversed; the answer is no if a face
- * is in one class with its reverse. */
+/* Returns whether faces can be reversed so that the two faces of each edge use it in opposite
+ * directions. A union-find has two entries for each face, one as it is and one reversed; if both
+ * are in one class, the answer is no. */
 static bool is_orientable(const he_soup *soup)
 {
     size_t n = soup->face_count;
@@ -396,8 +401,8 @@ static void expect_oriented(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Requires that after the repair `split` there is no bow-tie, and that two faces in opposite
- * directions on an edge are still joined. */
+/* Requires that the repair `split` leaves no bow-tie, and that it still joins two faces that use an
+ * edge in opposite directions. */
 static void expect_split(const he_soup *soup)
 {
     he_soup copy, again;
@@ -431,8 +436,8 @@ static void expect_split(const he_soup *soup)
     he_soup_clear(&again);
 }
 
-/* Whatever repairs are requested first: if the soup is still refused, the repairs that the refusal
- * names must suffice. */
+/* Requests the repairs `asked`. If the soup cannot be built even then, the repairs that the error
+ * recommends must suffice. */
 static void expect_advice(const he_soup *soup, unsigned asked)
 {
     he_soup copy;

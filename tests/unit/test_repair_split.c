@@ -1,10 +1,11 @@
-/* The repair split: a closed, consistently oriented surface stays closed. */
+/* Tests of the repair split: a surface that is closed and consistently oriented must stay
+ * closed. */
 #include "repair_fixture.h"
 
 #include "model/random.h"
 #include "seed.h"
 
-/* Applies split, and requires that the result is closed and has all faces. */
+/* Applies the repair split, and requires that the mesh is closed and has all faces. */
 static void expect_closed(const he_soup *soup)
 {
     he_repaired done = {0};
@@ -16,16 +17,16 @@ static void expect_closed(const he_soup *soup)
     he_repaired_clear(&done);
 }
 
-/* Surfaces that are closed by themselves or together, with edges of four faces. If faces were
- * paired in their order, two pairs would connect the same two fans, so partners must be
- * exchanged. */
+/* The closed surfaces touch along edges of four or more faces. If the faces at such an edge were
+ * paired in their order, two pairs would join the same two fans, so faces must be paired in another
+ * way. */
 static void pairs_between_the_same_fans_exchange_partners(void **state)
 {
     (void)state;
     static const char *const rows[] = {
-        /* a tetrahedron, and a second one with the same vertices and reversed faces */
+        /* a tetrahedron and a reversed copy of it, both on the same vertices */
         "031,123,320,321,130,210,023,201",
-        /* two pairs of triangles back to back, the second pair in reverse order */
+        /* two pairs of triangles back to back, with the second pair in reverse order */
         "012,013,103,102",
         /* three pairs of triangles back to back, all at one edge, in a circle */
         "012,013,014,103,104,102",
@@ -78,8 +79,8 @@ static void random_closed_soups_stay_closed(void **state)
     }
 }
 
-/* Pairs of triangles back to back lie around one edge: at first, all pairs of faces at this edge
- * would connect the same two fans. */
+/* The faces around one edge are pairs of triangles, back to back. The first way to pair these faces
+ * joins the same two fans in every pair. */
 static void an_edge_of_very_many_faces_takes_no_longer(void **state)
 {
     (void)state;

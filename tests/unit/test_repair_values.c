@@ -1,13 +1,13 @@
-/* The repair weld keeps the values of vertices: where merged vertices have different values, these
- * move to the corners of faces. */
+/* Tests of what the repair weld does with values of vertices: if merged vertices have different
+ * values, the values must move to the corners of faces. */
 #include "unit/format_fixture.h"
 
 #include "query/open_seams.h"
 #include "repair/repair.h"
 #include "tests/failing.h"
 
-/* Two triangles share an edge in space, but each has vertices of its own, as many programs write a
- * texture seam. */
+/* Two triangles meet along an edge, but each has its own vertices there. Many programs write a seam
+ * of a texture like this. */
 static const char seam[] =
     "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
     "property float z\nproperty double s\nproperty double t\nproperty uchar red\n"
@@ -39,7 +39,7 @@ static void a_seam_of_texture_stays_a_seam(void **state)
     assert_int_equal(done.accounts[HE_REPAIR_WELD].count, 2);
     assert_int_equal(done.accounts[HE_REPAIR_WELD].moved, 2);
     assert_null(he_mesh_find_column(mesh, HE_VERTEX, "uv"));
-    /* if the values are equal on both sides, no corners are needed */
+    /* If merged vertices have equal values, these must stay values of the vertex. */
     assert_null(he_mesh_find_column(mesh, HE_HALFEDGE, "color"));
     assert_non_null(he_mesh_find_column(mesh, HE_VERTEX, "color"));
     he_warnings warnings;
@@ -52,7 +52,8 @@ static void a_seam_of_texture_stays_a_seam(void **state)
     he_mesh_free(mesh);
 }
 
-/* One of four triangles has the wrong orientation: it must be reversed, and so must its normals. */
+/* One of four triangles has the wrong orientation. The repair must reverse the triangle and negate
+ * its normals. */
 static void normals_turn_with_their_face(void **state)
 {
     (void)state;
@@ -112,10 +113,10 @@ static void the_edges_that_a_weld_would_make_are_counted(void **state)
     } rows[] = {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 -0\nv 1 0 0\n", "f 1 2 3\nf 4 5 6\n", 1},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", "f 1 2 3\nf 4 3 2\n", 0},
-        /* the edges coincide, but both faces would use the merged edge in the same direction, so a
-         * weld cannot join them */
+        /* The edges coincide, but both faces would use the merged edge in the same direction, so a
+         * weld cannot join them. */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\n", "f 1 2 3\nf 4 6 5\n", 0},
-        /* three faces lie along one edge, of which only two can be joined */
+        /* Three faces have coinciding edges, of which only two can be joined. */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nv 1 0 0\n",
          "f 1 2 3\nf 4 5 6\nf 7 8 9\n", 1},
         {"v 0 0 0\nv 0 0 0\nv 0 0 0\n", "f 1 2 3\n", 0},

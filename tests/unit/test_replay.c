@@ -1,5 +1,5 @@
-/* A copy of a mesh that goes forward and back along a log of edits must equal the mesh at
- * each point: in links, positions, columns that were added, removed and restored, and
+/* A copy of a mesh is moved forward and back along a log of edits. At each point it must equal the
+ * mesh of that time: in links, positions, columns that were added, removed and restored, and
  * replaced contents. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
@@ -14,7 +14,8 @@
 
 enum { ENTRIES = 60 };
 
-/* Takes the copy across the entry before `at` (back) or after it. */
+/* Moves the copy by one entry of the log, from entry `at` to the one before it (if `back`) or after
+ * it. */
 static he_status cross(const edit_log *h, he_replay *replay, size_t at, bool back)
 {
     size_t crossed = back ? at : at + 1;
@@ -39,7 +40,8 @@ static void every_point_of_a_log_can_be_reached(void **state)
         he_replay *replay;
         assert_int_equal(he_replay_new(h->mesh, &replay, NULL), HE_OK);
         size_t at = h->count - 1;
-        /* The copy goes to the beginning, then back and forth, then to the end. */
+        /* The copy moves to the beginning of the log, then back and forth, and finally to the
+         * end. */
         for (size_t leg = 0; leg < 8; leg++) {
             size_t to = leg == 0   ? 0
                         : leg == 7 ? h->count - 1
@@ -58,8 +60,8 @@ static void every_point_of_a_log_can_be_reached(void **state)
     }
 }
 
-/* A column that was added belongs to the mesh alone while it is there: a copy made before cannot
- * get it from the delta. */
+/* A new column belongs to the mesh alone, so a delta that adds it does not have its values: a copy
+ * made before the edit cannot be moved across it. */
 static void a_column_that_only_the_mesh_holds_cannot_be_replayed(void **state)
 {
     (void)state;

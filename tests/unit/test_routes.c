@@ -1,5 +1,5 @@
-/* Finding the handler for a request, and everything around a handler, in a service whose store
- * holds one mesh, "m". */
+/* Tests of finding the handler for a request, and of everything that happens before and after a
+ * handler, in a service whose store has one mesh, "m". */
 #include "api/describe/routes.h"
 #include "api/json/json_scan.h"
 #include "api/request/exchange.h"
@@ -36,7 +36,7 @@ static bool is_full(void *context)
 }
 
 static st_store *store;
-static st_mesh *only; /* the mesh "m" */
+static st_mesh *only; /* the only mesh, whose id is "m" */
 static api_service *service;
 
 static int set_up(void **state)
@@ -73,12 +73,12 @@ static int tear_down(void **state)
 /* --- requests --- */
 
 typedef struct sent {
-    const char *line;    /* "GET /v1/meshes?limit=1" */
-    const char *headers; /* "Name: value\n..." */
-    const char *body;    /* NULL: no body */
+    const char *line;    /* for example "GET /v1/meshes?limit=1" */
+    const char *headers; /* for example "Name: value\n..." */
+    const char *body;    /* NULL if the request has no body */
 } sent;
 
-/* The values of the headers of a request, which must live until api_free. */
+/* The values of the request's headers, which must stay valid until api_free. */
 typedef struct header_list {
     char value[API_REQUEST_HEADERS][256];
 } header_list;
@@ -139,7 +139,7 @@ static bool has_text(const api_answer *answer, const char *text)
     return false;
 }
 
-/* Returns whether the body of the answer contains "code":"slug". */
+/* Returns whether the answer is a problem whose member "code" is `slug`. */
 static bool has_code(const api_answer *answer, const char *slug)
 {
     char member[80];
@@ -153,7 +153,7 @@ static bool has_code(const api_answer *answer, const char *slug)
 static const struct {
     sent request;
     int status;
-    const char *code; /* of the expected problem */
+    const char *code; /* code of the expected problem */
 } answers[] = {
     {{"GET /livez", NULL, NULL}, 200, NULL},
     {{"GET /readyz", NULL, NULL}, 200, NULL},
@@ -249,8 +249,8 @@ static const struct {
     {{"POST /v1/meshes/m/query", JSON, "{\"queries\":"}, 400, "malformed_json"},
     {{"POST /v1/meshes/m/query", JSON, "{\"a\":1,\"a\":1}"}, 400, "duplicate_member"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
-    /* A form in a browser may send no body, but then with a type that browsers send without asking
-     * the server first: this must be refused. */
+    /* A page of another site can send a form without asking the server first, but only with certain
+     * media types. A request with one of these types must be refused even if it has no body. */
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", ""}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
@@ -269,7 +269,7 @@ static const struct {
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-origin", NULL}, 200, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-site", NULL}, 200, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: none", NULL}, 200, NULL},
-    /* In this test, an upload may have 100 bytes at most. */
+    /* The service of this test accepts bodies of at most 100 bytes. */
     {{"POST /v1/meshes", JSON,
       "{\"name\":\"012345678901234567890123456789012345678901234567890123456789012345678901234567"
       "8901234567890123456789\"}"},
@@ -546,8 +546,8 @@ static void a_large_document_is_read_off_the_worker(void **state)
     free(body);
 }
 
-/* Fails if an object has two members of one name. It has no limit on the number of members, unlike
- * the reader of control documents: the OpenAPI document has more than 256 schemas. */
+/* Fails if a JSON object has two members with one name. Objects may have any number of members: the
+ * OpenAPI document has more than 256 schemas, which the parser of request bodies would refuse. */
 static void expect_no_repeated_member(const cJSON *value, const char *line)
 {
     const cJSON *child;
@@ -680,7 +680,8 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
     }
 }
 
-/* Whichever allocation fails, there must be a complete answer, or no exchange at all. */
+/* Whichever allocation fails, the request must get a complete answer, or api_handle must return no
+ * exchange. */
 static void every_failed_allocation_is_answered(void **state)
 {
     (void)state;
@@ -700,8 +701,8 @@ static void every_failed_allocation_is_answered(void **state)
             failing_end(&f, x != NULL);
             if (x != NULL && !f.is_over && api_answer_of(x)->status != 507 &&
                 api_answer_of(x)->status >= 400) {
-                /* The request is refused in any case; without memory, the refusal must still have a
-                 * body. */
+                /* The answer is an error with or without memory; without memory it must
+                 * nevertheless have a body. */
                 assert_true(api_answer_of(x)->length > 0);
             }
             assert_true(x == NULL || api_answer_of(x)->status >= 200);
@@ -726,7 +727,7 @@ static void documents_are_written_and_compressed_once(void **state)
             assert_int_equal(api_answer_of(first)->status, 200);
             assert_ptr_equal(api_answer_of(first)->bytes, api_answer_of(second)->bytes);
             const char *coding = answer_header(api_answer_of(first), "Content-Encoding");
-            assert_true((coding == NULL) == (k == 0 || i == 2)); /* a.js is too short */
+            assert_true((coding == NULL) == (k == 0 || i == 2)); /* a.js is too short to compress */
             api_free(first);
             api_free(second);
         }

@@ -1,4 +1,5 @@
-/* The table of primitive shapes: counts, positions, orientation, and what is refused. */
+/* Tests of the table of primitive shapes: their counts, positions and orientation, and which
+ * arguments are refused. */
 #include "fixture.h"
 
 #include "tests/failing.h"
@@ -20,8 +21,8 @@ static const he_shape *shape_named(const char *name)
     return shape;
 }
 
-/* Makes a shape; the arguments are in the order of its row in the table, and NAN takes the
- * default. */
+/* Makes a shape. The arguments are in the order in which the shape's row of the table lists its
+ * parameters; NAN stands for the default. */
 static he_mesh *make(const char *name, double a, double b, double c, double d)
 {
     const he_shape *shape = shape_named(name);
@@ -201,7 +202,7 @@ static void regular_solids_have_equal_edges_and_exact_volumes(void **state)
             assert_near(he_vec3_length(he_position(m, (he_vertex){v})), 2.5);
         }
         double r = 2.5;
-        /* The volumes are given by closed forms from the radius of the sphere around the solid. */
+        /* The volumes are closed forms in the radius of the circumscribed sphere. */
         double golden = (1 + sqrt(5)) / 2;
         double ico = r / sin(2 * PI / 5), dodeca = r * 2 / (sqrt(3) * golden);
         double wanted[4] = {

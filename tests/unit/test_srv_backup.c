@@ -1,4 +1,4 @@
-/* Backups of a store, and restoring them (core/journal/sqlite/sqlite_backup.h). */
+/* Tests of backups of a store, and of restoring them (core/journal/sqlite/sqlite_backup.h). */
 #include "tests/pace.h"
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
@@ -27,7 +27,7 @@ static int make_folders(void **state)
     return 0;
 }
 
-/* Removes the folders in which a restore keeps the old store. */
+/* Removes the folders to which a restore has moved the old store. */
 static void remove_befores(void)
 {
     DIR *dir = opendir(folder);
@@ -118,7 +118,7 @@ static void a_restore_brings_back_the_state_under_new_incarnations(void **state)
     }
     kept_mesh other = new_mesh("b");
     told_wait(&told, kept_append(&told.journal, kept_content(&other), &other, NULL, 0));
-    /* A restore must be refused while a daemon uses the store. */
+    /* A restore must be refused while a daemon has the store open. */
     assert_false(st_sqlite_restore(folder, backup, before, message));
     assert_non_null(strstr(message, "in use by process"));
     told_end(&told);
@@ -149,8 +149,8 @@ static bool count_key(void *context, const st_kept_key *key)
     assert_string_equal(key->key.text, "a key");
     assert_string_equal(key->id, "a");
     assert_true(key->key.digest[1] == 8);
-    /* After a restore, a key must not name the state that its request made, because that state may
-     * be gone. */
+    /* An Idempotency-Key must not name the state that its request made, because a restore may have
+     * removed that state. */
     assert_true(key->incarnation == 0 && key->revision == 0 && key->metadata == 0);
     return true;
 }
@@ -241,13 +241,14 @@ static void a_backup_takes_the_place_of_no_file_of_a_store(void **state)
                        names[i]);
         expect_no_backup(path, "of a store");
     }
-    /* The path of the backup leads to the store's own file by a link: it must be refused. */
+    /* The path of the backup is a symbolic link to the database of the store, so it must be
+     * refused. */
     (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
     (void)snprintf(linked, sizeof linked, "%s/linked", aside);
     assert_int_equal(symlink(path, linked), 0);
     expect_no_backup(linked, "hedge.db of a store");
     assert_int_equal(unlink(linked), 0);
-    /* A backup with another name may lie in the folder of the store. */
+    /* A backup may be in the folder of the store if its name differs from the store's own files. */
     (void)snprintf(path, sizeof path, "%s/of today.db", folder);
     for (int again = 0; again < 2; again++) {
         if (!st_sqlite_backup(folder, path, message)) {
@@ -313,8 +314,8 @@ static void move(const char *from, const char *to)
     (void)rename(a, b);
 }
 
-/* A restore may be interrupted between any two steps; the state after each step is made by hand.
- * The next start must complete the restore. */
+/* A restore may be interrupted between any two of its steps. This test makes the state after each
+ * step itself; the next start must complete the restore. */
 static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
 {
     (void)state;
@@ -348,7 +349,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
         }
         expect_records(1, &incarnation);
         told_open(&told, folder);
-        /* As long as the note about the restore is not written, the old store must be kept. */
+        /* Before the file "restoring" is written, a start must keep the old store. */
         assert_int_equal(told.journal.count(told.journal.self), step == 0 ? 2 : 1);
         told_end(&told);
         char path[2 * FOLDER_PATH];
@@ -362,8 +363,8 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
     }
 }
 
-/* A restore that was killed left a rollback journal of SQLite; if it stayed, SQLite would write its
- * pages (here a first page of zeros) into the next copy. */
+/* A killed restore has left a rollback journal of SQLite, which contains a first page of zeros. If
+ * it stayed, SQLite would write this page into the next copy. */
 static void what_a_killed_restore_left_is_not_played_into_the_next(void **state)
 {
     (void)state;
@@ -431,7 +432,7 @@ static void what_is_no_whole_store_is_not_restored(void **state)
     expect_records(40, &incarnation);
 }
 
-/* --- beside a writer --- */
+/* --- a backup while a thread writes to the store --- */
 
 static _Atomic bool stops;
 static told_journal writing;

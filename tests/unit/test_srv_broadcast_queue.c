@@ -1,6 +1,6 @@
-/* The queue of events: every listener must read all messages in order, and none that is not
- * released because it is not durable; a slow listener must be told that it missed messages, and
- * must hold no memory. */
+/* Tests of the queue of events: every listener must read all messages in order, but none before it
+ * is released as durable. A slow listener must learn that it missed messages, and messages must not
+ * be kept for it. */
 #include "tests/unit/fixture.h"
 
 #include "store/publish/broadcast_queue.h"
@@ -39,7 +39,8 @@ static void join(st_listener *listener, unsigned *wakes)
     st_queue_wake(listener, count_wake, wakes);
 }
 
-/* Adds a message that contains its stamp, the number by which it is released. */
+/* Adds a message whose text is its stamp: the position in the journal up to which changes must be
+ * durable before the message may be read. */
 static void add(uint64_t stamp, uint64_t key)
 {
     char text[32];
@@ -77,7 +78,7 @@ static void everybody_reads_everything_once(void **state)
     join(&late, &late_wakes);
     add(9, 5);
     st_queue_allow(&feed, 9);
-    assert_int_equal(early_wakes, 0); /* the listener does not wait yet */
+    assert_int_equal(early_wakes, 0); /* the listener is not waiting yet */
     assert_reads(&early, "8;9;");
     assert_reads(&late, "9;");
     add(10, 5);
@@ -85,7 +86,7 @@ static void everybody_reads_everything_once(void **state)
     assert_int_equal(early_wakes, 1);
     add(12, 6);
     st_queue_allow(&feed, 12);
-    assert_int_equal(early_wakes, 1); /* a listener is woken once for each wait */
+    assert_int_equal(early_wakes, 1); /* one wake-up for each time it waits */
     assert_int_equal(late_wakes, 1);
     assert_reads(&early, "10;12;");
     assert_reads(&late, "10;12;");
@@ -109,7 +110,7 @@ static void what_is_not_allowed_is_not_read(void **state)
     assert_int_equal(wakes, 1);
     assert_reads(&listener, "8;9;");
     st_queue_end(&feed);
-    assert_step(&listener, ST_QUEUE_WAIT); /* the end of the stream is not released either */
+    assert_step(&listener, ST_QUEUE_WAIT); /* the end of the stream waits for position 10, too */
     st_queue_allow(&feed, 10);
     assert_reads(&listener, "10;");
     assert_step(&listener, ST_QUEUE_ENDED);
@@ -129,7 +130,7 @@ static void what_is_beside_a_message_comes_after_it(void **state)
     add(8, 4);
     st_queue_add_beside(&feed, "b;", 2);
     st_queue_add_beside(&feed, "c;", 2);
-    assert_reads(&listener, "a;"); /* a message after position 8 releases it */
+    assert_reads(&listener, "a;"); /* message 8 is not released yet */
     assert_int_equal(wakes, 1);
     add(9, 5);
     st_queue_allow(&feed, 9);
@@ -166,7 +167,7 @@ static void who_is_slow_is_behind_once(void **state)
         add(stamp, stamp);
     }
     assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
-    /* The position from which a slow listener may continue must not be shown before it is
+    /* A slow listener may read the position from which it can continue only when this position is
      * durable. */
     assert_step(&slow, ST_QUEUE_WAIT);
     st_queue_allow(&feed, stamp - 3);
@@ -175,7 +176,7 @@ static void who_is_slow_is_behind_once(void **state)
     assert_int_equal(place.stamp, stamp - 3);
     assert_int_equal(place.key, stamp - 3);
     assert_step(&slow, ST_QUEUE_WAIT);
-    /* A message of which a listener has read a part must be read to its end. */
+    /* A slow listener that has read a part of a message must still get the rest. */
     assert_int_equal(st_queue_read(&middle, byte, 2, &got), ST_QUEUE_GOT);
     assert_int_equal(got, 1);
     assert_int_equal(byte[0], ';');
@@ -200,10 +201,10 @@ static void bytes_are_bounded_too(void **state)
         assert_true(feed.bytes <= ST_QUEUE_BYTES);
     }
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
-    st_queue_shed(&feed); /* keeps its memory: there is a listener */
+    st_queue_shed(&feed); /* messages are kept while there is a listener */
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
     st_queue_leave(&slow);
-    assert_true(st_queue_is_followed(&feed)); /* there was a listener until recently */
+    assert_true(st_queue_is_followed(&feed)); /* the last listener left only now */
     st_queue_shed(&feed);
     assert_int_equal(feed.count, 0);
     assert_int_equal(feed.bytes, 0);
@@ -216,7 +217,7 @@ static void a_listener_goes_back_to_a_key(void **state)
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
-    add(9, 4); /* a message without a revision */
+    add(9, 4); /* a message about a change without a new revision */
     add(10, 5);
     st_queue_allow(&feed, 10);
     assert_true(st_queue_rewind(&listener, 3));
@@ -276,7 +277,7 @@ typedef struct reader {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool woken, leaves;
-    uint64_t last; /* stamp of the last message */
+    uint64_t last; /* stamp of the last message that it read */
     unsigned behind;
 } reader;
 
@@ -300,7 +301,7 @@ static void wait_for_wake(reader *r)
     pthread_mutex_unlock(&r->lock);
 }
 
-/* Each message is a stamp of eight bytes; a buffer must hold complete messages only. */
+/* A message is a stamp of eight bytes; a read must return whole messages, without gaps. */
 static void take(reader *r, const char *bytes, size_t length)
 {
     for (size_t at = 0; at < length; at += sizeof(uint64_t)) {

@@ -1,5 +1,5 @@
-/* Options of the daemon: a flag overrides the environment, which overrides the default; every
- * refusal is a sentence. */
+/* Tests of the daemon's options: a flag overrides the environment, which overrides the default;
+ * each refusal must be a sentence. */
 #include "tests/unit/fixture.h"
 
 #include "server/config.h"
@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-static const char *const *variables; /* of the environment: name, value, ..., NULL */
+static const char *const *variables; /* environment of the test: name, value, ..., NULL */
 
 static char *environment(const char *name)
 {
@@ -188,7 +188,8 @@ static void actions_are_taken_from_the_command_line_only(void **state)
     assert_true(READ(&config, "-V"));
     assert_true(config.version);
     srv_config_clear(&config);
-    /* An action such as --help cannot be requested by the environment, which all commands share. */
+    /* An action such as --help must not be possible from the environment, which is common to all
+     * commands. */
     static const char *const set[] = {"HEDGE_HELP", "1", NULL};
     variables = set;
     assert_true(read_words(&config, (const char *const[]){NULL}));
@@ -196,8 +197,8 @@ static void actions_are_taken_from_the_command_line_only(void **state)
     srv_config_clear(&config);
 }
 
-/* The output of --print-config must be a valid file that gives the same settings; --help must name
- * every option in it. */
+/* The output of --print-config must be a valid settings file with equal settings, and --help must
+ * name every option in it. */
 static void printed_settings_read_back_the_same_and_help_names_them_all(void **state)
 {
     (void)state;
@@ -239,7 +240,7 @@ static void printed_settings_read_back_the_same_and_help_names_them_all(void **s
     assert_string_equal(printed, twice);
 }
 
-/* Reads a file of settings together with these words of the command line and these variables. */
+/* Reads a settings file with this text, together with an option of the command line. */
 static bool read_file(srv_config *config, const char *text, size_t length, const char *word)
 {
     char path[] = "/tmp/settings-XXXXXX";
@@ -376,8 +377,8 @@ static void a_choice_is_one_of_its_words(void **state)
     }
 }
 
-/* The file sets the format of the log and has a mistake: the message about the mistake must be
- * written in that format. */
+/* The settings have a mistake, but also choose the format of the log: the message about the mistake
+ * must be in that format. */
 static void the_format_of_the_log_outlives_a_refusal(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Counters and histograms: nothing is lost when several threads add at the same time. */
+/* Tests of counters and histograms: no count may be lost when several threads add at the same
+ * time. */
 #include "tests/unit/fixture.h"
 
 #include "api/metric/metric_page.h"

@@ -1,5 +1,6 @@
-/* A store on a disk while memory or disk space runs out: a loss must be reported however late, and
- * no thread may be blocked for ever. test_srv_starved.c makes single allocations fail. */
+/* Tests of a store on a disk while memory or disk space runs out: a lost change must be reported to
+ * its request however late, and no thread may be blocked for ever. In test_srv_starved.c single
+ * allocations fail. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -60,8 +61,8 @@ static st_mesh *load(const char *id)
     return mesh;
 }
 
-/* Makes an edit; the position of vertex 0 becomes the revision, so that a mesh shows which revision
- * it is. */
+/* Makes an edit that moves vertex 0 to x = revision, so that the content shows which revision it
+ * is. */
 static st_status edit(st_mesh *mesh, st_mesh_info *info)
 {
     const uint32_t vertex = 0;
@@ -108,9 +109,9 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* A handler is stopped right after its commit. Meanwhile the disk becomes full, so that the commit
- * is lost, and then accepts other writes; only then the handler asks whether its answer may be
- * sent. It must learn of the loss. */
+/* A handler pauses right after its commit. Meanwhile the disk becomes full, so that the commit is
+ * lost, and then accepts other writes. Only then the handler asks whether its answer may be sent:
+ * it must learn that the commit was lost. */
 static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **state)
 {
     (void)state;
@@ -135,7 +136,7 @@ static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **
     while (disk_status() == ST_FULL) {
         sched_yield();
     }
-    /* Another request makes a revision that has the number of the lost one. */
+    /* Another request makes a new revision, which has the number of the lost revision. */
     st_mesh *again = load("m");
     assert_int_equal(revision_of(again), 1);
     assert_int_equal(edit(again, &info), ST_OK);
@@ -203,8 +204,8 @@ static void await_all(writer writers[WRITERS])
     }
 }
 
-/* Allocates all memory that the budget has left; returns the number of blocks. It tries repeatedly,
- * because other threads free memory meanwhile. */
+/* Allocates all memory that the budget has left, and returns the number of blocks. It must try
+ * repeatedly, because other threads free memory meanwhile. */
 static size_t take_all(void **blocks, size_t count)
 {
     for (size_t size = LARGE; size >= SMALL / 16; size /= 4) {

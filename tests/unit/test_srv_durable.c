@@ -1,7 +1,7 @@
-/* Threads write, read and listen to a few meshes, which are created and deleted, on a journal that
- * lags behind and whose disk is sometimes full. Nothing may be shown before the journal has it,
- * groups of records must be complete, lost changes must not be shown, and nothing durable may
- * depend on a lost change. */
+/* Threads write, read and listen to a few meshes, which are created and deleted. The journal lags
+ * behind, and its disk is sometimes full. No answer or event may show a change before it is
+ * durable, or a change that was lost; a group of records must be written whole or not at all; and
+ * no durable change may depend on a lost one. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -26,12 +26,13 @@ enum {
 
 static const char *const ids[MESHES] = {"a", "b", "c"};
 
-/* --- the journal --- */
+/* --- a journal that lags behind and loses records --- */
 
-/* What the journal notes of a record; the index of a note is the position of its record. */
+/* What the test's journal notes about a record. The index of the note is the position of the
+ * record. */
 typedef struct note {
     uint64_t incarnation, number, revision;
-    uint64_t group; /* position of the last record in its group */
+    uint64_t group; /* position of the last record of the group */
     bool lost;
 } note;
 
@@ -39,15 +40,15 @@ static struct {
     pthread_mutex_t lock;
     note notes[NOTES + 1];
     uint64_t newest;
-    bool losing;              /* the disk is full: records are lost and refused */
-    size_t out;               /* rooms that exist */
-    uint64_t removed[MESHES]; /* position of the last deletion of an id */
+    bool losing;              /* whether the disk is full */
+    size_t out;               /* reservations that have not ended */
+    uint64_t removed[MESHES]; /* position of the last deletion of each mesh id */
     _Atomic uint64_t durable;
     st_journal_listener listener;
 } journal = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static _Atomic bool writing;
-static _Atomic int broken; /* line of this file where a check failed */
+static _Atomic int broken; /* line number of a check that failed; 0: none */
 
 static void expect_at(bool good, int line)
 {
@@ -135,8 +136,8 @@ static void lose(uint64_t from, uint64_t to)
 
 static _Atomic size_t incidents;
 
-/* Loses everything in the queue, and everything that arrives in rooms that exist already; returns
- * the position up to which records are lost. */
+/* Makes the disk full: loses all records that are not durable, and those for which a writer has
+ * already reserved space. Returns the position of the last lost record. */
 static uint64_t fill_up(uint64_t at)
 {
     pthread_mutex_lock(&journal.lock);
@@ -158,7 +159,8 @@ static uint64_t fill_up(uint64_t at)
     return at;
 }
 
-/* Makes records durable after a while; all records of a group become durable at once. */
+/* Makes records durable some time after they were appended; the records of one group become durable
+ * together. */
 static void *lag_behind(void *context)
 {
     md_random *random = context;
@@ -185,7 +187,7 @@ static void *lag_behind(void *context)
     return NULL;
 }
 
-/* --- what must be durable, according to the journal --- */
+/* --- which records must be durable before an answer --- */
 
 static uint64_t position_of_record(uint64_t incarnation, uint64_t number)
 {
@@ -218,11 +220,11 @@ static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
     return found;
 }
 
-/* --- answers --- */
+/* --- answers that wait until they may be sent --- */
 
 typedef struct answer {
     st_wait wait;
-    uint64_t needs[MESHES]; /* position of the newest record of each mesh that it shows */
+    uint64_t needs[MESHES]; /* newest record of each mesh that the answer shows */
     _Atomic bool over;
 } answer;
 
@@ -403,7 +405,8 @@ static void read_one(worker *w)
     if (!info.removed) {
         show_mesh(w->store, &w->answers[w->made++], &info);
     } else if (mesh == NULL) {
-        /* The answer shows the last deletion before the search, or a later one. */
+        /* The mesh was not found, so the answer depends on its last deletion, unless that was
+         * durable before the search. */
         bool shows = removed > since && removed < st_waits_newest(st_store_waits(w->store));
         const uint64_t needs[MESHES] = {shows ? removed : 0};
         send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);
@@ -447,8 +450,8 @@ static void wake(void *context)
 
 static _Atomic size_t events;
 
-/* Reads events until the mesh is deleted or the run ends; returns false if no event is there
- * now. */
+/* Reads events until the mesh is deleted or the test ends. Returns false when the next event has
+ * not arrived yet. */
 static bool hear(st_listener *listener, bool *ended)
 {
     told event;
@@ -502,8 +505,8 @@ static void *listen_some(void *context)
 
 /* --- the run --- */
 
-/* Requires that the records of each mesh are numbered without gaps in the order of positions, and
- * that none is kept after a lost one. */
+/* Requires that the records of each mesh have consecutive numbers in the order of their positions,
+ * and that no record after a lost one was kept. */
 static void expect_order(void)
 {
     for (uint64_t at = 1; at <= journal.newest; at++) {
@@ -556,8 +559,8 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     static worker workers[WRITERS + READERS + LISTENERS];
     pthread_t lagging;
     atomic_store(&writing, true);
-    /* The thread that fills the disk is begun first: begun last, it may get no processor before
-     * the writers have nearly ended. */
+    /* The thread that fills the disk must start first. Otherwise it might not run before the
+     * writers have nearly ended. */
     assert_int_equal(pthread_create(&lagging, NULL, lag_behind, &lag), 0);
     for (int i = 0; i < WRITERS + READERS + LISTENERS; i++) {
         start(&workers[i],
@@ -575,7 +578,7 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     }
     pthread_join(lagging, NULL);
 
-    /* The records that are not durable at the end are lost, and no answer that showed one may have
+    /* Records that are not durable at the end count as lost, and no answer that shows one may have
      * been sent. */
     advance(fill_up(atomic_load(&journal.durable)));
     assert_int_equal(journal.out, 0);

@@ -1,6 +1,6 @@
-/* Meshes leave memory and are loaded again while threads find, change, create, delete and
- * list them: each must be loaded once for all threads that need it, and nothing may be lost
- * or doubled. */
+/* Meshes leave memory and are loaded again while threads find, change, create, delete and list
+ * them: a mesh must be loaded only once for all threads that need it, and no change may be lost or
+ * made twice. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/slow_journal.h"
@@ -66,8 +66,7 @@ static void make(const char *id)
     }
 }
 
-/* Each edit moves vertex 0 to a position that shows its revision: returns whether the mesh has this
- * revision. */
+/* Returns whether the mesh has this revision: each edit moves vertex 0 to x = revision. */
 static bool is_whole(const he_mesh *m, uint64_t revision)
 {
     double x = he_position(m, (he_vertex){0}).x;
@@ -199,7 +198,7 @@ static void threads_find_evict_make_and_remove(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* --- one load for all --- */
+/* --- threads that need a mesh share one load --- */
 
 enum { ASKERS = 6 };
 
@@ -260,8 +259,8 @@ static void what_is_used_stays_in_memory(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* The meshes that were used longest ago must leave memory first, and no more of them than
- * needed. */
+/* The meshes that were used longest ago must leave memory first, and no more meshes than
+ * necessary. */
 static void the_least_recently_used_go_first(void **state)
 {
     (void)state;
@@ -275,7 +274,7 @@ static void the_least_recently_used_go_first(void **state)
     for (int i = 0; i < MANY; i++) {
         atomic_store(&store->meshes[i]->used, (uint64_t)1000 * (uint64_t)(MANY - i));
     }
-    /* The store makes an eighth of the memory free, which is about what one of the meshes takes. */
+    /* The store must make an eighth of the memory free, which is about the memory of one mesh. */
     st_memory_set_budget(st_memory_used());
     st_make_room(store, 0);
     st_memory_set_budget(BUDGET);
@@ -313,7 +312,7 @@ static void for_what_never_fits_nothing_goes(void **state)
 
 enum { LARGE = 1 << 20, SIDE = 128 };
 
-/* Makes a store whose meshes use almost all memory of the budget. */
+/* Makes a store whose meshes use almost all of the memory budget. */
 static void open_full(void)
 {
     st_memory_install(BUDGET);
@@ -357,7 +356,8 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     assert_non_null(memory);
     const size_t left = in_memory();
     assert_true(left < MESHES);
-    /* A request for more memory than the budget must remove no mesh from memory. */
+    /* If a request needs more memory than the whole budget, no mesh must be removed from memory for
+     * it. */
     assert_null(he_mem_alloc(st_memory_budget()));
     assert_int_equal(in_memory(), left);
     st_store_serve(NULL);
@@ -382,7 +382,7 @@ static void a_request_under_locks_is_not_stopped(void **state)
     const size_t before = in_memory();
     void *first = he_mem_alloc(LARGE), *second = he_mem_alloc(LARGE);
     assert_true(first != NULL && second != NULL && in_memory() < before);
-    /* The mesh that is being written must stay in memory. */
+    /* A mesh with a write in progress must stay in memory. */
     st_mesh *found = NULL;
     assert_int_equal(st_find(store, "a", &found), ST_OK);
     st_release(found);
@@ -394,16 +394,17 @@ static void a_request_under_locks_is_not_stopped(void **state)
     close_full();
 }
 
-/* --- what is on its way to the disk --- */
+/* --- meshes that cannot leave memory until their changes are on the disk --- */
 
 static slow_journal slow;
-static bool disk_moves; /* the disk makes progress while a thread waits */
+static bool disk_moves; /* whether changes reach the disk during a wait */
 static unsigned waits;
 
 bool __real_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 
-/* Replaces the wait of the store: the disk catches up, or the time passes, without waiting. */
+/* Replaces the store's wait for the disk: at once, either all changes are on the disk or the wait
+ * has timed out. */
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
 {
     if (!slow.is_heard) {
@@ -418,8 +419,8 @@ bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint
     return disk_moves;
 }
 
-/* Makes a store whose only mesh is not on the disk yet, so that it cannot leave memory, and uses
- * almost all of it. */
+/* Makes a store with one mesh, which uses almost all of the memory budget and cannot leave memory,
+ * because it is not on the disk yet. */
 static void open_full_and_slow(void)
 {
     st_mesh *mesh = NULL;
@@ -494,7 +495,7 @@ static void a_request_waits_for_the_disk_before_it_is_refused(void **state)
     assert_non_null(memory);
     assert_int_equal(waits, 1);
     assert_int_equal(in_memory(), 0);
-    /* No change is on its way to the disk any more, so waiting would not help. */
+    /* All changes are on the disk, so waiting for the disk would not make more memory free. */
     assert_null(he_mem_alloc(st_memory_budget() - st_memory_budget() / 8));
     assert_int_equal(waits, 1);
     he_mem_free(memory);
@@ -512,7 +513,7 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     assert_int_equal(in_memory(), MESHES - 1);
     st_mesh *mesh = NULL;
     assert_int_equal(st_find(store, ids[1], &mesh), ST_COLD);
-    /* With enough memory all meshes must stay. */
+    /* While there is enough memory, all meshes must stay. */
     st_memory_set_budget(BUDGET);
     for (size_t i = 0; i < store->count; i++) {
         atomic_store(&store->meshes[i]->used, 1);
@@ -522,8 +523,9 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     close_full();
 }
 
-/* Resident memory that is not in counted blocks also uses up the budget, so meshes must leave for
- * it: here it is a mapping; in a daemon it is the program and the gaps between blocks. */
+/* Resident memory outside of counted blocks also uses up the budget, so meshes must leave memory
+ * for it. In this test it is a mapping; in a daemon it is the program and the gaps between
+ * blocks. */
 static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state)
 {
     (void)state;
@@ -541,21 +543,21 @@ static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state
     memset(beside, 1, BESIDE);
     st_make_room(store, 0);
     st_store_rest(store);
-    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* before resident memory is measured */
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* resident memory was not measured yet */
     st_release(mesh);
     st_resident_watch();
-    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* at most half the budget */
+    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* half the budget at most */
     st_make_room(store, 0);
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
 
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);
     st_store_rest(
-        store); /* resident memory exceeds the budget, so recently used meshes must leave, too */
+        store); /* resident memory exceeds the budget, so even recently used meshes must leave */
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);
-    st_store_rest(store); /* resident memory has not grown since */
+    st_store_rest(store); /* resident memory did not grow since the last call */
     assert_int_equal(st_find(store, "a", &mesh), ST_OK);
     st_release(mesh);
     munmap(beside, BESIDE);

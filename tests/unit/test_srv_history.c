@@ -1,6 +1,6 @@
-/* The history of a stored mesh: earlier revisions, and cursors along them, must equal the mesh at
- * that time, with columns that were added and removed, within the memory budget, and while other
- * threads write. */
+/* Tests of the history of a stored mesh: earlier revisions, and cursors that move from revision to
+ * revision, must equal the mesh at that time. Columns are added and removed, memory is limited, and
+ * other threads write. */
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -64,7 +64,7 @@ static void drop_column(he_mesh *m)
     }
 }
 
-/* Makes one edit, which may be refused; then there is no new revision. */
+/* Makes a random edit. If the edit is refused, there is no new revision. */
 static void edit(st_mesh *mesh, md_random *random, unsigned serial)
 {
     char text[96];
@@ -126,8 +126,8 @@ static uint64_t head_of(st_mesh *mesh, he_mesh **content)
     return info.revision;
 }
 
-/* Copies of the mesh at all revisions, except revisions that an undo or redo of several steps
- * passed through. */
+/* Copies of the mesh at each revision. Revisions in the middle of an undo or redo of several steps
+ * have no copy. */
 typedef struct album {
     he_mesh *at[MOST];
     uint64_t head;
@@ -184,7 +184,7 @@ static void snapshots_of_earlier_revisions(void **state)
         take_picture(&pictures, mesh);
         uint64_t revision = 1 + md_below(&random, (uint32_t)pictures.head);
         expect_snapshot(&pictures, mesh, revision);
-        if (i % 16 == 0) { /* its cursor is still open, so the copy must stay */
+        if (i % 16 == 0) { /* a snapshot that is held keeps its copy */
             if (held != NULL) {
                 st_snapshot_release(held);
             }
@@ -242,7 +242,8 @@ static void a_walk_follows_the_mesh(void **state)
         assert_int_equal(st_cursor_begin(mesh, from, &walk), ST_OK);
         assert_int_equal(st_cursor_begin(mesh, pictures.head + 1, &none), ST_AHEAD);
         follow(&pictures, walk, pictures.head);
-        /* The cursor continues while the mesh changes and gets columns that only the mesh owns. */
+        /* A cursor must continue while the mesh changes and gets columns that are not in older
+         * copies of it. */
         for (unsigned i = 0; i < 30; i++) {
             change(mesh, &random, 100 + i);
             take_picture(&pictures, mesh);
@@ -257,8 +258,8 @@ static void a_walk_follows_the_mesh(void **state)
     }
 }
 
-/* The mesh that a cursor has lent must stay after its entry was dropped from the log; and the
- * cursor must report that the history was cut behind it. */
+/* The content and the delta that a cursor returned must stay valid after their entry was dropped
+ * from the log. After that, the cursor must report that the history was cut. */
 static void a_walk_is_told_that_the_history_was_cut(void **state)
 {
     (void)state;
@@ -293,8 +294,8 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
 
 /* --- memory --- */
 
-/* After an undo, a column that the edit had added belongs to the log: its bytes must be counted in
- * the log's budget. */
+/* After an undo, a column that the edit had added belongs to the log, so its bytes must be counted
+ * in the log's budget. */
 static void the_log_keeps_its_budget(void **state)
 {
     (void)state;
@@ -408,8 +409,8 @@ static void every_allocation_may_fail(void **state)
 enum { ROUNDS = 400, THREADS = 4 };
 static _Atomic bool writing, broken;
 
-/* In each revision the vertices 0 and 1 are at one position that identifies the revision: x is the
- * revision of the edit that put them there. */
+/* Each edit moves the vertices 0 and 1 to one position, with x = revision. After an undo, x is the
+ * revision of the edit that is current again. */
 static void *write_on(void *context)
 {
     st_mesh *mesh = context;

@@ -1,6 +1,6 @@
-/* Quotas of holders of tokens, in a store on a disk: the counts include all meshes, in memory
- * or not, stay within the limits under concurrent requests, and are corrected when changes
- * are lost. */
+/* Tests of the quotas of tokens, in a store on a disk: the counts must include all meshes of a
+ * token, in memory or not, stay within the limits under concurrent requests, and be corrected when
+ * changes are lost. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -54,7 +54,7 @@ static int remove_folder(void **state)
     return 0;
 }
 
-/* Makes a store without threads, so that the hook for allocations can be set. */
+/* Makes a store in memory: it has no threads of its own, so the allocation hook can be changed. */
 static int keep_in_memory(void **state)
 {
     (void)state;
@@ -100,7 +100,7 @@ static void destroy(const char *id)
     st_release(mesh);
 }
 
-/* Pokes faces until the content takes more memory. */
+/* Divides faces until the content of the mesh takes more memory. */
 static st_status grow(const char *id)
 {
     st_mesh *mesh = load(id);
@@ -159,7 +159,7 @@ static void a_holder_s_meshes_are_counted_in_memory_or_not_and_given_back(void *
     limit("alice", 2, 0);
     expect("alice", 2);
     assert_int_equal(bytes_of("alice"), bytes);
-    assert_int_equal(create("e", "alice"), ST_QUOTA); /* none of her meshes is in memory */
+    assert_int_equal(create("e", "alice"), ST_QUOTA); /* the meshes of alice are not in memory */
     st_mesh *mesh = load("a");
     assert_string_equal(st_holder_of(mesh), "alice");
     st_release(mesh);
@@ -168,7 +168,7 @@ static void a_holder_s_meshes_are_counted_in_memory_or_not_and_given_back(void *
     expect("alice", 1);
     assert_int_equal(create("e", "alice"), ST_OK);
     assert_int_equal(create("f", "alice"), ST_QUOTA);
-    limit("bob", 1, 0); /* alice has no limit now */
+    limit("bob", 1, 0); /* ends the limit of alice */
     assert_int_equal(create("f", "alice"), ST_OK);
     assert_int_equal(create("g", "bob"), ST_QUOTA);
 
@@ -213,8 +213,8 @@ static void what_would_grow_beyond_the_bytes_is_refused_and_changes_nothing(void
     assert_int_equal(bytes_of("alice"), grown);
     assert_int_equal(create("n", "alice"), ST_QUOTA);
 
-    /* The creator of the mesh is over the quota: a write that makes the mesh smaller is accepted
-     * from any holder of a token, and one that makes it larger is not. */
+    /* The creator of the mesh is over the quota. A write that makes the mesh smaller must be
+     * accepted with any token, a write that makes it larger must not. */
     st_mesh *mesh = load("m");
     st_write w;
     assert_int_equal(st_write_begin(mesh, &(st_cause){.holder = "bob"}, &w), ST_OK);
@@ -287,13 +287,13 @@ static void many_who_make_meshes_at_once_never_make_more_than_they_may(void **st
 typedef struct grower {
     char id[8];
     int grown, refused;
-    bool beyond; /* it saw more bytes than the holder may have */
+    bool beyond; /* whether the thread saw the quota exceeded */
     uint64_t most;
 } grower;
 
 enum { GROWTHS = 6 };
 
-/* Pokes faces until the content takes more memory, again and again, refused or not. */
+/* Grows the mesh several times, continuing when the quota refuses it. */
 static void *grow_often(void *context)
 {
     grower *g = context;

@@ -1,6 +1,6 @@
-/* The real server in the process of the test, over real sockets, on a journal that the test can
- * make slow: answers must wait until what they show is durable (D1), a full job queue and too many
- * connections must give 503, and a stop must end everything. */
+/* Tests of the real server, in the process of the test and over real sockets, on a journal that the
+ * test can slow down: answers must wait until what they show is durable, a full job queue and too
+ * many connections must give 503, and a stop must end everything. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -119,7 +119,8 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     assert_int_equal(send(fd, request, (size_t)length, MSG_NOSIGNAL), length);
 }
 
-/* Reads the next answer to its end and returns its status; `text` becomes the whole answer. */
+/* Reads the next answer completely and returns its status; `text` receives the answer with its
+ * headers. */
 static int answer(int fd, char *text, size_t size)
 {
     size_t got = 0;
@@ -155,8 +156,8 @@ static int round_trip(const char *method, const char *path, const char *body)
     return status;
 }
 
-/* Requires that an answer is held back. The only worker has served other requests since, so an
- * answer that could be sent would have arrived. */
+/* Requires that no answer arrives: the server answers other requests meanwhile with its only
+ * worker, so an answer that may be sent would arrive first. */
 static void assert_held(int fd)
 {
     char byte;
@@ -175,15 +176,14 @@ static void answers_wait_until_what_they_show_is_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     assert_held(writer);
-    /* The answer to a read of a state that is not durable must wait, too. */
+    /* A read of a state that is not durable must wait, too. */
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_held(reader);
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     assert_int_equal(answer(reader, text, sizeof text), 200);
 
-    /* The second revision is written on the same connections: only answers that show it may
-     * wait. */
+    /* The answer to the second write must wait until the second revision is durable. */
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"tetrahedron\"}");
     slow_journal_wait(&slow, 2);
     assert_held(writer);
@@ -195,8 +195,8 @@ static void answers_wait_until_what_they_show_is_durable(void **state)
     assert_int_equal(answer(reader, text, sizeof text), 200);
     assert_non_null(strstr(text, "\"revision\":2"));
 
-    /* A change that makes no revision, such as a new name, can be lost as well, so answers must
-     * wait for it. */
+    /* A new name makes no revision, but it can be lost as well, so answers must wait until it is
+     * durable. */
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
     slow_journal_wait(&slow, 3);
     assert_held(writer);
@@ -214,7 +214,7 @@ static void answers_wait_until_what_they_show_is_durable(void **state)
     close(reader);
 }
 
-/* Reads until the bytes from the server contain `text`. */
+/* Reads from the server until the bytes read contain `text`. */
 static void read_until(int fd, const char *text)
 {
     char all[8192];
@@ -228,8 +228,8 @@ static void read_until(int fd, const char *text)
     } while (strstr(all, text) == NULL);
 }
 
-/* Answers that show more than one mesh must wait until all that they show is durable (D1): lists,
- * and answers that a mesh does not exist any more. */
+/* An answer that shows more than one mesh, such as a list, must wait until everything in it is
+ * durable; so must an answer that a mesh does not exist any more. */
 static void lists_and_absence_wait_until_durable(void **state)
 {
     (void)state;
@@ -266,7 +266,7 @@ static void lists_and_absence_wait_until_durable(void **state)
             assert_held(fds[i]);
         }
     }
-    /* Answers that show nothing from the store must not wait for the journal. */
+    /* Answers that show nothing from the store must be sent without waiting for the journal. */
     static const char *const free_of_it[] = {
         "/livez", "/readyz", "/version", "/v1/operations", "/v1/openapi.json", "/problems/stale"};
     for (size_t i = 0; i < sizeof free_of_it / sizeof *free_of_it; i++) {
@@ -288,7 +288,7 @@ static void lists_and_absence_wait_until_durable(void **state)
     close(early);
 }
 
-/* A mesh that is not being changed must be read at once, however far the journal is behind with
+/* A mesh that is not being changed must be readable at once, however far behind the journal is with
  * other meshes. */
 static void an_idle_mesh_never_waits(void **state)
 {
@@ -309,8 +309,8 @@ static void an_idle_mesh_never_waits(void **state)
     slow_journal_advance(&slow, 2);
 }
 
-/* Answers of every kind show the state of the mesh, so all must wait: not modified, gone, stale,
- * refused, dry run. */
+/* Answers of every kind depend on the state of the mesh, so each must wait: not modified, gone,
+ * stale, refused, dry run. */
 static void every_kind_of_answer_waits(void **state)
 {
     (void)state;
@@ -350,8 +350,8 @@ static void every_kind_of_answer_waits(void **state)
     close(writer);
 }
 
-/* A loss may be reported before the answer is held back or after that: in neither case may the
- * request be answered as a success. */
+/* The journal may report a lost change before or after the answer starts to wait: in neither case
+ * may the answer say that the request succeeded. */
 static void an_answer_that_shows_what_was_lost_is_503(void **state)
 {
     (void)state;
@@ -374,18 +374,18 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     assert_non_null(strstr(text, "\"code\":\"store_failed\""));
     assert_non_null(strstr(text, loss.reason));
     assert_non_null(strstr(text, "Retry-After: "));
-    /* The client that read the lost state must send its request again; this journal has no mesh for
-     * it then. */
+    /* The client that read the lost state gets 503 and must repeat its request; since this journal
+     * has not kept any state of the mesh, it then gets 404. */
     assert_int_equal(answer(reader, text, sizeof text), 503);
     assert_non_null(strstr(text, "\"code\":\"store_lost\""));
     assert_non_null(strstr(text, "Retry-After: 0"));
     ask(writer, "GET", "/v1/meshes/m", "");
     assert_int_equal(answer(writer, text, sizeof text), 404);
-    /* No listener may get the event of the lost change. */
+    /* No listener may receive the event of the lost change. */
     read_until(listener, "\"reason\":\"lost\"");
     assert_int_equal(answer(listener, text, sizeof text), 0);
     assert_null(strstr(text, "other"));
-    /* Meshes other than "m" have lost nothing, so requests about them succeed. */
+    /* Changes of meshes other than "m" were not lost, so requests about them must succeed. */
     slow_journal_advance(&slow, 3);
     assert_int_equal(round_trip("PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/n", ""), 200);
@@ -401,14 +401,14 @@ static void events_wait_until_what_they_show_is_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     ask(listener, "GET", "/v1/meshes/m/events", "");
-    assert_held(listener); /* the state from which it begins is not durable itself */
+    assert_held(listener); /* the state before the first event is not durable */
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     read_until(listener, ".1\n\n");
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"first\"}");
     slow_journal_wait(&slow, 2);
     assert_held(listener);
-    /* A second change is made while the event of the first one still waits. */
+    /* A second change is made while the event of the first change waits to be durable. */
     int other = connect_client();
     ask(other, "PATCH", "/v1/meshes/m", "{\"name\":\"second\"}");
     slow_journal_wait(&slow, 3);
@@ -426,7 +426,7 @@ static void events_wait_until_what_they_show_is_durable(void **state)
     ask(writer, "DELETE", "/v1/meshes/m", "");
     slow_journal_wait(&slow, 4);
     assert_held(listener);
-    /* An event that is not durable must not be sent when the server stops either. */
+    /* When the server stops, it must not send an event that is not durable. */
     assert_int_equal(stop(state), 0);
     read_until(listener, "\"stopping\"");
     read_until(late, "\"stopping\"");
@@ -437,8 +437,8 @@ static void events_wait_until_what_they_show_is_durable(void **state)
     start(state);
 }
 
-/* The refusal is known before the body of the request arrives, but must be sent only when the state
- * that it shows is durable. */
+/* The server can refuse the request before its body arrives, but it must send the refusal only when
+ * the state on which it depends is durable. */
 static void early_refusals_wait_until_what_they_show_is_durable(void **state)
 {
     (void)state;
@@ -489,7 +489,7 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&gate);
 }
 
-/* Blocks the only thread for long work, until open_gate() is called. */
+/* Blocks the only thread for long work until open_gate() is called. */
 static void shut_gate(void)
 {
     gate_entered = gate_open = false;
@@ -528,7 +528,8 @@ static void a_full_queue_is_503_and_keeps_the_connection(void **state)
     assert_non_null(strstr(text, "RateLimit: \"requests\";r=9999"));
 
     open_gate();
-    /* The refusal must not have closed the connection. The queue may still be full for a moment. */
+    /* The connection must still be open after the refusal. The queue may still be full for a
+     * moment. */
     int status;
     do {
         ask(fd, "POST", "/v1/meshes", large);
@@ -538,7 +539,7 @@ static void a_full_queue_is_503_and_keeps_the_connection(void **state)
     close(fd);
 }
 
-/* Disconnects a client by a reset. */
+/* Closes a client's socket with a TCP reset. */
 static void hang_up(int fd)
 {
     const struct linger at_once = {.l_onoff = 1};
@@ -546,8 +547,8 @@ static void hang_up(int fd)
     close(fd);
 }
 
-/* A client disconnects while its request is suspended to wait for the journal: a stop must not wait
- * for it. */
+/* A client disconnects while its answer waits for the journal: stopping the server must not take
+ * until the journal is ready. */
 static void a_stop_does_not_wait_for_a_held_client_that_hung_up(void **state)
 {
     int writer = connect_client();
@@ -587,14 +588,15 @@ static void work_is_cancelled_when_its_client_hangs_up(void **state)
     hang_up(writer);
     open_gate();
     int status;
-    do { /* the queue is full until the cancelled work has left it */
+    do { /* the cancelled work leaves the queue a little later */
         status = round_trip("PUT", "/v1/meshes/n", large);
     } while (status == 503);
     assert_int_equal(status, 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 404);
 
-    /* A client that has closed only its writing side can still read its answer. The server gives it
-     * a second, so the test uses the shortest work that leaves the worker. */
+    /* A client that has closed only its sending side can still receive its answer. The server
+     * allows a second for this, so the test uses the shortest request that runs on a thread for
+     * long work. */
     char text[8192];
     writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":4}");
@@ -610,8 +612,8 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     read_seconds = 0;
     start(state);
     slow_journal_advance(&slow, UINT64_MAX);
-    /* The mesh is so large that a read leaves the worker. The limit of time applies to reads, and
-     * not to imports and edits. */
+    /* The mesh is so large that a read runs on a thread for long work. The time limit must apply to
+     * reads, and not to imports and edits. */
     int fd = connect_client();
     ask(fd, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
     assert_int_equal(answer(fd, text, sizeof text), 201);
@@ -633,8 +635,8 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     start(state);
 }
 
-/* Sends a request and the end of the stream in one segment, so that the server notices both at
- * once. */
+/* Sends a request and closes the sending side so that both arrive in one TCP segment, and the
+ * server sees them at once. */
 static void send_with_end(int fd, const char *text)
 {
     assert_int_equal(send(fd, text, strlen(text), MSG_MORE | MSG_NOSIGNAL), strlen(text));
@@ -703,14 +705,14 @@ static void too_many_connections_are_503(void **state)
         close(fds[i]);
     }
     int status;
-    do { /* until the server has noticed that the clients are gone */
+    do { /* 503 until the server notices that the clients left */
         status = round_trip("GET", "/livez", "");
     } while (status == 503);
     assert_int_equal(status, 200);
 }
 
-/* The body of a refused request is skipped if it is small, and the connection stays open; if it is
- * large or endless, the connection is closed after the refusal is sent. */
+/* If a refused request has a small body, the server must skip the body and keep the connection; if
+ * the body is large or endless, it must send the refusal and close the connection. */
 static void a_small_refused_body_is_skipped_and_a_large_one_cut_off(void **state)
 {
     (void)state;
@@ -737,7 +739,7 @@ static void a_small_refused_body_is_skipped_and_a_large_one_cut_off(void **state
         if (send(fd, "10000\r\n", 7, MSG_NOSIGNAL) < 0 ||
             send(fd, piece, sizeof piece, MSG_NOSIGNAL) < 0 ||
             send(fd, "\r\n", 2, MSG_NOSIGNAL) < 0) {
-            break; /* cut off */
+            break; /* the server has closed the connection */
         }
     }
     assert_int_equal(answer(fd, text, sizeof text), 413);
@@ -753,7 +755,7 @@ static void a_small_refused_body_is_skipped_and_a_large_one_cut_off(void **state
     close(fd);
 }
 
-/* If libmicrohttpd read bytes from a socket that the syntax check has not seen, the request must
+/* If libmicrohttpd has read bytes from a socket without the check of their syntax, the request must
  * not be served. */
 static void a_request_that_was_not_checked_is_not_served(void **state)
 {

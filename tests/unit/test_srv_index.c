@@ -1,5 +1,5 @@
-/* When a store starts, the list of its meshes is compared with the indexes of the database
- * (sqlite_index.c), for any number of meshes. */
+/* Tests of the start of a store: it must compare its list of meshes with the indexes of the
+ * database (sqlite_index.c), for any number of meshes. */
 #include "tests/pace.h"
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
@@ -43,12 +43,13 @@ static void expect_start(const char *where)
     }
 }
 
-/* Moves the pages of the statements before it from the log into the database. The same connection
- * must do that, because a new one may find that the schema is damaged. */
+/* SQL that moves the pages which the statements before it changed from the write-ahead log into the
+ * database file. It must run on the same connection, because a new one may find that the schema is
+ * damaged. */
 #define CHECKPOINT "; PRAGMA wal_checkpoint(TRUNCATE)"
 
-/* Makes a store with this many meshes in its list; their rows need no correct checksums, since the
- * start does not check these. */
+/* Makes a store whose list has this many meshes. Their checksums are not correct, which a start
+ * does not check. */
 static void make_store(size_t meshes)
 {
     char text[1024];
@@ -66,8 +67,8 @@ static void make_store(size_t meshes)
     store_sql_run(folder, text);
 }
 
-/* Flips one bit at a time wherever the id is stored, in the row and in the index; returns how many
- * starts were refused. */
+/* Flips one bit of the id, wherever the id is stored in the table or its index, and starts the
+ * store; repeats this for each bit. Returns how many starts were refused. */
 static unsigned expect_refusals(const char *id)
 {
     size_t size;
@@ -97,7 +98,7 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     expect_start(folder);
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
-    /* The index is replaced by the index of another column. */
+    /* The table gets the index of another column in place of its own. */
     store_sql_run(
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
                 "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "

@@ -1,5 +1,5 @@
-/* The table of jobs with real threads: cancelling a job frees its memory, the end of a job is shown
- * when it is durable, and a stop ends all jobs. */
+/* Tests of the table of jobs with real threads: cancelling a job must free its memory, the end of a
+ * job must be shown only when it is durable, and stopping the server must end all jobs. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -27,7 +27,7 @@ static st_pool *pool;
 static api_job_table *jobs;
 static api_service *service;
 
-static const char *key; /* Idempotency-Key of further requests; NULL: none */
+static const char *key; /* Idempotency-Key of the next requests, or NULL */
 
 static bool submit(void *context, const st_task *task)
 {
@@ -62,7 +62,8 @@ static int start(void **state)
     return 0;
 }
 
-/* Starts a server whose journal makes nothing durable until the test says so. */
+/* Starts a server with a journal that makes nothing durable until the test calls
+ * slow_journal_advance. */
 static int start_behind(void **state)
 {
     (void)state;
@@ -80,8 +81,8 @@ static int stop(void **state)
     return 0;
 }
 
-/* Sends a request with Prefer: respond-async; returns the status, and writes the job's id to
- * `id`. */
+/* Sends a request with Prefer: respond-async. Returns the status, and writes the id of the new job
+ * to `id`. */
 static int post(const char *path, const char *body, char id[API_JOB_ID + 1])
 {
     api_request request = {.method = "POST",
@@ -111,7 +112,7 @@ static void take_facts(void *context, const api_job *job)
     *(api_job *)context = *job;
 }
 
-/* Asks for a job without a token. */
+/* Returns the parameters for looking up the job with this id, by a client without a token. */
 static api_job_wanted wanted(const char *id)
 {
     return (api_job_wanted){.viewer = NULL, .id = id};
@@ -133,7 +134,7 @@ static api_job wait_for(const char *id, api_job_state state)
     return job;
 }
 
-/* Returns how many different values of a job's progress are seen before it ends. */
+/* Returns how many different values of its progress a job shows before it ends. */
 static size_t watch_a_job(void)
 {
     char id[API_JOB_ID + 1];
@@ -149,7 +150,8 @@ static size_t watch_a_job(void)
     return values;
 }
 
-/* On a busy machine a job may end between two looks, so the test tries several jobs. */
+/* On a busy machine a job may end before its progress is read often enough, so the test tries
+ * several jobs. */
 static void progress_is_seen_and_never_falls(void **state)
 {
     (void)state;
@@ -161,7 +163,7 @@ static void progress_is_seen_and_never_falls(void **state)
     print_message("note: %zu values seen\n", values);
 }
 
-/* Cancels a job at this progress; returns false if the job ended before it could be cancelled. */
+/* Cancels a job at this progress. Returns false if the job ended before that. */
 static bool cancel_at(int percent)
 {
     char id[API_JOB_ID + 1];
@@ -182,8 +184,8 @@ static bool cancel_at(int percent)
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
     assert_int_equal(api_job_remove(jobs, wanted(id), &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
-    /* The thread that ran the job releases its reference last, so the memory is free a little
-     * later. */
+    /* The thread that ran the job releases the last reference to it, so the memory is freed a
+     * little later. */
     while (st_memory_used() != before) {
         assert_false(api_job_find(jobs, wanted(id), take_facts, &job));
     }
@@ -222,8 +224,8 @@ static void an_end_is_shown_when_it_is_durable(void **state)
     do {
         job = look(first);
     } while (job.state != API_JOB_RUNNING || strcmp(job.phase, "storing") != 0);
-    /* Even a refusal may depend on something that is not durable yet, so the end of this job must
-     * wait, too. */
+    /* Even a refusal may depend on a state that is not durable yet, so the end of the second job
+     * must wait, too. */
     assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", second), 202);
     while (strcmp(look(second).phase, "storing") != 0) {
     }
@@ -390,7 +392,7 @@ static void a_stop_ends_what_waits_and_what_runs(void **state)
 
 /* --- records of jobs --- */
 
-static st_status refuses; /* what recording a job returns */
+static st_status refuses; /* result of an attempt to record a job */
 static unsigned notes;
 
 static st_status take_note(void *self, const st_note *what, uint64_t *position)
@@ -412,8 +414,8 @@ static int start_noting(void **state)
     return 0;
 }
 
-/* A job is recorded in the journal. If the journal is behind, the job must be refused; if the disk
- * is full, the job is kept in memory only. */
+/* A job must be recorded in the journal. If the journal is too far behind, the request must be
+ * refused; if the disk is full, the job must be kept in memory only. */
 static void a_job_that_cannot_be_noted(void **state)
 {
     (void)state;
@@ -434,7 +436,7 @@ static void a_job_that_cannot_be_noted(void **state)
         }
         assert_int_equal(notes, refuses == ST_OK ? 2 : 0);
     }
-    /* A job that is recorded must not be deleted before its deletion is recorded, too. */
+    /* A recorded job must not be deleted from memory unless its deletion can be recorded, too. */
     refuses = ST_OK;
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     (void)wait_for(id, API_JOB_DONE);

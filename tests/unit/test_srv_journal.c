@@ -1,5 +1,5 @@
-/* The journal in a folder (core/journal/sqlite) by itself: records that were appended are there
- * after a restart, and damage is named. */
+/* Tests of the journal in a folder (core/journal/sqlite) without a store: records that were
+ * appended must be there after a restart, and damage must be named. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -52,17 +52,17 @@ static kept_mesh mesh_as(const char *id, const he_mesh *content)
     return mesh;
 }
 
-/* The result of loading a mesh: the content of the base (the record with a whole content), and how
- * many records of each kind follow it. */
+/* The result of loading a mesh: its base (the record with a whole content), and how many records of
+ * each kind follow the base. */
 typedef struct loaded {
     st_status status;
     st_card card;
     st_record base;
     he_mesh *content;
     unsigned records, edits, renames, staged;
-    uint64_t last; /* number of the last record */
+    uint64_t last; /* number of the last record that was read */
     char name[ST_MESH_NAME + 1];
-    unsigned char body[64]; /* of the last record of an edit */
+    unsigned char body[64]; /* body of the last edit */
     size_t body_size;
     he_mesh *staged_content;
 } loaded;
@@ -73,8 +73,8 @@ static void loaded_clear(loaded *l)
     he_mesh_free(l->staged_content);
 }
 
-/* Reads the next piece of a mesh; if it is damaged, marks the mesh as damaged, as the store
- * does. */
+/* Reads the next record or part of a mesh. If it is damaged, marks the mesh as damaged, as the
+ * store does. */
 static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *out)
 {
     st_status status = j->read(reader, out);
@@ -84,7 +84,7 @@ static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *ou
     return status;
 }
 
-/* Reads the parts of a content, which follow a piece. */
+/* Reads the parts of a content, which follow its record. */
 static st_status load_parts(const st_journal *j, st_reader *reader, uint64_t parts, he_mesh **out)
 {
     he_stored_reader *content;
@@ -204,7 +204,7 @@ static void what_was_appended_is_there_after_a_restart(void **state)
     assert_int_equal(l.body[0], 49);
     assert_int_equal(l.card.counts.faces, he_mesh_faces(content));
     loaded_clear(&l);
-    /* Positions must continue where they were before the restart. */
+    /* After the restart, positions must continue after the last one before the restart. */
     assert_true(kept_append(j, kept_edit(&b), &b, "x", 1) == last + 1);
     l = load(j, "b");
     assert_int_equal(l.status, ST_OK);
@@ -244,7 +244,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     st_card card;
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_ABSENT);
     assert_int_equal(j->open(j->self, "z", &card, NULL), ST_OK);
-    /* The id of a deleted mesh can be given to another one, with another incarnation. */
+    /* The id of a deleted mesh can be used again, with another incarnation number. */
     kept_mesh again = mesh_as("c", content);
     kept_append(j, kept_content(&again), &again, NULL, 0);
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_OK);
@@ -253,7 +253,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     he_mesh_free(content);
 }
 
-/* --- large contents, bases, purging --- */
+/* --- contents in parts, new bases, and deleting what is no longer needed --- */
 
 static he_mesh *large_mesh(void)
 {
@@ -282,7 +282,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     st_stage *stage;
     const st_journal *j = &told.journal;
     kept_append(j, kept_edit(&mesh), &mesh, "x", 1);
-    /* The content is replaced by an edit that can be undone, so the base must stay. */
+    /* The edit replaces the content and can be undone, so the old base must stay. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     st_record record = kept_edit(&mesh);
     record.stage = stage;
@@ -293,7 +293,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(l.staged, 1);
     assert_true(l.base.number == 1);
     loaded_clear(&l);
-    /* The content is replaced by a PUT, so everything before it must be purged. */
+    /* A PUT replaces the content, so all earlier records of the mesh must be deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     record = kept_content(&mesh);
     record.stage = stage;
@@ -309,13 +309,13 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM record"), 1);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 1);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
-    /* A content that was staged and not used must leave nothing on the disk. */
+    /* A content that was written to the disk but never published must be deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->unstage(j->self, stage);
     kept_append(j, kept_edit(&mesh), &mesh, "z", 1);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
-    /* After the mesh is deleted, nothing of it must be left. */
+    /* After a mesh is deleted, none of its records and parts may be left. */
     kept_append(j, kept_remove(&mesh), &mesh, NULL, 0);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 0);
@@ -325,7 +325,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     he_mesh_free(large);
 }
 
-/* Overwrites the first page of a table in a closed store. */
+/* Overwrites the first page of a table; the store must be closed. */
 static void spoil(const char *table)
 {
     enum { PAGE = 4096 };
@@ -384,7 +384,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     for (unsigned char i = 0; i < 20; i++) {
         kept_append(j, kept_edit(&mesh), &mesh, &i, 1);
     }
-    kept_mesh behind = mesh; /* the new base will be the state after record 22 */
+    kept_mesh behind = mesh; /* the new base has the state after record 22 */
     st_record facts = kept_edit(&behind);
     facts.name = mesh.name;
     facts.inverts = 3;
@@ -393,7 +393,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->rebase(j->self, stage, &facts, facts.revision);
     loaded l = load(j, "a");
-    /* The load may have been queued before the new base was accepted, so the first result is not
+    /* This load may have begun before the journal had the new base, so its result is not
      * checked. */
     loaded_clear(&l);
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "d", 1));
@@ -406,8 +406,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     loaded_clear(&l);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT min(number) FROM record"), 23);
-    /* The new base is for a record number that never existed: it must be ignored, and leave
-     * nothing. */
+    /* A base whose record number never existed must be ignored and deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
@@ -492,8 +491,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         st_card at_once;
         assert_int_equal(j->open(j->self, "bad", &at_once, NULL), ST_DAMAGED);
         assert_true(at_once.damage[0] != '\0');
-        /* From now on, the description of the damage must be on the card of the mesh, its row in
-         * the list. */
+        /* From now on, the row of the mesh in the list of meshes must describe the damage. */
         kept_mesh other = mesh_as("other", NULL);
         he_mesh *content = script_mesh("012", NULL);
         other.content = content;
@@ -507,7 +505,8 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         assert_int_equal(l.status, ST_OK);
         assert_int_equal(l.edits, 5);
         loaded_clear(&l);
-        /* A damaged mesh can be deleted with the facts on its card, and created again. */
+        /* What the list of meshes says about a damaged mesh must suffice to delete it and to create
+         * it again. */
         kept_mesh bad = {.incarnation = card.incarnation, .number = card.record};
         memcpy(bad.id, card.id, sizeof bad.id);
         bad.revision = card.revision;
@@ -570,8 +569,8 @@ static void other_files_are_refused_by_name(void **state)
     expect_refused("/proc/1/no/folder", "cannot make");
 }
 
-/* The start reads every page of the table of keys and must find the damage; otherwise the first
- * write to it would fail, and every later one. */
+/* The start must read every page of the table of keys and find the damage. Otherwise every later
+ * write to the table would fail. */
 static void a_damaged_table_of_keys_refuses_the_start(void **state)
 {
     (void)state;
@@ -580,12 +579,13 @@ static void a_damaged_table_of_keys_refuses_the_start(void **state)
     expect_refused(folder, "`hedged --restore` puts a backup in its place");
 }
 
-/* --- a -wal file that is truncated or damaged --- */
+/* --- a write-ahead log that is truncated or damaged --- */
 
 enum { EDITS = 4 };
 
-/* Opens a copy of the store whose write-ahead log is damaged at some place: it must be refused with
- * a sentence, or contain everything that was acknowledged. */
+/* Opens a copy of the store whose write-ahead log is damaged. The open must fail with a message, or
+ * the mesh must be marked as damaged, or every acknowledged edit must be there; returns true in the
+ * last case. */
 static bool open_copy(const char *copy, const char *what, size_t at)
 {
     st_sqlite_opened out;
@@ -608,8 +608,8 @@ static bool open_copy(const char *copy, const char *what, size_t at)
     return whole;
 }
 
-/* Makes the files that kill -9 leaves of a store with a mesh "a" and some edits, all of them
- * acknowledged. */
+/* Makes a copy of the files that kill -9 leaves of a store with a mesh "a" and some acknowledged
+ * edits. */
 static void make_killed(const char *copy)
 {
     told_journal told;
@@ -698,8 +698,7 @@ static void a_flipped_bit_is_refused_or_named_or_harmless(void **state)
     folder_remove(copy);
 }
 
-/* The process that fills a new store may be killed before it is done: the next start must then fill
- * it again. */
+/* A process may be killed while it makes a new store: the next start must begin again. */
 static void a_store_is_new_until_its_first_start_is_over(void **state)
 {
     (void)state;

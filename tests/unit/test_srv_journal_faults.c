@@ -1,6 +1,6 @@
-/* The journal in a folder when the disk is full, slow or failing, and when memory is out:
- * acknowledged records must be there, others must be reported as lost, and nothing else may
- * change. */
+/* Tests of the journal in a folder when the disk is full, slow or failing, and when memory is out:
+ * records that were acknowledged must be on the disk, all others must be reported as lost, and
+ * nothing else may change. */
 #include "tests/disk.h"
 #include "tests/failing.h"
 #include "tests/store_folder.h"
@@ -70,7 +70,7 @@ static kept_mesh open_with_mesh(told_journal *told, size_t queue)
     return mesh;
 }
 
-/* Reads a whole mesh and counts the records after its base. */
+/* Reads a whole mesh and counts the records after its base (the record with a whole content). */
 static st_status count_records(const st_journal *j, const char *id, unsigned *records)
 {
     st_card card;
@@ -86,8 +86,8 @@ static st_status count_records(const st_journal *j, const char *id, unsigned *re
     return status;
 }
 
-/* Reserves again and again until the journal no longer refuses with `refusal`; it must get there by
- * itself. */
+/* Tries again and again to reserve space for a record, until the journal no longer refuses with
+ * `refusal`, which must happen without help from the test. */
 static st_room *reserve_after(const st_journal *j, st_status refusal, bool freeing)
 {
     const st_room_need need = {.records = 1, .bytes = 16, .freeing = freeing};
@@ -105,8 +105,8 @@ static st_room *reserve_after(const st_journal *j, st_status refusal, bool freei
 bool __real_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 
-/* Once a second the journal checks whether a full disk has space again; its waits are made a
- * hundred times shorter. */
+/* Replaces the journal's wait by one that is a hundred times shorter. On a full disk, the journal
+ * waits a second before each check for free space. */
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
 {
     const uint64_t now = st_clock_micros();
@@ -141,7 +141,7 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     assert_int_equal(records, 1);
     disk_fill(false);
     j->leave(j->self, reserve_after(j, ST_FULL, false));
-    /* The number of the lost record must be free for the next one. */
+    /* The next record must get the number of the lost record. */
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "4", 1));
     assert_int_equal(count_records(j, "a", &records), ST_OK);
     assert_int_equal(records, 2);
@@ -149,9 +149,9 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     told_end(&told);
 }
 
-/* With `no_space`, files that SQLite does not write get no disk space either. */
+/* If `no_space` is set, files other than those of SQLite get no disk space either. */
 static _Atomic bool no_space;
-static _Atomic unsigned asked_for_space; /* number of such requests for disk space */
+static _Atomic unsigned asked_for_space; /* requests for disk space outside of SQLite */
 
 int __real_fstatvfs(int file, struct statvfs *out);
 int __wrap_fstatvfs(int file, struct statvfs *out);
@@ -171,7 +171,7 @@ int __wrap_posix_fallocate(int file, off_t from, off_t size)
     return no_space ? ENOSPC : __real_posix_fallocate(file, from, size);
 }
 
-/* The folder whose syncs are counted, and fail if the test wants that. */
+/* Identifies a folder whose syncs the test counts, and can make fail. */
 static struct stat watched;
 static bool watched_fails;
 static unsigned watched_syncs;
@@ -191,8 +191,8 @@ int __wrap_fsync(int file)
     return watched_fails ? -1 : __real_fsync(file);
 }
 
-/* A new folder must be followed by a sync of the folder above it; otherwise a power loss could
- * remove it together with everything acknowledged in it. */
+/* After a new folder is made, the folder above it must be synced. Otherwise a power loss could
+ * remove the new folder with everything acknowledged in it. */
 static void the_folder_above_a_new_one_is_synced(void **state)
 {
     (void)state;
@@ -212,7 +212,7 @@ static void the_folder_above_a_new_one_is_synced(void **state)
         assert_true(st_sqlite_open(&options, &out));
         out.journal.close(out.journal.self);
         assert_int_equal(watched_syncs, 2);
-        /* A second start must not sync the folder above again. */
+        /* A second start must not sync the folder above the store again. */
         assert_true(st_sqlite_open(&options, &out));
         out.journal.close(out.journal.self);
         assert_int_equal(watched_syncs, 2);
@@ -228,8 +228,8 @@ static bool has_ballast(void)
     return size > 0;
 }
 
-/* The ballast is a file that only reserves space. On a full disk, a part of it must be given up for
- * the start, and the rest for deletions. */
+/* The ballast is a file that only reserves disk space. If the disk is full, the start must free a
+ * part of it, and deletions may use the rest. */
 static void a_store_starts_from_a_full_disk(void **state)
 {
     (void)state;
@@ -264,8 +264,8 @@ static st_health health_of(const st_journal *j)
     return health;
 }
 
-/* SQLite writes into reused space of its log, so a successful write does not show that there is
- * space again; the journal must check that itself. */
+/* On a full disk, SQLite can still write into reused space of its log, so a successful write does
+ * not show that there is space again. The journal must check for free space itself. */
 static void a_full_disk_stays_full_until_there_is_space(void **state)
 {
     (void)state;
@@ -320,7 +320,8 @@ static void rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile(voi
     assert_true(told.loss.from == last && told.loss.to == last);
     assert_int_equal(j->reserve(j->self, &removal, &room), ST_FULL);
     j->leave(j->self, left);
-    /* After some space was freed, first a deletion must be accepted, and then everything. */
+    /* After some space is freed, the journal must accept deletions first, and later all other
+     * records. */
     room = reserve_after(j, ST_FULL, true);
     record = kept_remove(&mesh);
     told_wait(&told, j->append(j->self, room, &record, 1));
@@ -367,8 +368,8 @@ static void what_was_made_and_lost_was_never_there(void **state)
 
 enum { EDITS = 12 };
 
-/* Appends one record at a time while the N-th sync fails. Returns how many were acknowledged; the
- * first one creates the mesh. */
+/* Appends one record after another while the N-th sync fails; the first record creates the mesh.
+ * Returns how many records were acknowledged. */
 static unsigned append_while_failing(told_journal *told, kept_mesh *mesh)
 {
     const st_journal *j = &told->journal;
@@ -417,8 +418,8 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
         open_store(&told, 0);
         unsigned records = 0;
         st_status status = count_records(&told.journal, "a", &records);
-        /* One record more than was acknowledged may be there, since it had reached the disk before
-         * the sync failed. */
+        /* One more record than was acknowledged may be there: it was written before the sync
+         * failed. */
         assert_true(status == ST_OK ? records + 1 >= acknowledged && records <= acknowledged
                                     : status == ST_ABSENT && acknowledged == 0);
         told_end(&told);
@@ -429,8 +430,8 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
     assert_true(runs > EDITS && opened > EDITS);
 }
 
-/* The journal checks by itself whether a full disk has space again; if the sync of this check
- * fails, that must end writing like any failed sync. */
+/* On a full disk, the journal itself checks for free space. If the sync of such a check fails, the
+ * journal must stop writing, as after any failed sync. */
 static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
 {
     (void)state;
@@ -512,7 +513,8 @@ static void a_slow_disk_bounds_the_queue(void **state)
     assert_int_equal(j->reserve(j->self, &large, &room), ST_BEHIND);
     disk_hold(false);
     told_wait(&told, last);
-    /* A record larger than the whole queue must be accepted when the queue is empty. */
+    /* A record that is larger than the limit of the queue must be accepted once the queue is
+     * empty. */
     st_status status;
     while ((status = j->reserve(j->self, &large, &room)) == ST_BEHIND) {
         sched_yield();
@@ -547,7 +549,8 @@ static void one_connection_writes(void **state)
 
 /* --- memory is out --- */
 
-/* Makes each kind of change once; the caller checks which of them were done. */
+/* Makes each kind of change once; each may fail, so the caller must check which changes were
+ * made. */
 static void use_all(told_journal *told, kept_mesh *mesh, unsigned *acknowledged)
 {
     const st_journal *j = &told->journal;

@@ -1,5 +1,5 @@
-/* A mesh in the journal of a folder changes while it is read; and records of a newer release are
- * left alone. */
+/* Tests of reading a mesh from the journal of a folder: what memory it takes, what happens if the
+ * mesh changes meanwhile, and that records of a newer release are left alone. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -48,7 +48,8 @@ static sqlite3 *open_database(void)
 
 /* --- memory --- */
 
-/* Appends edits of `each` bytes until `bytes` are on the disk, and reads all of them once. */
+/* Appends edits of `each` bytes until they have `bytes` together and are on the disk, then reads
+ * all of them. */
 static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, size_t each)
 {
     const st_journal *j = &told->journal;
@@ -58,7 +59,7 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
         position = kept_append(j, kept_edit(mesh), mesh, body, each);
         assert_int_not_equal(position, 0);
         if (done % (64 * each) == 0) {
-            told_wait(told, position); /* so that the queue does not overflow */
+            told_wait(told, position); /* otherwise the queue would overflow */
         }
     }
     told_wait(told, position);
@@ -73,8 +74,8 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
     j->shut(reader);
 }
 
-/* SQLite allocates beside the budget and is never refused: if it kept a large cache of the file,
- * there would be no memory for meshes. */
+/* The memory that SQLite allocates is never refused. If SQLite used much of a small budget to cache
+ * the file, no memory would be left for meshes. */
 static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
 {
     (void)state;
@@ -93,11 +94,11 @@ static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
     assert_true(kept < BUDGET / 8);
 }
 
-/* --- changes while it is read --- */
+/* --- meshes that change while they are read --- */
 
-/* Opens a reader, changes the mesh, and then reports what was read as damaged; returns whether the
- * mesh with this id counts as damaged. `change` is 0 for an edit, 1 for a new content, 2 for a mesh
- * that is deleted and created again. */
+/* Opens a reader of a mesh, then changes the mesh: `change` is 0 for an edit, 1 for a new content,
+ * 2 if the mesh is deleted and created again. Then reports that the reader has found damage, and
+ * returns whether the mesh that now has the id counts as damaged. */
 static bool is_condemned_after(int change, bool restarts)
 {
     told_journal told;
@@ -141,7 +142,7 @@ static void a_mesh_made_anew_is_not_condemned_for_its_predecessor(void **state)
     }
 }
 
-/* Writes a record back with another version number and a correct checksum. */
+/* Changes the version number of a record on the disk and corrects its checksum. */
 static void set_version(unsigned char version)
 {
     unsigned char bytes[256];
@@ -208,8 +209,8 @@ static void a_record_of_a_newer_release_is_refused_with_both_versions(void **sta
     assert_int_equal(read_to_end(), ST_OK);
 }
 
-/* A snapshot was staged to become the base, but the content was replaced before: the snapshot must
- * be removed. */
+/* A content was written to the disk to become the new base, but a PUT replaced the content of the
+ * mesh before that: the unused content must be deleted. */
 static void a_base_before_the_base_leaves_nothing(void **state)
 {
     (void)state;
@@ -231,7 +232,8 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 0);
 }
 
-/* Reads the mesh "a": its base, then record 2, which has these bytes in parts, then record 3. */
+/* Reads the mesh "a", and requires its base, record 2, whose edit is `bytes` in several parts, and
+ * record 3. */
 static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes, size_t size)
 {
     st_reader *reader = NULL;
@@ -285,7 +287,7 @@ static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
     told_open(&told, folder);
     expect_parts_of_edit(&told.journal, bytes, SIZE);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 4);
-    /* A PUT replaces the content: the parts of the old record must be deleted with it. */
+    /* After a PUT replaces the content, the parts of old records must be deleted. */
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 0);

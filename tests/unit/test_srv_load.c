@@ -1,5 +1,5 @@
-/* Meshes are loaded from the journal: after random edits, a mesh that left memory and was loaded
- * again must equal the old one, with its history. */
+/* Tests of loading meshes from the journal: a mesh that left memory after random edits and was
+ * loaded again must equal the old one, and so must its history. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/unit/edit_log.h"
@@ -26,7 +26,7 @@ static st_store *open_store(uint64_t budget)
     return kept_store_open(journal, budget, NULL);
 }
 
-/* --- random changes --- */
+/* --- a mesh with random changes --- */
 
 static void script(he_mesh *m, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void script(he_mesh *m, const char *format, ...)
@@ -124,7 +124,7 @@ static void change(st_mesh *mesh, md_random *random, unsigned serial)
     }
 }
 
-/* --- what is loaded equals what was there --- */
+/* --- the loaded mesh equals the one that left memory --- */
 
 static he_mesh *content_of(st_mesh *mesh)
 {
@@ -148,10 +148,10 @@ static uint64_t dropped_by(st_mesh *mesh)
     return reach.dropped;
 }
 
-/* Requires that undo or redo of both meshes lead to the same states. Each step makes a revision,
- * for which old entries may have to be dropped. An edit that replaced the content among other
- * changes does not take exactly as many bytes as before, so one of the meshes may have to drop a
- * step earlier. The steps of both go to the journal, which is told to ignore them. */
+/* Applies undo (or redo) to both meshes as often as possible, and requires equal states. Each step
+ * makes a revision, for which the histories may have to drop old entries. Some entries take more
+ * bytes in one mesh than in the other, so `is` may drop a step earlier; then the function returns
+ * false. The journal must have been told to ignore these steps. */
 static bool expect_stack(st_mesh *was, st_mesh *is, st_action which)
 {
     while (writing_step(was, which, 1) == ST_OK) {
@@ -172,7 +172,8 @@ static void expect_stacks(st_mesh *was, st_mesh *is)
     }
 }
 
-/* Loads the mesh into a store of its own, where it must equal the old one. Returns that store. */
+/* Loads the mesh into another store, and requires that it equals the old one. Returns that
+ * store. */
 static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
 {
     st_store *other = open_store(budget);
@@ -181,8 +182,8 @@ static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
     return other;
 }
 
-/* Requires, at the end of a run, that the loaded mesh is equal and that undo and redo reach equal
- * states. */
+/* At the end of a test, requires that the loaded mesh equals the old one, and that undo and redo
+ * lead both to equal states. */
 static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 {
     st_mesh *loaded;
@@ -196,8 +197,8 @@ static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 
 enum { ROUNDS = 12, CHANGES = 80 };
 
-/* During the run the mesh is loaded again and again; at its end it is loaded once more and compared
- * with the old one. */
+/* The mesh is loaded again and again while the test changes it, and once more at the end; each time
+ * the loaded mesh must equal the old one. */
 static void a_mesh_comes_back_as_it_was(void **state)
 {
     (void)state;
@@ -213,7 +214,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
             if (md_chance(&random, 15)) {
                 st_mesh *loaded;
                 st_store *other = expect_loads(mesh, budget, &loaded);
-                /* Edits and history must continue on the loaded mesh. */
+                /* The loaded mesh must accept further edits, and its history must continue. */
                 st_release(mesh);
                 st_store_free(store);
                 mesh = loaded;
@@ -226,7 +227,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
     }
 }
 
-/* The claim makes more changes than fit into the body of a record, so these must reach the journal
+/* A long edit makes more changes than fit into the body of a record, so the journal must store them
  * in parts. */
 static void a_large_edit_comes_back_from_its_parts(void **state)
 {
@@ -255,8 +256,8 @@ static void a_large_edit_comes_back_from_its_parts(void **state)
     kept_journal_free(journal);
 }
 
-/* Signals that a task has run. Each mesh has its tasks in order, so all earlier tasks for the mesh
- * have then been done. */
+/* A task that signals that it has run. The pool runs the tasks of one mesh in order, so earlier
+ * tasks of the mesh have then been done. */
 static void post(void *context)
 {
     sem_post(context);
@@ -335,8 +336,8 @@ static void a_smaller_budget_keeps_the_newest(void **state)
     kept_journal_free(journal);
 }
 
-/* A revision that the history in memory has dropped must be read from the disk as long as its
- * records are there. */
+/* A revision that the history in memory no longer has must be read from the disk, as long as the
+ * disk has its records. */
 static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
 {
     (void)state;
@@ -376,8 +377,8 @@ static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
     kept_journal_free(journal);
 }
 
-/* Makes a mesh whose base is newer than many of its changes, and removes these changes from
- * memory. */
+/* Makes a mesh with many edits, without keeping undo history in memory, and waits for the store to
+ * write a new base (a record with the whole content) after most of these edits. */
 static st_mesh *make_rebased(st_store **store, st_pool **pool)
 {
     journal = kept_journal_new();
@@ -436,8 +437,8 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
         assert_int_equal(info.revision, 4);
         assert_true(i == 0 || info.modified == modified);
         modified = info.modified;
-        /* A request for a revision that does not exist must not make the store drop copies of other
-         * revisions. */
+        /* A request for a revision that does not exist must not make the store drop its copies of
+         * other revisions. */
         assert_int_equal(st_snapshot_at(mesh, 99, &none), ST_AHEAD);
         assert_int_equal(st_snapshot_at(mesh, 0, &none), ST_GONE);
         st_snapshot_release(snapshot);
@@ -448,8 +449,8 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
     kept_journal_free(journal);
 }
 
-/* A snapshot is staged but cannot become the base as long as undo leads to before it. When the
- * content is replaced, the snapshot must be given up. */
+/* A content was written to the disk as a new base, but undo can still lead to states before it, so
+ * it must wait. If the content of the mesh is replaced now, the waiting base must be deleted. */
 static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
 {
     (void)state;
@@ -463,17 +464,17 @@ static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
         assert_true(writing_commit(&w, "vertex_move", NULL));
     }
     await_bases(pool);
-    assert_int_equal(kept_journal_out(journal), 1); /* the snapshot is staged */
+    assert_int_equal(kept_journal_out(journal), 1); /* the new base waits on the disk */
     assert_int_equal(writing_replace(mesh, script_mesh("012,023", NULL), NULL, NULL), ST_OK);
     assert_int_equal(kept_journal_out(journal), 0);
     assert_int_equal(kept_journal_facts(journal, "m").base, 1);
-    /* The replacement writes a whole content itself, so it must not cause another snapshot. */
+    /* The replacement wrote the whole content, so the store must not write another base. */
     await_bases(pool);
     assert_int_equal(kept_journal_out(journal), 0);
     end_rebased(mesh, store, pool);
 }
 
-/* --- memory --- */
+/* --- loading while memory is short --- */
 
 static void without_memory_nothing_is_loaded(void **state)
 {
@@ -499,7 +500,7 @@ static void without_memory_nothing_is_loaded(void **state)
             st_release(loaded);
         } else {
             assert_false(kept_journal_facts(journal, "m").condemned);
-            st_release(kept_store_load(other, "m")); /* now there is memory */
+            st_release(kept_store_load(other, "m")); /* succeeds with enough memory */
         }
         st_store_free(other);
     }
@@ -538,7 +539,7 @@ static void without_memory_for_its_keys_nothing_is_loaded(void **state)
     kept_journal_free(journal);
 }
 
-/* --- the collection --- */
+/* --- lists of meshes --- */
 
 static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
 {
@@ -570,8 +571,8 @@ static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
     }
     assert_int_equal(all, 40);
     assert_int_equal(st_store_count(store), 40);
-    /* An id that is only on the disk is in use all the same, and no mesh must be loaded to find
-     * that. */
+    /* The id of a mesh that is only on the disk is in use, and the store must know that without
+     * loading the mesh. */
     st_mesh *mesh;
     he_mesh *content = fixture_mesh("012");
     size_t opened = kept_journal_facts(journal, "m01").opened;

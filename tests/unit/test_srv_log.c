@@ -1,5 +1,5 @@
-/* The log of the daemon: its lines in both formats, its levels, and what happens if nobody reads
- * it. */
+/* Tests of the daemon's log: its lines in both formats, its levels, and what happens if no process
+ * reads the pipe to which it is written. */
 #include "tests/unit/fixture.h"
 
 #include "server/log/log.h"
@@ -113,7 +113,7 @@ static void the_longest_line_fits(void **state)
     assert_non_null(strstr(line, "\"route\":\"-\""));
 }
 
-/* --- a log whose reader is the test --- */
+/* --- a log that the test reads --- */
 
 typedef struct reader {
     int ends[2];
@@ -128,7 +128,7 @@ static void open_log(reader *r, const srv_log_settings *settings, size_t ring)
     assert_non_null(r->log);
 }
 
-/* Frees the log; returns everything that it has written until then. */
+/* Frees the log; returns all text that was written to it. */
 static const char *close_log(reader *r)
 {
     size_t got = 0;
@@ -268,7 +268,7 @@ static void lines_come_in_the_order_in_which_they_were_said(void **state)
     free(r.said);
 }
 
-/* --- without a reader --- */
+/* --- a log that is read late or never --- */
 
 static void *free_log(void *log)
 {
@@ -276,8 +276,8 @@ static void *free_log(void *log)
     return NULL;
 }
 
-/* Nothing reads the log until its ring buffer has overflowed: the lines read later and the dropped
- * lines that are reported must together be all lines. */
+/* The log is not read until its ring buffer has overflowed. The lines that are read then, plus the
+ * number of dropped lines that the log reports, must be the number of lines written. */
 static void lines_that_find_no_place_are_counted(void **state)
 {
     (void)state;
@@ -295,8 +295,8 @@ static void lines_that_find_no_place_are_counted(void **state)
             srv_log_request(log, &sample, false);
         }
     }
-    /* Freeing the log waits for the writing thread, which waits for space in the pipe, so another
-     * thread frees it. */
+    /* To free the log, its writing thread must end, which waits for space in the pipe. So another
+     * thread frees the log while this one reads the pipe. */
     pthread_t thread;
     const uint64_t counted = srv_log_dropped(log);
     assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);
@@ -326,7 +326,7 @@ static void lines_that_find_no_place_are_counted(void **state)
     close(ends[1]);
 }
 
-/* Nothing ever reads the log: the daemon must end nevertheless. */
+/* The pipe of the log is never read: the daemon must be able to end nevertheless. */
 static void a_log_ends_without_a_reader(void **state)
 {
     (void)state;
@@ -343,7 +343,7 @@ static void a_log_ends_without_a_reader(void **state)
     close(ends[1]);
 }
 
-/* What the ring of a daemon with this budget takes. */
+/* Returns the bytes of the log's ring buffer in a daemon with this memory budget. */
 static uint64_t ring_bytes(uint64_t budget)
 {
     const uint64_t before = st_memory_used();

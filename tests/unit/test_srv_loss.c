@@ -1,5 +1,6 @@
-/* When the journal loses changes, everything that depends on them must go from memory, too: meshes,
- * claims, streams, keys, answers. */
+/* Tests of what happens when the journal loses changes: everything in memory that depends on a lost
+ * change must be removed or refused: meshes, long edits, event streams, Idempotency-Keys,
+ * answers. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -78,7 +79,7 @@ static st_shown change(st_mesh *of)
     return st_shown_of(&w.info);
 }
 
-/* Makes the journal lose all records from position `from` on. */
+/* Makes the journal lose all records whose position is `from` or higher. */
 static void lose(uint64_t from)
 {
     const uint64_t to = slow_journal_newest(&journal);
@@ -106,20 +107,20 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     assert_int_equal(st_write_claim(mesh, NULL, &w), ST_LOST);
     assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_LOST);
     assert_int_equal(st_listeners(store), 0);
-    /* The change of the mesh "n" was not lost, so the mesh is still there. */
+    /* The change of the mesh "n" was not lost, so the store must still have this mesh. */
     assert_int_equal(st_find(store, "n", &found), ST_OK);
     st_release(found);
     assert_false(facts(other).lost);
     (void)change(other);
-    /* The id of the lost mesh can be given to another mesh. */
+    /* Another mesh can be created with the id of the lost mesh. */
     st_mesh *again = create("m");
     assert_true(facts(again).incarnation != facts(mesh).incarnation);
     assert_false(facts(again).lost);
     st_release(again);
 }
 
-/* Meshes that were made from a change must be lost with it; if they are made after the loss, they
- * must be refused. */
+/* If a mesh was made from a changed state of another mesh, and this change is lost, the new mesh
+ * must be lost, too. After the loss, making a mesh from this state must be refused. */
 static void nothing_is_made_of_what_was_lost(void **state)
 {
     (void)state;
@@ -128,7 +129,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     const st_shown kept = st_shown_of(&(st_mesh_info){.position = 2});
     const st_shown from[] = {kept, change(other)};
     he_mesh *content = fixture_mesh("012");
-    /* As long as the change is not lost, a mesh can be made from it. */
+    /* Before the change is lost, a mesh can be made from it. */
     assert_int_equal(st_create_from(store, &(st_new_mesh){.id = "c", .from = &from[1]},
                                     fixture_mesh("012"), &made),
                      ST_OK);
@@ -158,7 +159,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     assert_int_equal(st_write_commit(&w, "append"), ST_LOST);
     assert_int_equal(facts(mesh).revision, 1);
     assert_true(journal.groups == groups);
-    /* A mesh can be made from the state that was kept. */
+    /* A mesh can be made from the state before the lost change. */
     assert_int_equal(
         st_create_from(store, &(st_new_mesh){.id = "d", .from = &from[0]}, content, &made), ST_OK);
     st_release(made);
@@ -167,7 +168,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
 static void creations_and_removals_are_lost_too(void **state)
 {
     (void)state;
-    enum { MANY = 150 }; /* more meshes than one step of the loss removes */
+    enum { MANY = 150 }; /* more meshes than the store removes in one step */
     st_mesh *found = NULL;
     uint64_t durable = slow_journal_newest(&journal);
     for (int i = 0; i < MANY; i++) {
@@ -208,8 +209,8 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* A handler was stopped after its commit while the disk was full, and continues when the disk works
- * again: its answer must still count as lost. */
+/* A handler paused after its commit while the disk was full, and continues when the disk has space
+ * again: its answer must count as lost. */
 static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
 {
     (void)state;
@@ -235,8 +236,8 @@ static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
     }
 }
 
-/* While a long edit is in progress, the state from which it started is lost, so its commit must do
- * nothing. */
+/* During a long edit, the state from which it started is lost, so the commit of the edit must
+ * fail. */
 static void a_claim_of_a_lost_mesh_commits_nothing(void **state)
 {
     (void)state;
@@ -279,8 +280,8 @@ static void listeners_are_sent_away(void **state)
     st_unfollow(mesh, &listener);
 }
 
-/* The mesh that a request had created is lost, so the repeated request must be executed again and
- * not be answered with a mesh that does not exist. */
+/* The mesh that a request created is lost. If the request is repeated with its Idempotency-Key, it
+ * must be executed again; the kept answer is wrong, because the mesh does not exist. */
 static void the_key_of_a_lost_creation_is_forgotten(void **state)
 {
     (void)state;

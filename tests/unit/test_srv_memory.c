@@ -1,5 +1,5 @@
-/* The memory of the daemon: freed memory must be returned to the system once the process is idle,
- * and a refusal must say whether the budget is the reason. */
+/* Tests of the daemon's memory: freed memory must be returned to the system when the process is
+ * idle, and an error must say whether memory was refused because of the budget. */
 #include "tests/unit/fixture.h"
 
 #include "api/json/problem.h"
@@ -15,19 +15,20 @@ static void pages_are_given_back_once_after_work_when_it_rests(void **state)
 {
     (void)state;
     st_memory_rest rest = {0};
-    assert_false(st_memory_rests(&rest, 10 * MILLIS)); /* hardly any memory was freed */
+    assert_false(st_memory_rests(&rest, 10 * MILLIS)); /* the process has done hardly any work */
     assert_false(st_memory_rests(&rest, 400 * MILLIS));
-    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* the process is still working */
+    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* the process is busy */
     assert_true(st_memory_rests(&rest, 499 * MILLIS));
     assert_false(st_memory_rests(&rest, 499 * MILLIS));
     assert_false(st_memory_rests(&rest, 518 * MILLIS));
-    assert_true(st_memory_rests(&rest, 519 * MILLIS)); /* freed in small amounts */
+    assert_true(st_memory_rests(&rest, 519 * MILLIS)); /* 20 ms of work since memory was returned */
     assert_false(st_memory_rests(&rest, 520 * MILLIS));
 }
 
-/* A sanitizer has an allocator of its own, so under one nothing is measured. */
+/* The sanitizers replace the allocator of the C library, so nothing is measured with a
+ * sanitizer. */
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 }; /* 64 MiB; each 64th block is kept */
+enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 }; /* 64 MiB; every 64th block is kept */
 
 static size_t resident_bytes(void)
 {
@@ -63,7 +64,7 @@ static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **sta
     }
 }
 
-/* Returns whether the process has requested huge pages at this address. */
+/* Returns whether the process has asked the kernel for huge pages at this address. */
 static bool asks_for_huge_pages(const void *address)
 {
     char line[512];
@@ -82,9 +83,9 @@ static bool asks_for_huge_pages(const void *address)
     return asks;
 }
 
-/* Small blocks lie in the heap, and once they are freed there is room for a large block between
- * them. A large block must still get a mapping of its own, because only there huge pages are
- * requested. */
+/* Small blocks are in the heap, where freeing them leaves room for a large block. The large block
+ * must nevertheless get a mapping of its own, because huge pages are requested only for such
+ * mappings. */
 static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
-/* The memory limit of the kernel must be found wherever it is in the tree of control groups, seen
- * from the machine or from a container. Each test makes the files of /proc and /sys that it needs
- * in a folder. */
-#define _XOPEN_SOURCE 700 /* declares nftw */
+/* Tests of finding the kernel's memory limit of the process, wherever it is in the tree of control
+ * groups, and both outside and inside of a container. Each test makes the files of /proc and /sys
+ * that it needs in a folder. */
+#define _XOPEN_SOURCE 700 /* makes ftw.h declare nftw */
 
 #include "tests/unit/fixture.h"
 
@@ -41,7 +41,7 @@ static int remove_root(void **state)
     return nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* Writes one of these files, and makes the folders above it. */
+/* Writes a file as in /proc or /sys, and makes the folders above it. */
 static void put(const char *name, const char *text)
 {
     char path[PATH_MAX];
@@ -125,8 +125,8 @@ static void version_1_and_a_mixed_system_are_read(void **state)
     expect(100 * MIB, "/sys/fs/cgroup/unified/user/memory.max");
 }
 
-/* In a container with control groups of version 1, the container's own group is mounted at the
- * root, but /proc still shows the path that it has on the machine. */
+/* In a container with control groups of version 1, the root of the mounted tree is the container's
+ * own group, but /proc shows the path that this group has on the host. */
 static void a_bind_mount_of_the_own_group_is_found(void **state)
 {
     (void)state;
@@ -138,13 +138,15 @@ static void a_bind_mount_of_the_own_group_is_found(void **state)
     put("/proc/self/cgroup", "4:memory:/docker/abc/inner\n");
     put("/sys/fs/cgroup/memory/inner/memory.limit_in_bytes", "104857600\n");
     expect(100 * MIB, "/sys/fs/cgroup/memory/inner/memory.limit_in_bytes");
-    /* The group /docker/abcd is not below /docker/abc, although its name begins so: of the visible
-     * groups only the root of the mount applies. */
+    /* The group of the process is /docker/abcd/inner, which is not inside the mounted group
+     * /docker/abc although the name begins in the same way: only the limit at the root of the mount
+     * applies. */
     put("/proc/self/cgroup", "4:memory:/docker/abcd/inner\n");
     expect(300 * MIB, "/sys/fs/cgroup/memory/memory.limit_in_bytes");
 }
 
-/* In a namespace of control groups, the own group is "/", and the groups above it are "/..". */
+/* In a namespace of control groups, the path of the process's own group is "/", and groups outside
+ * of the namespace begin with "/..". */
 static void a_namespace_is_read_from_inside(void **state)
 {
     (void)state;

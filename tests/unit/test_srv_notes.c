@@ -1,5 +1,5 @@
-/* Jobs that the journal of a folder keeps: they are restored as they were recorded last, or as done
- * if their change is recorded, or not at all. */
+/* Tests of the jobs that the journal of a folder keeps: a start must restore a job as it was
+ * recorded last, or as done if the change that it made was recorded, or not at all. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -41,7 +41,7 @@ static int teardown(void **state)
 enum { MOST = 8, BODY = 64 };
 
 typedef struct seen {
-    st_job jobs[MOST]; /* copies, whose texts are in `texts` */
+    st_job jobs[MOST]; /* copies whose strings point into `texts` */
     char texts[MOST][600], bodies[MOST][BODY];
     size_t count, most;
 } seen;
@@ -122,7 +122,7 @@ static void a_job_comes_back_as_it_was_noted_last(void **state)
     for (int again = 0; again < 2; again++) {
         const seen s = jobs_kept();
         assert_int_equal(s.count, 2);
-        assert_string_equal(s.jobs[0].id, "b"); /* in the order of numbers */
+        assert_string_equal(s.jobs[0].id, "b"); /* jobs are sorted by number */
         assert_int_equal(s.jobs[0].state, ST_JOB_ACCEPTED);
         assert_null(s.jobs[0].body);
         assert_string_equal(s.texts[0], "apply_edits||m||token||||");
@@ -182,11 +182,11 @@ static void old_jobs_go_when_new_ones_come(void **state)
     }
     st_job late = accepted("late", 5);
     late.created = 1001 + ST_JOB_SECONDS;
-    note_job(&late); /* at this time only "a" is too old */
+    note_job(&late); /* only the job "a" is too old at this time */
     assert_int_equal(jobs_kept().count, 4);
     late.created = 5000 + ST_JOB_SECONDS;
     note_job(&late);
-    note_job(&late); /* each call removes at most two old ones */
+    note_job(&late); /* each call deletes two old jobs at most */
     const seen s = jobs_kept();
     assert_int_equal(s.count, 1);
     assert_string_equal(s.jobs[0].id, "late");
@@ -201,14 +201,14 @@ static void a_damaged_job_is_as_good_as_none(void **state)
     store_sql_run(folder, "UPDATE job SET number = 9 WHERE id = 'a'");
     store_sql_run(folder, "UPDATE job SET state = 7 WHERE id = 'b'");
     assert_int_equal(jobs_kept().count, 0);
-    /* The damaged job is gone, but the change that it has made must stay. */
+    /* The damaged record of a job is dropped, but the change that the job made must stay. */
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
     append(&mesh, kept_content(&mesh), "a");
     assert_int_equal(told_losses(&told), 0);
     assert_int_equal(told.journal.count(told.journal.self), 1);
 }
 
-/* A file of version 1, which had no table of jobs, must be upgraded by the first start, and by a
+/* A database of version 1 has no table of jobs. The first start must upgrade it, and so must a
  * restore. */
 static void an_older_file_is_raised(void **state)
 {
@@ -240,8 +240,8 @@ static void an_older_file_is_raised(void **state)
     told_open(&told, folder);
 }
 
-/* A job's entity tag names a state that may be gone after a restore, so a restore must remove
- * it. */
+/* The entity tag of a job names a state that may not exist after a restore, so a restore must
+ * remove the tag. */
 static void a_restore_takes_the_tags(void **state)
 {
     (void)state;

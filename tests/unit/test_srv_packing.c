@@ -1,5 +1,5 @@
-/* Parts of contents that were compressed with zstd must be restored unchanged; damaged ones must be
- * refused, within the memory of one part. */
+/* Tests of compressing the parts of contents with zstd: decompressing must restore them unchanged;
+ * a damaged part must be refused, without taking more memory than a part may have. */
 #include "journal/part_packing.h"
 #include "tests/unit/dense.h"
 #include "tests/unit/edit_script.h"
@@ -14,7 +14,7 @@
 
 static unsigned char plain[HE_STORED_PART_ROOM], packed[HE_STORED_PART_ROOM];
 
-/* Makes the first part of a mesh with many faces. */
+/* Writes the first part of a mesh with many faces to `plain` and `packed`, and returns its size. */
 static size_t make_part(unsigned *coding)
 {
     he_mesh *mesh = dense_grid(64, NULL, 1);
@@ -93,8 +93,8 @@ static void what_would_be_longer_than_a_part_is_refused(void **state)
     expect_refused("not a frame at all", 18, "no zstd frame");
 }
 
-/* However its bytes were changed, a part must be refused with a reason or have the length that it
- * declares. */
+/* A part with a changed byte must either be refused with a reason or decompress to at most the size
+ * that a part may have. */
 static void a_damaged_part_stays_within_its_room(void **state)
 {
     (void)state;
@@ -113,7 +113,7 @@ static void a_damaged_part_stays_within_its_room(void **state)
                                     : status == ST_DAMAGED && why[0] != '\0');
         packed[i] ^= (unsigned char)(1 << i % 8);
         status = st_part_unpack(unpacker, (st_part){packed, i}, &out, &why);
-        assert_int_equal(status, ST_DAMAGED); /* the part is truncated */
+        assert_int_equal(status, ST_DAMAGED); /* a truncated part must be refused */
         refused++;
     }
     assert_true(refused > 100);

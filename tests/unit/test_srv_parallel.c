@@ -1,5 +1,5 @@
-/* Parallel work: each part is run exactly once, on whichever thread, and the result does not depend
- * on the threads. */
+/* Tests of parallel work: each part of the work must run exactly once, on any thread, and the
+ * result must not depend on the number of threads. */
 #include "tests/unit/fixture.h"
 
 #include "algo/subdivide.h"
@@ -21,8 +21,8 @@ enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
 
 typedef struct tally {
     _Atomic uint32_t runs[PARTS];
-    const he_parallel *parallel; /* if not NULL, each part divides its work into parts again */
-    uint32_t failing;            /* this part and all later ones fail */
+    const he_parallel *parallel; /* NULL, or a pool on which each part runs further parts */
+    uint32_t failing;            /* parts with this number or a higher one fail */
 } tally;
 
 static he_status count_part(void *context, uint32_t part, he_error *err)
@@ -109,7 +109,7 @@ static void of_parts_that_fail_the_first_one_is_told(void **state)
     }
 }
 
-/* --- cancelling --- */
+/* --- cancelling work that runs in parallel --- */
 
 typedef struct listener {
     pthread_t owner;
@@ -144,15 +144,16 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
     }
 }
 
-/* --- what core computes in parallel --- */
+/* --- parallel algorithms of core --- */
 
-/* The soups are large enough for many parts; if `shuffled` is set, their vertices and faces are in
- * random order. */
+/* The meshes of the tests are so large that they are worked on in many parts. If `shuffled` is set,
+ * vertices and faces are in random order. */
 enum { SIDE = 220 };
 
 static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
 {
-    /* The prime 7919 divides neither of the counts below, so each number is reached once. */
+    /* The prime 7919 divides no `count` of this test, so different values of i give different
+     * results. */
     return shuffled ? (uint32_t)((uint64_t)i * 7919u % count) : i;
 }
 
@@ -236,7 +237,8 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
     }
 }
 
-/* Returns the normals of all faces, then of all corners; the caller must free them. */
+/* Returns an array with the normals of all faces, followed by those of all corners; the caller must
+ * free it. */
 static he_vec3 *normals_of(const he_mesh *mesh, he_progress *progress)
 {
     size_t faces = he_mesh_issued(mesh, HE_FACE),
@@ -250,8 +252,8 @@ static he_vec3 *normals_of(const he_mesh *mesh, he_progress *progress)
 
 enum { SCHEMES = HE_SQRT3 - HE_LOOP + 1 };
 
-/* The result of a subdivision; the scheme `loop` refuses faces other than triangles, and
- * names one. */
+/* The result of a subdivision, or its error: the scheme `loop` refuses faces that are not
+ * triangles. */
 typedef struct subdivided {
     he_mesh *mesh;
     he_status status;
@@ -316,8 +318,8 @@ static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **sta
 static void defects_are_the_same_on_1_2_and_8_threads(void **state)
 {
     (void)state;
-    /* The additional faces make a third face on two edges, a duplicate, and a second closed fan at
-     * a vertex. */
+    /* Three faces, each of which adds a defect to the mesh: the first two have edges that two faces
+     * use already, the last one gives a vertex a second fan. */
     static const uint32_t extra[3][3] = {{0, 1, 5000}, {0, SIDE, SIDE + 1}, {9, 10, 11}};
     for (int which = 0; which < 3; which++) {
         static he_report alone, report;

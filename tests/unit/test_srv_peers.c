@@ -1,5 +1,5 @@
-/* Connections of each address: which addresses count as one, how many each has, and a table that is
- * full or finds no memory. */
+/* Tests of counting the connections of each address: which addresses count as one, how many
+ * connections each one has, and what happens if the table is full or memory is out. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 
@@ -39,7 +39,7 @@ static void an_address_is_a_client_and_of_ipv6_a_network_is(void **state)
     }
 }
 
-/* Compared with one number for each address. */
+/* Connections come and leave at random; the counts are compared with those in a simple array. */
 static void each_address_has_the_connections_that_came_and_did_not_leave(void **state)
 {
     (void)state;
@@ -79,7 +79,8 @@ static void each_address_has_the_connections_that_came_and_did_not_leave(void **
     srv_peers_free(peers);
 }
 
-/* A connection beyond the table is not counted, and its leaving changes nothing. */
+/* A connection for which the table has no place must not be counted, and closing it must change no
+ * count. */
 static void a_full_table_counts_those_it_has(void **state)
 {
     (void)state;
@@ -112,10 +113,10 @@ static void a_table_without_memory_is_none(void **state)
         failing_end(&f, peers != NULL);
         srv_peers_free(peers);
     }
-    assert_int_equal(f.n, 4); /* the object, its heads and its entries */
+    assert_int_equal(f.n, 4); /* the table, its hash heads and its entries */
 }
 
-/* The key of an address asks for no memory, so there is none that it could be without. */
+/* Computing the key of an address must allocate nothing, so it cannot fail when memory is out. */
 static void an_address_key_needs_no_memory(void **state)
 {
     (void)state;

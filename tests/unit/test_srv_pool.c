@@ -1,5 +1,5 @@
-/* The thread pool: in which order tasks run, and which tasks may occupy all threads. The gate is a
- * condition at which blocked tasks wait until the test opens it. */
+/* Tests of the thread pool: in which order tasks run, and which tasks may occupy all threads. Tasks
+ * that a test wants to block wait at a condition, the gate, until the test opens it. */
 #include "system/thread_pool.h"
 
 #include "api/describe/routes.h"
@@ -102,8 +102,8 @@ static void submit(st_pool *pool, const char *name, double cost, uint64_t flow)
         pool, &(st_task){.work = note, .context = (void *)name, .cost = cost, .flow = flow}));
 }
 
-/* Four threads: at most two may run long reads, at most two jobs, and at most three either of
- * these. */
+/* Four threads: at most two may run long reads, at most two may run jobs, and at least one must
+ * stay free for brief work. */
 static void long_work_leaves_a_thread_to_brief_work(void **state)
 {
     (void)state;
@@ -156,7 +156,7 @@ static void a_full_queue_refuses_its_own_share_only(void **state)
     assert_string_equal(order, "b");
 }
 
-/* Makes a pool of one thread, which is blocked while the test submits tasks. */
+/* Makes a pool of one thread, which is blocked while the test submits further tasks. */
 static st_pool *one_at_gate(void)
 {
     st_pool *pool = st_pool_new("test", 1, ROOM);
@@ -204,7 +204,8 @@ static void a_flow_keeps_its_order(void **state)
     assert_string_equal(order, "123");
 }
 
-/* A chain of short tasks: each one submits the next, so that one is always waiting. */
+/* A chain of short tasks, in which each task submits the next one, so that one of them is always
+ * waiting. */
 typedef struct stream {
     st_pool *pool;
     int left;
@@ -236,7 +237,8 @@ static void long_work_is_not_passed_over_for_ever(void **state)
     assert_in_range(at - order, 9, 11);
 }
 
-/* Counts the pool's calls of pthread_cond_signal, which the linker redirects to this function. */
+/* The number of calls of pthread_cond_signal by the pool; the linker redirects them to
+ * __wrap_pthread_cond_signal. */
 static _Atomic int signals;
 int __real_pthread_cond_signal(pthread_cond_t *condition);
 int __wrap_pthread_cond_signal(pthread_cond_t *condition);
@@ -247,7 +249,7 @@ int __wrap_pthread_cond_signal(pthread_cond_t *condition)
     return __real_pthread_cond_signal(condition);
 }
 
-/* A thread must not be woken when a task ends, nor for a task that may not begin yet. */
+/* A thread must be woken only when a task is submitted that may begin, and not when a task ends. */
 static void a_thread_is_woken_only_for_something_to_do(void **state)
 {
     (void)state;
@@ -261,7 +263,7 @@ static void a_thread_is_woken_only_for_something_to_do(void **state)
     }
     assert_in_range(atomic_load(&signals), 0, TASKS);
 
-    /* Two long reads, as many as may run at once, are blocked; further ones that are submitted must
+    /* Two long reads are blocked, as many as may run at once. Submitting further long reads must
      * wake no thread. */
     send_to_gate(pool, ST_SHARE_LONG);
     send_to_gate(pool, ST_SHARE_LONG);
@@ -283,7 +285,7 @@ static void a_flow_is_a_client_with_a_mesh(void **state)
     assert_true(st_pool_flow("a", "") != st_pool_flow("", "a"));
 }
 
-/* One task runs, one waits, and one is refused. */
+/* The pool of this test has one task that runs and one that waits, and has refused one. */
 static void the_page_of_metrics_has_the_numbers_of_a_pool(void **state)
 {
     (void)state;

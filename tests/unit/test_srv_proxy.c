@@ -1,5 +1,5 @@
-/* Which facts about a client the server takes from a trusted proxy, and what a client cannot
- * forge. */
+/* Tests of the facts about a client that the server takes from the headers of a trusted proxy, and
+ * of the headers that it must not believe a client. */
 #include "tests/unit/fixture.h"
 
 #include "server/net/proxy.h"
@@ -52,8 +52,8 @@ static void what_is_no_network_is_refused(void **state)
 }
 
 typedef struct told {
-    const char *lines[3]; /* headers: "Name: value" */
-    const char *address;  /* the client's; NULL: the request is refused */
+    const char *lines[3]; /* lines of the request's header, "Name: value" */
+    const char *address;  /* client's address; NULL if the request is refused */
     srv_scheme scheme;
 } told;
 

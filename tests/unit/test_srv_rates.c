@@ -1,6 +1,6 @@
-/* Token buckets that limit the requests and bytes of clients, with a clock that the test sets:
- * which requests they admit, what a debt costs, which bucket is dropped when the table is full, and
- * the header fields. */
+/* Tests of the token buckets that limit the requests and bytes of clients, with a clock that the
+ * test sets: which requests are admitted, how long a debt lasts, which bucket is dropped when the
+ * table is full, and what the header fields say. */
 #include "unit/fixture.h"
 
 #include "api/limit/rate.h"
@@ -11,7 +11,7 @@
 #include <time.h>
 
 #define SECOND UINT64_C(1000000)
-/* The clock of the test starts at an arbitrary time. */
+/* The clock of the test begins at an arbitrary time. */
 #define START UINT64_C(77000000)
 
 static api_rate_key key_of(uint64_t client)
@@ -52,7 +52,7 @@ static void a_bucket_lets_its_burst_in_and_then_its_rate(void **state)
     assert_false(admit(rates, 1, &rate, START + SECOND / 5 - 1, &said));
     assert_true(admit(rates, 1, &rate, START + SECOND / 5, &said));
     assert_false(admit(rates, 1, &rate, START + SECOND / 5, &said));
-    /* A bucket must never hold more than its burst. */
+    /* However long a client waits, its bucket must not hold more than the burst. */
     for (int i = 0; i < 10; i++) {
         assert_true(admit(rates, 1, &rate, START + 100 * SECOND, &said));
     }
@@ -70,16 +70,17 @@ static void bytes_make_a_debt_that_is_paid_before_another_request(void **state)
     assert_non_null(rates);
     assert_true(admit(rates, 1, &rate, START, &said));
     charge(rates, 1, &rate, 9999, START);
-    assert_true(admit(rates, 1, &rate, START, &said)); /* the bucket has one byte left */
+    assert_true(admit(rates, 1, &rate, START, &said)); /* one byte is left in the bucket */
     assert_int_equal(said.bytes.left, 1);
-    assert_int_equal(said.requests.reset, 0); /* requests have no limit, so none is reported */
+    assert_int_equal(said.requests.reset, 0); /* 0 because requests are not limited */
     charge(rates, 1, &rate, 50001, START);
     assert_false(admit(rates, 1, &rate, START, &said));
-    assert_int_equal(said.bytes.wait, 51); /* seconds until one byte is there, rounded up */
+    assert_int_equal(said.bytes.wait, 51); /* seconds until the bucket has a byte, rounded up */
     assert_int_equal(said.bytes.reset, 60);
     assert_false(admit(rates, 1, &rate, START + 50 * SECOND, &said));
     assert_true(admit(rates, 1, &rate, START + 50 * SECOND + 1000, &said));
-    /* A charge that is larger than any bucket must be a debt for ever, without overflow. */
+    /* A charge that no bucket could ever pay must be a debt for ever, and no number may
+     * overflow. */
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     assert_false(admit(rates, 1, &rate, START + 1000 * SECOND, &said));
@@ -99,7 +100,7 @@ static void a_refused_request_costs_nothing(void **state)
     }
     assert_true(admit(rates, 1, &rate, START + SECOND, &said));
     charge(rates, 1, &rate, 20, START + SECOND);
-    assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said)); /* bytes are missing */
+    assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said)); /* the byte limit refuses it */
     assert_int_equal(said.requests.left, 1);
     assert_int_equal(said.requests.wait, 0);
     assert_true(said.bytes.wait > 0);
@@ -117,11 +118,11 @@ static void new_limits_hold_at_once_for_a_bucket_that_is_there(void **state)
     assert_true(admit(rates, 1, &small, START, &said));
     assert_true(admit(rates, 1, &small, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    assert_true(admit(rates, 1, &large, START, &said)); /* admits two more, not four */
+    assert_true(admit(rates, 1, &large, START, &said)); /* admits two more requests, not four */
     assert_true(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    assert_true(admit(rates, 1, &none, START, &said)); /* without a limit the past is forgotten */
+    assert_true(admit(rates, 1, &none, START, &said)); /* without limits, debts are forgotten */
     assert_true(admit(rates, 1, &small, START, &said));
     api_rates_free(rates);
 }
@@ -148,34 +149,34 @@ static void of_a_full_table_the_oldest_full_bucket_goes(void **state)
     api_rate_state said;
     assert_non_null(rates);
     assert_true(admit(rates, 1, &rate, START, &said));
-    charge(rates, 1, &rate, 1000, START); /* client 1 is in debt for long */
+    charge(rates, 1, &rate, 1000, START); /* this debt of client 1 lasts long */
     assert_true(admit(rates, 2, &rate, START, &said));
     assert_true(admit(rates, 3, &rate, START, &said));
     assert_int_equal(api_rates_count(rates), 3);
-    /* The buckets of clients 2 and 3 are full again by now; that of 2 was used earlier, so it is
-     * dropped. */
+    /* The buckets of clients 2 and 3 are full again. The bucket of 2 was used earlier, so it must
+     * be dropped to make room. */
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(api_rates_count(rates), 3);
     assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 3, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
-    /* No bucket is full: the one that was used longest ago is dropped, and its client starts with a
-     * new one. */
+    /* Since no bucket is full, the one that was used longest ago must be dropped; its client then
+     * gets a new, full bucket. */
     assert_true(admit(rates, 5, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
     api_rates_free(rates);
 }
 
-/* --- compared with an oracle that fills buckets every microsecond --- */
+/* --- random steps, compared with a model that fills buckets every microsecond --- */
 
 enum { CLIENTS = 14, ROOM = 10 };
 
 typedef struct naive {
     bool is_there;
-    uint64_t requests, bytes; /* taken from the bucket, in millionths */
-    uint64_t used;            /* the step that used it last */
-    api_rate rate;            /* the rate at that time */
+    uint64_t requests, bytes; /* what was taken from the bucket, in millionths */
+    uint64_t used;            /* number of the last step that used the bucket */
+    api_rate rate;            /* rate at the last use */
 } naive;
 
 static naive world[CLIENTS];
@@ -202,7 +203,7 @@ static bool is_full(const naive *n)
     return (n->requests == 0 || n->rate.requests == 0) && (n->bytes == 0 || n->rate.bytes == 0);
 }
 
-/* Lists the clients that have a bucket, the one used longest ago first. */
+/* Lists the clients that have a bucket, beginning with the bucket that was used longest ago. */
 static size_t by_age(size_t order[CLIENTS])
 {
     size_t count = 0;
@@ -254,8 +255,8 @@ static bool expect_admit(naive *n)
 static void random_steps_agree_with_a_slow_oracle(void **state)
 {
     (void)state;
-    /* A client keeps its limits during the test, because in the oracle a bucket fills at the rate
-     * of its last use. */
+    /* The limits of a client must stay the same during this test, because the model fills a bucket
+     * at the rate of its last use. */
     static const api_rate kinds[] = {{.requests = 2000, .seconds = 1},
                                      {.bytes = 50000, .seconds = 1},
                                      {.requests = 900, .bytes = 30000, .seconds = 2},
@@ -297,7 +298,7 @@ static void random_steps_agree_with_a_slow_oracle(void **state)
     api_rates_free(rates);
 }
 
-/* --- the rest --- */
+/* --- header fields, memory and speed --- */
 
 static void the_fields_say_what_is_limited_and_what_is_left(void **state)
 {
@@ -318,7 +319,7 @@ static void the_fields_say_what_is_limited_and_what_is_left(void **state)
     rate.requests = 0;
     api_rate_policy(&rate, policy);
     assert_string_equal(policy, "\"bytes\";q=10000;w=10;qu=\"content-bytes\"");
-    /* The largest values must fit into the header: an integer in a structured field has at most 15
+    /* The largest possible values must fit into the header field, where an integer has at most 15
      * digits. */
     rate = (api_rate){API_LIMIT_MOST, API_LIMIT_MOST_BYTES, API_BURST_MOST};
     const api_rate_state most = {{UINT64_MAX, UINT64_MAX, 0}, {UINT64_MAX, UINT64_MAX, 0}};
@@ -375,7 +376,7 @@ static void a_table_is_made_whole_or_not_at_all(void **state)
         assert_true(f.n < 10);
     }
     assert_true(f.n > 3);
-    /* From now on requests must allocate nothing. */
+    /* Once the table is made, requests must allocate no memory. */
     failing_at(1);
     for (uint64_t i = 0; i < 100; i++) {
         assert_true(admit(rates, i, &rate, START + i, &said));

@@ -1,4 +1,5 @@
-/* The records that the journal gets: a mesh must be restorable from its records alone. */
+/* Tests of the records that the store gives to the journal: they alone must suffice to restore a
+ * mesh. */
 #include "tests/slow_journal.h"
 #include "tests/unit/dense.h"
 #include "tests/writing.h"
@@ -56,7 +57,8 @@ static he_mesh *copy_of_content(void)
     return copy;
 }
 
-/* Requires that the newest record is of this kind and has the facts of the mesh; returns it. */
+/* Requires that the newest record has these properties and the present facts of the mesh; returns
+ * it. */
 static const st_record *expect(st_record_kind kind, bool barrier, const char *ops, uint64_t inverts)
 {
     const st_record *r = &journal.record;
@@ -86,7 +88,8 @@ static const st_record *expect(st_record_kind kind, bool barrier, const char *op
     return r;
 }
 
-/* Requires that the body of the newest record transforms the old state into the present one. */
+/* Requires that the newest record is an edit whose body transforms `before` into the present
+ * state. */
 static void expect_edit(he_mesh *before, bool barrier, const char *ops)
 {
     const st_record *r = expect(ST_RECORD_EDIT, barrier, ops, 0);
@@ -136,7 +139,7 @@ static void a_mesh_can_be_made_again_from_its_records(void **state)
     assert_int_equal(journal.record.tally.created[0], 1);
     poke(1);
 
-    /* The two edits are undone and redone, and each step must be a record of its own. */
+    /* Two edits are undone and redone; each step must be a separate record. */
     assert_int_equal(writing_step(mesh, ST_UNDO, 1), ST_OK);
     assert_null(expect(ST_RECORD_UNDO, false, "", 3)->body);
     assert_int_equal(writing_step(mesh, ST_REDO, 1), ST_OK);
@@ -166,8 +169,8 @@ static void a_mesh_can_be_made_again_from_its_records(void **state)
     assert_null(expect(ST_RECORD_REMOVE, false, "", 0)->body);
 }
 
-/* An edit that is too large for the undo history must say so in its record, so that a start does
- * not offer to undo it. */
+/* The record of an edit that is too large for the undo history must say so, so that no later start
+ * offers to undo the edit. */
 static void an_edit_beyond_the_undo_budget_says_so(void **state)
 {
     (void)state;
@@ -179,7 +182,7 @@ static void an_edit_beyond_the_undo_budget_says_so(void **state)
     expect_edit(before, true, "face_poke");
 }
 
-/* --- large contents --- */
+/* --- large contents, which are written to the disk before their record --- */
 
 static he_mesh *large(void)
 {
@@ -231,8 +234,7 @@ static void a_large_content_is_staged(void **state)
     compact_claimed(&w);
     assert_int_equal(st_write_commit(&w, "compact"), ST_OK);
     expect_staged(ST_RECORD_EDIT, true, "compact");
-    /* A large edit that does not replace the content must be encoded without the lock of the
-     * mesh. */
+    /* A large edit that keeps the content must be encoded without holding the lock of the mesh. */
     claim(&w);
     assert_int_equal(he_face_poke(w.content, (he_face){0}, NULL, NULL, NULL, NULL, NULL), HE_OK);
     he_mesh *before = copy_of_content();
@@ -243,7 +245,8 @@ static void a_large_content_is_staged(void **state)
     st_mesh *made = NULL;
     assert_int_equal(st_create(store, "n", NULL, large(), NULL, &made), ST_OK);
     assert_non_null(slow_journal_staged(&journal));
-    /* The id of the new mesh is taken, so its staged content must be released. */
+    /* The id of the new mesh is in use. The content that was written to the disk for it must be
+     * released. */
     he_mesh *again = large();
     assert_int_equal(st_create(store, "n", NULL, again, NULL, &made), ST_TAKEN);
     assert_int_equal(journal.out, 0);
@@ -270,10 +273,10 @@ static void a_refused_stage_changes_nothing(void **state)
     assert_true(journal.groups == groups);
     assert_true(he_mesh_equal(before, st_read_begin(mesh, NULL)));
     st_read_end(mesh);
-    /* The claim on the mesh ended although its commit was refused, so another one can begin. */
+    /* The commit was refused, but it ended the long edit, so another one can begin. */
     compact_claimed(&w);
-    /* If the mesh of a claim is deleted meanwhile, the content that the claim has staged must be
-     * released. */
+    /* If the mesh is deleted during a long edit, the content that the edit has written to the disk
+     * must be released. */
     assert_int_equal(writing_remove(mesh), ST_OK);
     assert_int_equal(st_write_commit(&w, "compact"), ST_ABSENT);
     assert_int_equal(journal.out, 0);
@@ -281,8 +284,8 @@ static void a_refused_stage_changes_nothing(void **state)
     he_mesh_free(other);
 }
 
-/* Each allocation of a claim fails in turn, including those of rooms and stages: the claim must be
- * refused, and nothing change. */
+/* Each allocation of a long edit fails in turn, including those of the journal: the edit must be
+ * refused, and nothing may change. */
 static void every_allocation_of_a_claim_may_fail(void **state)
 {
     (void)state;

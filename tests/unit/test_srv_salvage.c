@@ -1,4 +1,4 @@
-/* What can be recovered from a store whose file is damaged
+/* Tests of what can be recovered from a store whose database file is damaged
  * (core/journal/sqlite/sqlite_salvage.c). */
 #include "tests/kept_journal.h"
 #include "tests/store_folder.h"
@@ -47,7 +47,8 @@ static void move_vertex(st_mesh *mesh, unsigned to)
     assert_true(writing_commit(&w, "vertex_move", NULL));
 }
 
-/* Makes a store of meshes with some edits each, so that every table takes several pages. */
+/* Makes a store of several meshes with several edits each, so that every table of the database
+ * takes more than one page. */
 static void make_store(void)
 {
     st_sqlite_opened out;
@@ -101,7 +102,7 @@ static void read_one(st_store *store, const st_card *card, found *f)
     st_release(mesh);
 }
 
-/* Reads everything that can be read; returns false if the file is refused as a whole. */
+/* Recovers everything that can be read. Returns false if the file is refused as a whole. */
 static bool read_all(const char *file, found *f)
 {
     st_sqlite_opened out;
@@ -127,8 +128,8 @@ static bool read_all(const char *file, found *f)
     return true;
 }
 
-/* Overwrites one page of the file after another: each time, what was on the page is lost, and the
- * rest must be read. */
+/* The test overwrites each page of the file in turn. Only what was on this page may be lost;
+ * everything else must be recovered. */
 static void a_damaged_page_costs_what_was_on_it(void **state)
 {
     (void)state;
@@ -151,23 +152,24 @@ static void a_damaged_page_costs_what_was_on_it(void **state)
             refused++;
             continue;
         }
-        /* A free page contains nothing; if any other page is lost, that must be noticed. */
+        /* If the page was in use, damage must be reported; if it was free, all meshes must be
+         * recovered. */
         assert_true(f.faults > 0 || f.whole == MESHES);
         named += f.faults > 0;
         if (f.listed < MESHES / 2) {
-            lists++; /* a page through which all rows of the list are found */
+            lists++; /* the page leads to all rows of the list of meshes */
         } else if (f.whole + f.part >= MESHES / 2) {
             least = f.whole < least ? f.whole : least;
         } else {
-            lists++; /* a page through which all records are found */
+            lists++; /* the page leads to all records */
         }
     }
     printf("note: %zu pages: %u refused, %u named, %u led to all of a table; else %u of %d meshes "
            "at least are whole\n",
            size / PAGE, refused, named, lists, least, MESHES);
     assert_int_equal(refused, 1);
-    /* At most three pages lead to a whole table: the roots of meshes and of records, and a page
-     * below the latter. */
+    /* At most three pages may lead to a whole table: the roots of the tables of meshes and of
+     * records, and one page below the root of records. */
     assert_true(lists <= 3);
     assert_true(named + refused + 8 > size / PAGE);
     assert_true(least > MESHES / 2);

@@ -1,5 +1,6 @@
-/* The line of a slow request: each part of its time is seen to be the large one in a request that
- * spends its time there. The test moves the clock, so nothing has to take long. */
+/* Tests of the log line about a slow request, which divides the request's time into parts: time
+ * that is spent in one part must be shown in that part. The test moves the clock, so it takes no
+ * long time itself. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -16,9 +17,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* --- the clock, and the moments at which it moves --- */
+/* --- a clock that the test moves --- */
 
-/* No machine is so busy that anything else takes a tenth of this. */
+/* The time by which the test moves the clock: an hour. Even on a busy machine, no part of a request
+ * really takes a tenth of it. */
 static const uint64_t passing = UINT64_C(3600) * 1000000;
 
 typedef enum moment { NEVER, AT_LOCK, AT_WORK, AT_POOL, AT_STORE } moment;
@@ -32,7 +34,7 @@ static void pass(void)
     atomic_fetch_add(&passed, passing);
 }
 
-/* Lets the time pass, once, when the server comes to the moment that the test waits for. */
+/* Moves the clock, once, when the server reaches the point for which the test has armed it. */
 static void come_to(moment here)
 {
     moment expected = here;
@@ -141,8 +143,8 @@ static int start(void **state)
     return 0;
 }
 
-/* Stops the server, and checks that its log has one line: that of a request whose time was spent in
- * this part, and whose parts add up to the whole. */
+/* Stops the server and checks its log: it must have one line, the request must have spent its time
+ * in this part, and all parts must add up to the whole time. */
 static void stop_and_find(const char *part)
 {
     static const char *const parts[] = {"receive_us", "queue_us", "lock_us",
@@ -194,7 +196,8 @@ static int stop(void **state)
 
 /* --- a client --- */
 
-/* Its receive buffer is small, so that a long answer waits for it to read. */
+/* Makes the client's receive buffer so small that the server must wait for the client to read a
+ * long answer. */
 static int connect_client(void)
 {
     const int small = 4096;
@@ -213,7 +216,7 @@ static void send_text(int fd, const char *text)
     assert_int_equal(send(fd, text, strlen(text), MSG_NOSIGNAL), strlen(text));
 }
 
-/* Asks for an answer after which the server closes the connection. */
+/* Sends a request after whose answer the server closes the connection. */
 static void ask(int fd, const char *method, const char *path, const char *body)
 {
     char request[1024];
@@ -224,7 +227,7 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     send_text(fd, request);
 }
 
-/* Reads to the end of the connection, closes it, and returns the number of bytes. */
+/* Reads until the server closes the connection, closes it, too, and returns the number of bytes. */
 static size_t read_all(int fd)
 {
     static char bytes[1 << 16];
@@ -254,9 +257,9 @@ static void put_mesh(const char *body)
     read_all(fd);
 }
 
-/* --- each part --- */
+/* --- one test for each part of the time --- */
 
-/* The 100 Continue shows that the server has the head and waits for the body. */
+/* The server sends 100 Continue when it has read the headers and waits for the body. */
 static void time_in_which_the_body_arrives_is_to_receive(void **state)
 {
     (void)state;
@@ -276,7 +279,7 @@ static void time_before_a_thread_is_free_is_in_the_queue(void **state)
 {
     (void)state;
     atomic_store(&armed, AT_POOL);
-    put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}"); /* too much for a worker */
+    put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}"); /* runs on a thread for long work */
     assert_int_equal(sem_trywait(&reached), 0);
     stop_and_find("queue_us");
 }
@@ -327,7 +330,7 @@ static void time_until_a_change_is_durable_is_for_the_store(void **state)
     stop_and_find("store_us");
 }
 
-/* The answer is longer than all buffers together. */
+/* The answer is longer than the buffers of both sockets together. */
 static void time_in_which_the_client_reads_is_to_send(void **state)
 {
     (void)state;

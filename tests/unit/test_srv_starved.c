@@ -1,6 +1,7 @@
-/* A store on a disk, with the N-th allocation failing, of the store and of SQLite, in whatever
- * thread it is: each request is done completely or not at all, and the mesh in memory, the mesh
- * that is loaded again and the mesh after a restart are what the requests that succeeded made. */
+/* Tests of a store on a disk in which each allocation fails in turn, whether the store or SQLite
+ * makes it, on any thread. Each request must be executed completely or not at all. The mesh in
+ * memory, the mesh loaded again and the mesh after a restart must have exactly the changes of the
+ * requests that succeeded. */
 #include "tests/failing.h"
 #include "tests/store_folder.h"
 #include "tests/unit/dense.h"
@@ -15,7 +16,7 @@
 
 static char folder[FOLDER_PATH];
 static st_store *store;
-static he_mesh *large; /* a content that is staged */
+static he_mesh *large; /* a content so large that it is stored in parts */
 
 /* --- the store --- */
 
@@ -35,16 +36,16 @@ static void close_store(void)
     store = NULL;
 }
 
-/* --- what the requests that succeeded have made --- */
+/* --- the state that the successful requests should have made --- */
 
 enum { STEPS = 4 };
 
 typedef struct expected {
-    bool made;         /* the mesh n exists */
-    uint64_t revision; /* of the mesh m */
-    double x;          /* of its vertex 0 */
+    bool made;         /* whether the mesh "n" exists */
+    uint64_t revision; /* revision of the mesh "m" */
+    double x;          /* x of vertex 0 of the mesh "m" */
     uint32_t vertices;
-    double undo[STEPS], redo[STEPS]; /* x after each step of the stacks, the top last */
+    double undo[STEPS], redo[STEPS]; /* x after each undo or redo, the next one last */
     uint32_t undos, redos;
     bool renamed;
 } expected;
@@ -76,7 +77,7 @@ static void compare(st_mesh *mesh, const expected *e)
 
 /* --- the requests --- */
 
-/* A vertex is moved to where no revision before had it. */
+/* Moves vertex 0 to a position that it had in no earlier revision. */
 static void edit(st_mesh *mesh, expected *e)
 {
     const uint32_t vertex = 0;
@@ -124,7 +125,8 @@ static void rename_mesh(st_mesh *mesh, expected *e)
     }
 }
 
-/* As a PUT does: the content is staged without a lock. Takes `content`. */
+/* Replaces the content as a PUT does, which writes it to the disk without holding a lock; frees
+ * `content`. */
 static void replace(st_mesh *mesh, he_mesh *content, expected *e)
 {
     const double x = he_position(content, (he_vertex){0}).x;
@@ -166,7 +168,7 @@ static void read_copies(st_mesh *mesh, const expected *e)
     }
 }
 
-/* Has all meshes leave memory, as if the budget were used up. */
+/* Removes all meshes from memory by setting a small memory budget. */
 static void evict(void)
 {
     enum { MIB = 1 << 20 };
@@ -183,7 +185,8 @@ static void evict(void)
     assert_int_equal(st_find(store, "m", &mesh), ST_COLD);
 }
 
-/* Loads m if it is not in memory. Returns NULL if there is no memory. */
+/* Returns the mesh "m", loading it if it is not in memory; NULL if there is no memory to load
+ * it. */
 static st_mesh *load(const expected *e)
 {
     st_mesh *mesh = NULL;
@@ -233,7 +236,7 @@ static void list(const expected *e)
     }
 }
 
-/* Everything once, with the store's own threads beside it. Takes `content`. */
+/* Makes each kind of request once, while the store's own threads run; frees `content`. */
 static void use_all(he_mesh *content, expected *e)
 {
     st_mesh *mesh = load(e);
@@ -278,8 +281,9 @@ static void make_m(void)
     close_store();
 }
 
-/* ROUNDS in the environment: every allocation up to that one fails; otherwise some of those after
- * the 8th do not. The start, which allocates most often, is tested in test_srv_journal_faults.c. */
+/* If the environment variable ROUNDS is set, each of the first ROUNDS allocations fails, each in a
+ * run of its own; otherwise the first 8 and some of the later ones. In this test the start does not
+ * fail; test_srv_journal_faults.c tests starts without memory. */
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* The store: ids, revisions, undo and redo within a memory budget, snapshots, caches, threads. */
+/* Tests of the store: ids, revisions, undo and redo within a memory budget, snapshots, caches,
+ * threads. */
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
 
@@ -46,7 +47,7 @@ static st_mesh *create(const char *id)
     return mesh;
 }
 
-/* Moves vertex 0 to x, in one edit. */
+/* Moves vertex 0 to (x, 0, 0) in one edit; if `barrier`, the edit cannot be undone. */
 static void move(st_mesh *mesh, double x, bool barrier, st_mesh_info *info)
 {
     st_write w;
@@ -113,7 +114,8 @@ static void ids_are_unique_and_listed_in_order(void **state)
 
     st_mesh *c = create("a"), *d = create("c");
     assert_int_equal(st_list(store, "a", list, 1), 1);
-    /* The store chose the id of the third mesh, so it may sort anywhere among the others. */
+    /* The store chose the id of the mesh in `info`, so this id may sort anywhere among the
+     * others. */
     bool first = strcmp(info.id, "a") > 0 && strcmp(info.id, "b") < 0;
     assert_ptr_equal(list[0], first ? b : a);
     st_release(list[0]);
@@ -297,8 +299,8 @@ static void the_undo_history_stays_within_its_budget(void **state)
     }
     assert_true(x_of(mesh) < EDITS - 2);
 
-    /* An edit larger than the budget must be applied, but then neither it nor earlier edits can be
-     * undone. */
+    /* An edit larger than the undo budget must be applied, but then neither it nor any earlier edit
+     * can be undone. */
     st_write w;
     he_mesh *content = writing_begin(mesh, &w);
     for (int i = 0; i < EDITS; i++) {
@@ -365,8 +367,8 @@ static void a_held_snapshot_does_not_change_and_a_new_one_is_current(void **stat
     st_snapshot_release(a);
     st_snapshot_release(b);
 
-    /* When it was released, it is brought up to date with the mesh, also after undo and with new
-     * rows. */
+    /* A new snapshot must show the present mesh, even if the store makes it by updating a released
+     * one, and even after undo or after an edit that adds elements. */
     for (int round = 0; round < 4; round++) {
         if (round == 1) {
             assert_int_equal(step(mesh, ST_UNDO), ST_OK);
@@ -414,8 +416,8 @@ static void a_cached_value_lasts_until_the_mesh_changes(void **state)
     st_release(mesh);
 }
 
-/* Each call of the store is made with each of its allocations failing in turn: it must be refused,
- * and the mesh be unchanged. */
+/* Each call of the store is made once for each of its allocations, which fails: the call must be
+ * refused, and the mesh must be unchanged. */
 static void calls_without_memory_are_refused_and_change_nothing(void **state)
 {
     (void)state;
@@ -469,7 +471,8 @@ static void calls_without_memory_are_refused_and_change_nothing(void **state)
     st_release(mesh);
 }
 
-/* Memory is used up when the next large block does not fit, although a smaller one still would. */
+/* Memory counts as short when the next large block does not fit, although a smaller one still
+ * would. */
 static void memory_is_short_before_it_is_full(void **state)
 {
     (void)state;
@@ -512,7 +515,7 @@ static void memory_beyond_the_budget_is_refused_and_caches_make_room(void **stat
     assert_true(st_memory_is_full());
     assert_int_equal(st_create(store, "n", NULL, content, NULL, &other), ST_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
-    /* A write that needs memory must free caches to get it. */
+    /* A write that needs more memory must get it by freeing caches. */
     st_memory_set_budget(0);
     st_snapshot *snapshot = NULL;
     assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
@@ -544,12 +547,12 @@ static void memory_beyond_the_budget_is_refused_and_caches_make_room(void **stat
     open_store(BUDGET, MESHES);
 }
 
-/* Threads move the vertices 0 and 1 to one point in one edit: readers must never see the two apart,
- * nor a revision decrease. */
+/* In each edit, writers move the vertices 0 and 1 to one point. Readers must never see them at
+ * different points, and never see the revision decrease. */
 enum { ROUNDS = 300, WRITERS = 2, READERS = 2 };
 static _Atomic bool broken;
 
-/* --- derived data --- */
+/* --- data that is derived from a content and kept with it --- */
 
 static atomic_int destroyed;
 
@@ -559,7 +562,7 @@ static void destroy(void *value)
     atomic_fetch_add(&destroyed, 1);
 }
 
-/* Makes derived data of each kind. */
+/* Makes data of each derived kind for the mesh. */
 static void derive(st_mesh *mesh)
 {
     for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
@@ -589,8 +592,8 @@ static void derived_values_are_freed_by_shedding_and_with_the_mesh(void **state)
     assert_int_equal(atomic_load(&destroyed), 2 * ST_DERIVED_COUNT);
 }
 
-/* Each revision must have its delta as long as the history keeps it; a barrier (an edit that cannot
- * be undone) ends what came before. */
+/* The store must have the delta of each revision as long as its history keeps the revision. A
+ * barrier (an edit that cannot be undone) removes all earlier ones. */
 static void each_revision_has_its_delta_until_a_barrier(void **state)
 {
     (void)state;

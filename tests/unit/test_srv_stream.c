@@ -1,5 +1,6 @@
-/* Event streams that wait: each must be resumed exactly once for each time it was suspended,
- * whatever wakes it and when; comments must be sent in silence; a stop must end all streams. */
+/* Tests of event streams that wait for events: a suspended stream must be resumed exactly once,
+ * whatever ends its wait and when; comments must be sent if there are no events for a time; and a
+ * stop must end all streams. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/http_stream.h"
@@ -9,7 +10,8 @@
 
 enum { STREAMS = 40, NEWS = 2000, LONG = 1000000000 };
 
-/* A stream together with its source, which counts numbers that were announced and not read yet. */
+/* A stream and its source of events. An event is a byte; `told` events were announced, `read` of
+ * them were read. */
 typedef struct talk {
     srv_stream stream;
     pthread_mutex_t lock;
@@ -17,7 +19,7 @@ typedef struct talk {
     void *context;
     unsigned told, read, starts, finishes;
     bool waiting, finished;
-    /* The other members are used by the threads that play the server's workers. */
+    /* The members below are used by the threads that stand for the server's workers. */
     bool aside, begun, ended;
     unsigned comments;
     struct talk *next;
@@ -68,7 +70,7 @@ static void tell(talk *t)
     pthread_mutex_unlock(&t->lock);
 }
 
-/* --- workers that pull resumed streams, as libmicrohttpd's do --- */
+/* --- threads that read resumed streams, as libmicrohttpd's do --- */
 
 static struct {
     pthread_mutex_t lock;
@@ -94,7 +96,7 @@ static void resume(srv_stream *stream)
     pthread_mutex_unlock(&pool.lock);
 }
 
-/* Reads the stream until it waits or ends. */
+/* Reads the stream until it has to wait or ends. */
 static void pull(talk *t)
 {
     char buffer[64];
@@ -227,7 +229,7 @@ static void silence_is_filled(void **state)
     }
 }
 
-/* The stop finds streams before their first read, between two reads, and suspended. */
+/* The stop comes when some streams were never read, some are being read, and some are suspended. */
 static void a_stop_finds_them_all(void **state)
 {
     (void)state;

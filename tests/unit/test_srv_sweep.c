@@ -1,6 +1,6 @@
-/* Connections that reach their deadline at the same time must be closed a few at a time, so that
- * others are served in between: the test counts how many the closing thread closes while it holds
- * the lock. */
+/* If many connections reach their deadline at once, they must be closed a few at a time, so that
+ * other threads can take the lock in between. The test counts how many connections are closed while
+ * the lock is held. */
 #include "server/http/http_deadline.h"
 
 #include <setjmp.h>
@@ -16,7 +16,7 @@
 
 enum { LATE = 500 };
 
-static _Thread_local int closed_since; /* connections closed since this thread took the lock */
+static _Thread_local int closed_since; /* connections closed while the lock was held */
 static _Atomic int most, closed;
 
 int __real_pthread_mutex_lock(pthread_mutex_t *mutex);
@@ -37,7 +37,8 @@ int __wrap_shutdown(int socket, int how)
     return __real_shutdown(socket, how);
 }
 
-/* The clients' ends of the connections, and the records of the server's ends. */
+/* Connected sockets: `others` are the clients' ends, `watched` are the records of the server's
+ * ends. */
 typedef struct pairs {
     int others[LATE];
     srv_connection *watched[LATE];
@@ -69,12 +70,12 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
 {
     (void)state;
     pairs p;
-    const srv_deadline_options options = {.max_connections = LATE}; /* idle for more than 0 s */
+    const srv_deadline_options options = {.max_connections = LATE}; /* idle for 0 s at most */
     srv_deadlines *d = srv_deadlines_new(&options);
     assert_non_null(d);
     open_pairs(d, &p);
     char byte;
-    for (int i = 0; i < LATE; i++) { /* until each connection is closed */
+    for (int i = 0; i < LATE; i++) { /* waits until each connection is closed */
         assert_int_equal(recv(p.others[i], &byte, 1, 0), 0);
     }
     assert_true(closed >= LATE);
@@ -83,8 +84,8 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
     srv_deadlines_free(d);
 }
 
-/* While the sweep (the search for late connections) pauses, some connections are closed by others:
- * it must go on with the next. */
+/* While the search for late connections pauses between two steps, some of the connections are
+ * closed elsewhere: the search must continue with the next connection that is left. */
 static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
 {
     (void)state;
@@ -95,7 +96,7 @@ static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
     closed = 0;
     open_pairs(d, &p);
     while (closed == 0) {
-        /* The sweep begins with the connection that was added last. */
+        /* The search begins with the connection that was added last. */
     }
     char byte;
     for (int i = LATE - 1; i >= 0; i--) {

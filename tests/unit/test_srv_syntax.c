@@ -1,6 +1,6 @@
-/* The state machine that checks the bytes of a connection before libmicrohttpd reads them: in each
- * case of framing_cases.h it must find the fault, wherever the bytes are split and however little
- * space there is, and must pass on no byte after a fault. */
+/* Tests of the state machine that checks the bytes of a connection before libmicrohttpd reads them:
+ * it must find the fault in each case of framing_cases.h, however the bytes are split and however
+ * little free space the buffer has. It must pass on no byte after a fault. */
 #include "tests/unit/fixture.h"
 
 #include "framing_cases.h"
@@ -17,11 +17,11 @@ typedef struct passed {
     srv_syntax syntax;
     char *bytes;
     size_t length;
-    size_t taken; /* bytes of the input that were consumed */
+    size_t taken; /* number of input bytes that were checked */
 } passed;
 
-/* Passes bytes[from, to) through the check in a buffer with this much free space, as recv() would;
- * returns false after a fault. */
+/* Passes these bytes to the check in a buffer with `room` more bytes of free space, as the server
+ * does after recv(). Returns false if there is a fault. */
 static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
 {
     char *at = p->bytes + p->length;
@@ -39,13 +39,14 @@ static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
     return false;
 }
 
-/* How bytes arrive: in pieces of `piece` bytes, of which the first has `first` bytes (0: like the
- * others), in a buffer with `room` free bytes. */
+/* How the bytes of a connection arrive: in pieces of `piece` bytes, except the first piece, which
+ * has `first` bytes if `first` is not 0, into a buffer with `room` bytes of free space after each
+ * piece. */
 typedef struct arrival {
     size_t first, piece, room;
 } arrival;
 
-/* Passes the bytes through the check as they arrive. */
+/* Passes all bytes to the check, piece by piece. */
 static void feed(passed *p, const char *bytes, size_t length, arrival by)
 {
     p->syntax = (srv_syntax){0};
@@ -124,8 +125,8 @@ static void a_case_is_the_same_wherever_it_is_cut(void **state)
     }
 }
 
-/* The output must equal the client's bytes up to the fault, except that blanks and cookies may be
- * removed. */
+/* The output of the check must equal its input up to the fault, except that the check may remove
+ * blanks and cookies. */
 static void no_byte_after_a_fault_is_passed_on(void **state)
 {
     passed *p = *state;
@@ -134,7 +135,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         size_t length, same = 0, taken;
         char *bytes = framing_case_bytes(c, &length);
         feed(&p[0], bytes, length, (arrival){0, 1, 0});
-        taken = p[0].taken - (c->fault ? 1 : 0); /* the last consumed byte is the fault */
+        taken = p[0].taken - (c->fault ? 1 : 0); /* the last byte checked is the faulty one */
         while (same < taken && (bytes[same] == p[0].bytes[same] || p[0].bytes[same] == '\0' ||
                                 ((bytes[same] | 0x20) == 'e' && p[0].bytes[same] == '-') ||
                                 (bytes[same] != '\n' && p[0].bytes[same] == ';'))) {
@@ -142,7 +143,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         }
         assert_int_equal(same, taken);
         assert_true(p[0].length - taken <= 24);
-        /* The bytes after the faulty byte may be anything: they must not change the result. */
+        /* Other bytes after the faulty byte must not change the result. */
         if (c->fault) {
             memset(bytes + taken + 1, 'x', length - taken - 1);
             feed(&p[1], bytes, length, (arrival){0, length, ROOM / 2});
@@ -268,8 +269,8 @@ static void the_end_of_a_socket_is_passed_on(void **state)
     assert_int_equal(recv(pair[0], &byte, 1, 0), 0);
 }
 
-/* The time for a head counts from its first byte: a head that arrives byte by byte has no more time
- * than one that arrives at once. */
+/* The time in which the headers must arrive counts from their first byte: a client that sends them
+ * byte by byte gets no more time than one that sends them at once. */
 static void a_head_begins_with_its_first_byte(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The header traceparent of a request and of its answer: cases from the W3C recommendation, and
- * random bytes. */
+/* Tests of the header traceparent of requests and answers, with cases from the W3C recommendation
+ * and with random bytes. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 
@@ -27,7 +27,7 @@ static bool is_lower_hexadecimal(const char *text, size_t length)
            strspn(text, "0") != length;
 }
 
-/* Requires that the traceparent of the answer is well formed, whatever the request had. */
+/* Requires that the answer's traceparent is well formed, whatever the request's was. */
 static void check_answer(const srv_trace *trace, char flag)
 {
     char expected[SRV_TRACEPARENT + 1];
@@ -39,7 +39,7 @@ static void check_answer(const srv_trace *trace, char flag)
 
 typedef struct trace_case {
     const char *value;
-    char flag; /* of the answer; 0: the request's header is malformed */
+    char flag; /* flag in the answer; 0 if `value` is malformed */
 } trace_case;
 
 static const trace_case cases[] = {
@@ -141,8 +141,8 @@ static unsigned below(uint64_t *random, unsigned end)
     return (unsigned)((*random >> 33) % end);
 }
 
-/* Some bytes of a well-formed value are replaced at random. The parser must accept exactly what a
- * plain reading of the grammar accepts. */
+/* Random bytes replace some bytes of a well-formed value. The parser must accept exactly what a
+ * simple, literal implementation of the grammar accepts. */
 static void random_values_are_read_as_the_grammar_says(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Waits for durability: each must end once, in the order of positions, as durable, lost or
- * stopped. */
+/* Tests of answers that wait until changes are durable: each wait must end once, in the order of
+ * positions in the journal, and its result must be durable, lost or stopped. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -21,7 +21,7 @@ static st_journal journal;
 static st_waits *waits;
 static st_wait all[MANY];
 static size_t resumed;
-static uint64_t last; /* the position of the wait that was resumed last */
+static uint64_t last; /* position of the wait that ended last */
 static bool in_order;
 
 static void moved(void *context, uint64_t position)
@@ -61,7 +61,7 @@ static void count(st_wait *wait)
     in_order = in_order && wait->shown.position >= last;
     last = wait->shown.position;
     resumed++;
-    wait->resume = NULL; /* a second call would crash */
+    wait->resume = NULL; /* a second call of `resume` would crash */
 }
 
 /* Adds a wait; returns false if it has ended already. */
@@ -89,7 +89,7 @@ static void one_notice_releases_a_thousand(void **state)
         early += all[i].resume == NULL;
     }
     assert_int_equal(resumed, early);
-    /* A wait that is added later must get its place in the order of positions. */
+    /* A wait that is added later must still end in the order of positions. */
     st_wait late, past;
     assert_true(add(&late, 251, 7));
     assert_false(add(&past, 250, 7));
@@ -102,8 +102,8 @@ static void one_notice_releases_a_thousand(void **state)
     }
 }
 
-/* A position within a lost interval, including both its ends, must count as lost, but only for the
- * mesh that lost it. */
+/* A wait for any position of a lost interval, including both its ends, must end as lost; but only a
+ * wait for the mesh whose records were lost. */
 static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
 {
     (void)state;
@@ -133,14 +133,14 @@ static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
             assert_false(add(&all[i], rows[i].position, rows[i].incarnation));
         }
     }
-    /* An answer that was begun after the loss does not show what was lost, so it counts as
+    /* An answer that was begun after the loss does not show a lost change, so it counts as
      * durable. */
     const st_shown later = {.position = 7, .since = 6};
     assert_true(st_waits_is_durable(waits, &later));
 }
 
-/* The list was begun after the journal reported records as durable, but before the threads that had
- * written them noted their positions. */
+/* The answer to a request for a list began when the journal had reported records as durable, but
+ * before the threads that wrote these records had noted their positions. */
 static void a_list_of_nothing_new_is_not_lost(void **state)
 {
     (void)state;
@@ -198,7 +198,8 @@ static void *stop_waits(void *context)
     return NULL;
 }
 
-/* Gives the thread that stops the waits time to return too early. */
+/* While this wait is being resumed, another thread stops all waits. It is given enough time that it
+ * would return too early, if it did not wait for this function to end. */
 static void resume_slowly(st_wait *wait)
 {
     pthread_t stops;
@@ -211,7 +212,8 @@ static void resume_slowly(st_wait *wait)
     assert_int_equal(pthread_detach(stops), 0);
 }
 
-/* The owner of a wait may be freed after the stop, as the table of jobs is. */
+/* st_waits_stop must return only after each wait has been resumed, because its caller may then free
+ * the memory of the waits. */
 static void a_stop_waits_for_what_is_being_resumed(void **state)
 {
     (void)state;
@@ -225,8 +227,8 @@ static void a_stop_waits_for_what_is_being_resumed(void **state)
     assert_false(ended_early);
 }
 
-/* All changes that one request makes must be one group of records, so that a crash leaves all of
- * them or none. */
+/* All changes of one request must be one group of records in the journal, so that a crash leaves
+ * all of them or none. */
 static void a_request_is_one_group_of_records(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* What the main thread tells systemd about the disk, which a test makes full and breaks. */
+/* Tests of what the daemon's main thread reports to systemd about the disk: the test makes the disk
+ * full and makes it fail. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -15,7 +16,8 @@
 
 #define URL "http://127.0.0.1:1"
 
-/* Listens as systemd does, on a name that exists only in the kernel. */
+/* Opens a socket for the messages to systemd; its name is in the abstract namespace of Linux, not
+ * in the file system. */
 static int be_systemd(void)
 {
     struct sockaddr_un own = {.sun_family = AF_UNIX};
@@ -32,7 +34,8 @@ static int be_systemd(void)
     return fd;
 }
 
-/* Looks once, and checks what systemd is then told; NULL: nothing. */
+/* Calls srv_watch_look once, and requires that it sends `expected` to systemd, or nothing if
+ * `expected` is NULL. */
 static void look_and_expect(srv_watch *watch, srv_parts *parts, int fd, const char *expected)
 {
     char text[512];
@@ -42,7 +45,7 @@ static void look_and_expect(srv_watch *watch, srv_parts *parts, int fd, const ch
     assert_string_equal(text, expected == NULL ? "" : expected);
 }
 
-/* Has the store write, which may fail. */
+/* Tries to create a mesh, so that the store writes to the disk. */
 static void create(st_store *store, const char *id)
 {
     st_mesh *mesh = NULL;

@@ -1,9 +1,9 @@
-/* Meshes and edits as bytes (core/stored): what was written must be read back bit for bit, and
- * damaged bytes be refused with a reason and a place. test_op_table.c converts every operation to
- * bytes and back.
+/* Tests of meshes and edits as bytes (core/stored): reading must restore exactly what was written,
+ * and damaged bytes must be refused with a reason and an offset. test_op_table.c converts every
+ * operation to bytes and back.
  *
- * `test_stored --write FOLDER` writes the golden files for a new version of the format; those of a
- * released version never change. They are also the seeds of fuzz_stored. */
+ * `test_stored --write FOLDER` writes the golden files of a new version of the format; those of a
+ * released version must never change. They are also the seeds of fuzz_stored. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -20,9 +20,9 @@
 
 enum { ENTRIES = 60, GOLDEN_MOST = 65536 };
 
-/* --- logs --- */
+/* --- logs of random edits --- */
 
-/* Encodes each edit of a log while the log is replayed. */
+/* Replays the log from its first entry, and encodes each edit at the state to which it applies. */
 static void code_log(const edit_log *log, stored_bytes *coded)
 {
     he_mesh *m = copy_of(log->entries[0].after);
@@ -42,9 +42,9 @@ static void code_log(const edit_log *log, stored_bytes *coded)
     he_mesh_free(m);
 }
 
-/* Applies entry i of the log as the start of a store does, from bytes alone. The record of an undo
- * also has the number of ids issued after it: a delta that is read as a replacement does not know
- * the rows that were issued before. */
+/* Applies entry i of the log from encoded bytes alone, as the start of a store does. After an undo,
+ * the number of ids ever issued is set as well: a delta that was read from bytes does not always
+ * know it. */
 static he_status apply_coded(const edit_log *log, size_t i, const stored_bytes *coded,
                              he_delta **deltas, he_mesh *m)
 {
@@ -123,7 +123,8 @@ static void without_memory_nothing_is_read_and_nothing_changes(void **state)
             i++;
             status = apply_coded(log, i, coded, deltas, m);
         }
-        /* If shrinking a block fails, the block stays as it is, so reading may succeed. */
+        /* If shrinking a block fails, the block stays as it is, so reading may succeed
+         * nevertheless. */
         failing_status(&f, status);
         assert_true(m != NULL || i == 0);
         if (m != NULL && status == HE_OK) {
@@ -164,8 +165,8 @@ static he_column *labelled_column(const he_mesh *m)
     return column;
 }
 
-/* Adds a column, writes a value to it, issues rows, and removes the column again; another column
- * stays. */
+/* Adds a column, writes a value to it, adds faces, and removes the column again. Another column is
+ * added and stays. */
 static void change_columns(he_mesh *m)
 {
     const uint32_t value = 2;
@@ -187,8 +188,8 @@ static void drop_columns(he_mesh *m)
     }
 }
 
-/* Adds rows to the table of materials, changes them twice and removes some; a slot in the middle
- * becomes free. */
+/* Adds materials to the table of materials, changes them twice and deletes some, which leaves a
+ * free slot in the middle of the table. */
 static void change_materials(he_mesh *m)
 {
     script_prepare(m, "material_set name=red base_color=1,0,0,0.5 metallic=0.25 roughness=0.5 "
@@ -210,8 +211,8 @@ typedef struct specimen {
     const char *name;
     const char *operation;
     void (*change)(he_mesh *m);
-    bool columns;   /* the mesh has the columns of script_add_columns */
-    bool materials; /* the mesh has a table of materials with a free slot in it */
+    bool columns;   /* whether the mesh has the columns of script_add_columns */
+    bool materials; /* whether the mesh has materials, with a free slot among them */
 } specimen;
 
 static const specimen specimens[] = {
@@ -281,8 +282,8 @@ static void contents_and_edits_come_back_from_their_bytes(void **state)
     }
 }
 
-/* Writes a golden file: the length of the content, the content, the number of ids issued after the
- * edit, the edit. */
+/* Writes a golden file to memory: the length of the content, the content, the numbers of ids issued
+ * after the edit, and the edit. Returns its size. */
 static size_t golden_of(const specimen *s, unsigned char *to)
 {
     specimen_run run = run_of(s);
@@ -298,8 +299,8 @@ static size_t golden_of(const specimen *s, unsigned char *to)
     return size;
 }
 
-/* The golden files must stay readable, and their contents must be encoded to the same bytes. This
- * does not depend on the operations. */
+/* Reads the golden files and encodes the contents again, which must give the same bytes. This does
+ * not use the operations, which may change. */
 static void golden_files_are_read_and_written_again(void **state)
 {
     (void)state;
@@ -373,16 +374,16 @@ static void expect_named(he_status status, const he_error *err, size_t size)
     assert_true(err->text[0] != '\0');
 }
 
-/* Reads damaged bytes: they must be refused and leave the mesh unchanged, or change it so that undo
- * restores it. A flipped bit of a value makes another valid edit; only the checksum of its record
- * can detect that. */
+/* Reads damaged bytes of an edit. They must be refused and leave the mesh unchanged, or be applied
+ * so that undo restores the mesh: a flipped bit of a value makes another valid edit, and only the
+ * checksum of its record can detect that. */
 static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *seen)
 {
     he_mesh *m = copy_of(run->before);
     he_delta *delta = NULL;
     he_error err = {.status = HE_OK};
     unsigned char *exact = malloc(damaged.size + 1);
-    memcpy(exact + 1, damaged.bytes, damaged.size); /* the bytes fill the block to its end */
+    memcpy(exact + 1, damaged.bytes, damaged.size); /* a sanitizer detects reads past their end */
     he_status status =
         he_stored_edit_forward(exact + 1, damaged.size, run->issued, m, &delta, &err);
     if (status != HE_OK) {
@@ -481,7 +482,7 @@ static void a_newer_version_is_refused_and_both_versions_are_named(void **state)
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),
         HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 0, "the edit has version 2, this release reads 1");
-    run.content.bytes[5 + 4] = 7; /* the first byte after the part's coding and length */
+    run.content.bytes[5 + 4] = 7; /* the version, after the part's coding and length */
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 4, "the mesh has version 7, this release reads 1");
@@ -502,8 +503,8 @@ static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.after, &delta, &err),
         HE_CORRUPT);
-    /* The change is refused at offset 2, where its run of changes begins: the version and the
-     * number of runs come before. */
+    /* The edit is refused at offset 2, where its first run of changes begins, after the version and
+     * the number of runs. */
     expect_text(&err, HE_CORRUPT, 2, "change 0 was made from another value than the mesh holds");
     run.issued[HE_EDGE] += 1000;
     assert_int_equal(
@@ -514,14 +515,15 @@ static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
     run_clear(&run);
 }
 
-/* A few bytes declare counts that would need gigabytes: no memory must be allocated for them. */
+/* A few bytes declare counts of elements that would need gigabytes: the reader must refuse them
+ * without allocating so much memory. */
 static void a_small_content_gets_no_large_memory(void **state)
 {
     (void)state;
     specimen_run run = run_of(&specimens[0]);
     he_mesh *m = NULL;
     he_error err;
-    memset(run.content.bytes + 5 + 16, 0x3f, 12); /* numbers of vertices, edges and faces */
+    memset(run.content.bytes + 5 + 16, 0x3f, 12); /* counts of vertices, edges and faces */
     failing_at(0);
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_CORRUPT);
@@ -531,9 +533,9 @@ static void a_small_content_gets_no_large_memory(void **state)
     run_clear(&run);
 }
 
-/* --- parts --- */
+/* --- contents in several parts --- */
 
-/* Makes a mesh of many parts, whose labels alone take more than one part. */
+/* Makes a mesh whose content takes many parts; its labels alone take more than one part. */
 static he_mesh *large_mesh(void)
 {
     he_mesh *m = script_mesh("012,023,034,045", NULL);
@@ -547,12 +549,12 @@ static he_mesh *large_mesh(void)
         (void)snprintf(text, sizeof text, "label %u", i);
         assert_int_equal(he_labels_add(column->labels, text, strlen(text), &index, NULL), HE_OK);
     }
-    memset(he_column_row(column, 7), 0, column->row_bytes); /* the deleted face */
+    memset(he_column_row(column, 7), 0, column->row_bytes); /* row 7 belongs to a deleted face */
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     return m;
 }
 
-/* Reads all parts of a content except the last `less`. */
+/* Writes a content as parts, and reads all parts except the last `less`. */
 static he_status read_parts(const he_mesh *m, uint64_t less, he_mesh **out, he_error *err)
 {
     unsigned char *part = malloc(HE_STORED_PART_ROOM);

@@ -1,9 +1,9 @@
-/* Subdivision is compared with what the papers prove: counts in closed form, limit positions,
- * curves that are cubic B-splines, creases, darts and corners; also attributes, ids, undo and
- * cancelling.
+/* Tests of subdivision against what the papers prove: element counts in closed form, limit
+ * positions, boundaries and creases that are cubic B-splines, darts and corners. Other tests are
+ * about attributes, ids, undo and cancelling.
  *
- * A limit position is a weighted sum of a vertex and its neighbours that no step changes, so it is
- * computed before a step and after it. */
+ * The limit position of a vertex is a weighted sum of the vertex and its neighbours that is the
+ * same after each step, so the tests compute it before and after a step. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ static he_vec3 at(const he_mesh *m, uint32_t v)
     return he_position(m, (he_vertex){v});
 }
 
-/* Makes a vertex 0 in the middle of n faces of three or four corners, which are not planar. */
+/* Makes n triangles or quads around vertex 0; they are not in one plane. */
 static he_mesh *wheel(unsigned n, bool quads)
 {
     he_soup soup;
@@ -90,8 +90,8 @@ static he_mesh *wheel(unsigned n, bool quads)
     return m;
 }
 
-/* Returns the sum of the positions of the neighbours of v or, if `across`, of the opposite corners
- * of its quads. */
+/* Returns the sum of the positions of the neighbours of v. If `across`, returns the sum of the
+ * corners opposite to v in its quads. */
 static he_vec3 ring(const he_mesh *m, uint32_t v, bool across)
 {
     he_vec3 sum = {0, 0, 0};
@@ -165,9 +165,9 @@ static void a_regular_vertex_has_the_known_limit(void **state)
     he_mesh_free(m);
 }
 
-/* The limit of a vertex with three quads is (9 v + 4 e + f) / 24, where e and f are the sums of
- * neighbours and opposite corners: for the corner (s, s, s) of a cube these sums are (s, s, s) and
- * (-s, -s, -s). */
+/* The limit of a vertex v with three quads is (9 v + 4 e + f) / 24, where e is the sum of its
+ * neighbours and f the sum of the opposite corners of its quads. At the corner v = (s, s, s) of a
+ * cube, e is (s, s, s) and f is (-s, -s, -s). */
 static void the_corner_of_a_cube_comes_to_half_its_place(void **state)
 {
     (void)state;
@@ -212,7 +212,8 @@ static void counts_follow_their_formulas(void **state)
         assert_int_equal(he_mesh_boundary_halfedges(m), 4 * 16);
         he_mesh_free(m);
     }
-    /* Two steps of sqrt3 divide the sides of a triangle by three and make nine triangles of it. */
+    /* Two steps of the scheme sqrt3 divide each side of a triangle into three and make nine
+     * triangles. */
     m = script_mesh("012", NULL);
     assert_int_equal(he_subdivide(m, HE_SQRT3, 2, c, NULL), HE_OK);
     assert_int_equal(c[1].faces, 9);
@@ -261,15 +262,14 @@ static void a_flat_grid_stays_flat_and_regular(void **state)
             he_vec3 q = at(m, v);
             assert_true(q.z == 0 && q.x >= 0 && q.x <= 2 && q.y >= 0 && q.y <= 2);
         }
-        /* The centre of the grid must stay, and so must its corners, which have one or two
-         * faces. */
+        /* The centre of the grid must stay in its place. */
         assert_near(at(m, 4), p[4], 1e-15);
         he_mesh_free(m);
     }
 }
 
-/* Returns (before + 4 v + after) / 6: the limit position of a vertex on a curve between its two
- * neighbours. */
+/* Returns (before + 4 v + after) / 6, the limit position of a vertex v on a boundary or feature
+ * curve, where `before` and `after` are its neighbours on the curve. */
 static he_vec3 spline(const he_mesh *m, uint32_t before, uint32_t v, uint32_t after)
 {
     he_vec3 sum = plus(plus(at(m, before), 4, at(m, v)), 1, at(m, after));
@@ -323,7 +323,8 @@ static uint32_t features(const he_mesh *m)
     return count;
 }
 
-/* Returns the vertex next to 0 along the feature edge that led to `rim` before the step. */
+/* Returns the neighbour of vertex 0 along the feature edge that led to `rim` before the
+ * subdivision. */
 static uint32_t along(const he_mesh *m, uint32_t rim)
 {
     const he_column *column = he_mark_find(m, HE_EDGE, "feature");
@@ -363,8 +364,8 @@ static void creases_are_curves_darts_smooth_and_corners_stay(void **state)
         he_mesh_free(a);
         he_mesh_free(b);
     }
-    /* At the end of a single feature edge (a dart) the vertex must move as without features, and
-     * the middle of the edge must stay on the edge. */
+    /* If one feature edge ends at a vertex (a dart), the vertex must move as without features, and
+     * the vertex in the middle of that edge must stay on the edge. */
     he_mesh *a, *b, *smooth = wheel(6, false);
     subdivide_marked("mark feature edge=0-1", HE_LOOP, 1, &a, &b);
     subdivide(smooth, HE_LOOP, 1);
@@ -442,8 +443,8 @@ static void values_linear_in_the_position_remain_so(void **state)
     }
 }
 
-/* New edges inside faces get the default of the attribute `feature`, but they must not become
- * curves. */
+/* The attribute `feature` is true by default, so new edges inside faces get this value; they must
+ * nevertheless not become creases. */
 static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
 {
     (void)state;
@@ -462,8 +463,8 @@ static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
     }
 }
 
-/* A column without a smoothing rule holds positions at the corners of faces: after a step each must
- * equal the position of its vertex. */
+/* A corner attribute without a smoothing rule has the positions of the vertices as its values:
+ * after a step, each value must equal the position of its vertex. */
 static void corners_are_refined_within_their_face(void **state)
 {
     (void)state;
@@ -475,7 +476,7 @@ static void corners_are_refined_within_their_face(void **state)
         for (uint32_t h = 0; h < 2 * he_mesh_edges(m); h++) {
             if (!he_is_boundary_halfedge(m, (he_halfedge){h})) {
                 he_vec3 p = at(m, he_origin(m, (he_halfedge){h}).i);
-                p.x += 100 * he_face_of(m, (he_halfedge){h}).i; /* makes every edge a seam */
+                p.x += 100 * he_face_of(m, (he_halfedge){h}).i; /* a different value in each face */
                 memcpy(he_column_row(column, h), &p, sizeof p);
             }
         }
@@ -500,8 +501,8 @@ static void corners_are_refined_within_their_face(void **state)
     }
 }
 
-/* After sqrt3, which flips edges, every corner must have the value of the face that it came
- * from. */
+/* The scheme sqrt3 flips edges. After that, every corner must have a value from the old face inside
+ * which it now is. */
 static void corners_of_flipped_triangles_are_of_their_face(void **state)
 {
     (void)state;
@@ -667,7 +668,7 @@ static void coordinates_as_large_as_doubles_get_stay_finite(void **state)
             he_vec3 p = {v % 2 ? 1.797e308 : -1.797e308, 1.797e308, v};
             he_set_position(m, (he_vertex){v}, p);
         }
-        subdivide(m, schemes[s], 3); /* checks the invariant I11, too */
+        subdivide(m, schemes[s], 3); /* checks the invariant I11 of each mesh, too */
         assert_true(at(m, 0).y > 1.79e308);
         he_mesh_free(m);
     }

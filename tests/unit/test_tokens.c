@@ -1,4 +1,5 @@
-/* Tokens: the file that lists them, what they allow, and replacing one file by another. */
+/* Tests of tokens: the file that lists them, what they allow, and what happens when another file
+ * replaces it. */
 #include "unit/fixture.h"
 
 #include "api/token/tickets.h"
@@ -43,7 +44,7 @@ static void a_line_says_whose_a_token_is_and_what_it_may_do(void **state)
     assert_string_equal(b->prefixes[1], "shared.");
     assert_true(b->expires == 1798806605.0);
     unsigned char hash[API_TOKEN_HASH];
-    api_token_hash("test", 4, hash); /* FIPS 180-4 has the expected value */
+    api_token_hash("test", 4, hash); /* the SHA-256 (FIPS 180-4) of "test" */
     assert_true(api_token_matches(a, hash));
     assert_false(api_token_matches(b, hash));
     hash[31] ^= 1;
@@ -157,7 +158,7 @@ static void a_file_has_its_limits(void **state)
     free(large);
 }
 
-/* The rows are the role of a token, the columns the role that a request requires. */
+/* A row stands for the role of a token, a column for the role that a request requires. */
 static void roles_include_each_other_as_documented(void **state)
 {
     (void)state;
@@ -197,7 +198,7 @@ static void prefixes_say_which_meshes_there_are(void **state)
     api_token_list_clear(&list);
 }
 
-/* --- one file after another --- */
+/* --- replacing the file of tokens --- */
 
 static bool load(api_tokens *tokens, const char *text)
 {
@@ -238,7 +239,7 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     assert_true(load(tokens, "# moved\n\na read " HASH " expires=1970-01-02"));
     assert_int_equal(api_tokens_count(tokens), 1);
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
-    assert_ptr_equal(again, a); /* the line of this token did not change */
+    assert_ptr_equal(again, a); /* the token is kept, since its line did not change */
     api_token_release(again);
     assert_int_equal(first.told, 0);
 
@@ -249,11 +250,11 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     again = api_tokens_find(tokens, "test", 4, 0);
     assert_ptr_not_equal(again, a);
     api_token_release(again);
-    api_tokens_watch(tokens, &third.watch); /* comes too late to be told */
+    api_tokens_watch(tokens, &third.watch); /* calls `gone` at once, as the token is gone */
     assert_int_equal(third.told, 1);
     assert_true(load(tokens, "b read " OTHER));
     assert_int_equal(first.told, 1);
-    assert_string_equal(a->name, "a"); /* the token lives as long as it is held */
+    assert_string_equal(a->name, "a"); /* the reference keeps the token alive */
     api_tokens_unwatch(tokens, &first.watch);
     api_token_release(a);
     api_tokens_free(tokens);
@@ -275,10 +276,11 @@ static void a_line_may_set_limits_of_its_own(void **state)
     assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 10 << 20);
     assert_int_equal(api_token_limit(a, API_LIMIT_MESH_BYTES), UINT64_C(2) << 30);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 4);
-    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* 0: no limit */
+    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* 0 is no limit */
     assert_int_equal(api_token_limit(NULL, API_LIMIT_REQUESTS), 0);
 
-    /* New limits must not make it a new token: running requests continue with the new limits. */
+    /* New limits must not make the token a new one: running requests must continue, with the new
+     * limits. */
     listener watcher = {.watch = {.token = a, .gone = tell}};
     api_tokens_watch(tokens, &watcher.watch);
     assert_false(load(tokens, "a read " HASH " prefix=x requests=1 requests=2"));
@@ -286,13 +288,13 @@ static void a_line_may_set_limits_of_its_own(void **state)
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
     assert_ptr_equal(again, a);
     assert_int_equal(watcher.told, 0);
-    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the daemon's option again */
+    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the daemon's default */
     assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 5);
     assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 3);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 0);
 
-    /* When the file is replaced, a token that has the name of an old one must use its bucket of
-     * requests; a token with another name must not. */
+    /* When the file is replaced, a new token with the name of an old one must continue the old
+     * one's limits of requests; a token with another name must not. */
     api_token_list list;
     assert_true(read_text("a write " OTHER "\nb read " HASH, &list));
     assert_memory_equal(&list.items[0]->rate_key, &a->rate_key, sizeof a->rate_key);
@@ -344,7 +346,7 @@ static void a_ticket_is_good_once_for_its_path_and_a_minute(void **state)
     assert_false(api_tickets_take(tickets, ticket.text, "/x", 159, &got));
     assert_true(api_tickets_make(tickets, a, "/x", 100, &ticket));
     assert_false(
-        api_tickets_take(tickets, ticket.text, "/x", 160, &got)); /* the ticket has expired */
+        api_tickets_take(tickets, ticket.text, "/x", 160, &got)); /* too late: the ticket expired */
     assert_true(api_tickets_make(tickets, a, "/x", 86390, &ticket));
     assert_false(
         api_tickets_take(tickets, ticket.text, "/x", 86400, &got)); /* its token has expired */
@@ -359,7 +361,7 @@ static void a_ticket_is_good_once_for_its_path_and_a_minute(void **state)
     assert_true(api_tickets_make(tickets, NULL, "/x", 60, &another));
     assert_true(api_tickets_take(tickets, another.text, "/x", 60, &got));
     assert_null(got);
-    assert_true(api_tickets_make(tickets, b, "/x", 60, &another)); /* freed at the end */
+    assert_true(api_tickets_make(tickets, b, "/x", 60, &another)); /* api_tickets_free frees it */
     api_tickets_free(tickets);
     assert_int_equal(b->uses, 1);
     api_token_list_clear(&list);
@@ -387,7 +389,7 @@ static void a_new_token_is_in_its_line(void **state)
     api_tokens_free(tokens);
 }
 
-/* Returns processor time, so that other programs do not matter. */
+/* Returns the processor time of the process, which other programs do not increase. */
 static double seconds(void)
 {
     struct timespec now;
@@ -424,7 +426,7 @@ static void a_check_costs_about_a_microsecond(void **state)
     double wrong = microseconds_a_check(tokens, token);
     printf("note: a token is checked in %.2f us among %d, a wrong one in %.2f us\n", good,
            API_TOKENS, wrong);
-    assert_true(good < 20 && wrong < 20); /* generous, for sanitizers on slow machines */
+    assert_true(good < 20 && wrong < 20); /* generous, because sanitizers and machines are slow */
     free(others);
     free(text);
     api_tokens_free(tokens);

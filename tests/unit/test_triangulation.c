@@ -1,5 +1,5 @@
-/* Triangulation of long polygons of any shape: the triangles must be valid, none of them turned
- * over, and the work limited. */
+/* Tests of triangulating long polygons of any shape: the triangles must be valid, no triangle may
+ * be turned over, and the work must be limited. */
 #include "unit/fixture.h"
 
 #include "geometry/corner_tree.h"
@@ -29,8 +29,8 @@ static double doubled_area(const he_planar_loop *f, uint32_t a, uint32_t b, uint
     return (f->x[b] - f->x[a]) * (f->y[c] - f->y[a]) - (f->y[b] - f->y[a]) * (f->x[c] - f->x[a]);
 }
 
-/* Requires that each triangle cuts its middle corner off the rest: then there are n - 2 triangles,
- * every diagonal belongs to two of them, and every side to one. */
+/* Requires that each triangle in turn cuts its middle corner off the rest of the polygon. Then
+ * there are n - 2 triangles, every diagonal is in two of them, and every side in one. */
 static void assert_cuts_corners(const he_planar_loop *f, const uint32_t *corners)
 {
     uint32_t n = f->n, *next = calloc(n, sizeof *next);
@@ -52,8 +52,8 @@ static void assert_cuts_corners(const he_planar_loop *f, const uint32_t *corners
     free(next);
 }
 
-/* Requires that all triangles turn left and that their areas add up to the polygon's area: then
- * they cover it once. */
+/* Requires that all triangles are counter-clockwise and that their areas add up to the area of the
+ * polygon. Then they cover the polygon exactly once. */
 static void assert_covers(const he_planar_loop *f, const uint32_t *corners)
 {
     double whole = 0, sum = 0;
@@ -109,7 +109,8 @@ static void every_shape_is_covered(void **state)
     }
 }
 
-/* The work is counted in steps and not in seconds: at most a few times n log n for any polygon. */
+/* The work is counted in steps, not in seconds. Any polygon of n corners may need at most a few
+ * times n log n steps. */
 static void work_grows_as_n_log_n(void **state)
 {
     (void)state;
@@ -136,7 +137,7 @@ static void work_grows_as_n_log_n(void **state)
     print_message("note: %s takes %.1f steps for each of n log2 n, others less\n", name, most);
 }
 
-/* --- random simple polygons, checked by an obvious test --- */
+/* --- random simple polygons, with a simple check of the triangles --- */
 
 /* Returns a pseudo-random number: xorshift64 (Marsaglia 2003). */
 static uint64_t random_bits(uint64_t *state)
@@ -161,8 +162,8 @@ static bool meet(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c, ui
            on_segment(f, c, d, b);
 }
 
-/* Reverses pieces of a random polygon until no two sides cross; returns false if that takes too
- * long, or if a point lies on a side. There are few points, on a grid, so that three are often
+/* Reverses pieces of a random polygon until no two sides cross. Returns false if that takes too
+ * long, or if a point is on a side. The few points are on a grid, so that three are often
  * collinear. */
 static bool untangle(he_planar_loop *f)
 {
@@ -188,7 +189,7 @@ static bool untangle(he_planar_loop *f)
             for (uint32_t i = 0; i < n; i++) {
                 uint32_t k = (i + 1) % n, l = (i + 2) % n;
                 area += f->x[i] * f->y[k] - f->x[k] * f->y[i];
-                /* A side that runs back along the side before it would meet it in more than a
+                /* If a side runs back along the side before it, the two share more than a
                  * corner. */
                 if (on_segment(f, i, k, l) || on_segment(f, k, l, i)) {
                     return false;
@@ -207,7 +208,8 @@ static bool untangle(he_planar_loop *f)
     return false;
 }
 
-/* Requires that no diagonal meets a side except at its ends. */
+/* Requires that no diagonal of the triangulation meets a side of the polygon except at the
+ * diagonal's ends. */
 static void assert_inside(const he_planar_loop *f, const uint32_t *corners)
 {
     for (uint32_t k = 0; k + 3 < f->n; k++) {
@@ -287,10 +289,10 @@ static void what_meets_itself_is_not_swept(void **state)
     }
 }
 
-/* --- edges, memory, progress --- */
+/* --- avoiding existing edges, memory and progress --- */
 
-/* An export first computes triangles without regard to the edges of the mesh. If none of their
- * diagonals is an edge already, it must use them as they are. */
+/* An export prefers triangles whose diagonals are not edges of the mesh already. If the plain
+ * triangulation has no such diagonal, the export must use it as it is. */
 static void avoiding_edges_changes_nothing_where_there_are_none(void **state)
 {
     (void)state;
@@ -361,14 +363,13 @@ static void a_long_loop_is_given_up(void **state)
         assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, &work, &t, NULL),
                          HE_CANCELLED);
         assert_int_equal(told, 1);
-        /* The work must end soon after it was cancelled: after at most one more corner or one more
-         * sweep. */
+        /* Cancelled work must end soon: after at most one more corner or one more sweep. */
         assert_true(work.steps < 40 * 40000);
         he_mesh_free(m);
     }
 }
 
-/* --- what a copy of the mesh keeps --- */
+/* --- triangulations that a copy of the mesh keeps --- */
 
 static he_replay *replay_of(const polygon_shape *shape, uint32_t n)
 {
@@ -389,8 +390,8 @@ static uint64_t steps_of(const he_mesh *m, unsigned flags, uint32_t *first)
     return steps;
 }
 
-/* The tree of boxes, the arrays of a renderer and the writers of triangle formats must share one
- * triangulation of a long face. */
+/* A long face must be triangulated only once for all its users: the tree of bounding boxes, the
+ * arrays for a renderer and the writers of triangle formats. */
 static void a_long_face_is_cut_once_for_all(void **state)
 {
     (void)state;
@@ -468,9 +469,8 @@ static void keeping_fails_cleanly(void **state)
     he_replay_free(replay);
 }
 
-/* The search among a hundred corners, which are kept as a list, must find what the search among
- * four hundred finds, which are kept as a tree; the other three hundred are far from all triangles
- * that are tried. */
+/* A hundred corners are searched as a list, four hundred as a tree, and both searches must find the
+ * same. The other three hundred corners are far from all triangles of the test. */
 static void a_list_of_corners_finds_what_a_tree_finds(void **state)
 {
     (void)state;
