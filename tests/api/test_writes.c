@@ -23,7 +23,8 @@ typedef struct write {
     int status;
     const char *body;
     const char *headers[3];
-    enum { ONCE, BEFORE, DRY } how; /* BEFORE: an equal request with this key was done before */
+    /* BEFORE: a request with the same key and body was done before */
+    enum { ONCE, BEFORE, DRY } how;
 } write;
 
 #define BATCH                                                           \
