@@ -1,7 +1,7 @@
 /* failing.h - allocations that fail on purpose, one after the other.
  *
- * A function that allocates memory must fail cleanly whichever allocation fails: it returns an error
- * and has changed nothing. This loop proves that for each allocation of a call:
+ * A function that allocates memory must fail cleanly whichever allocation fails: it returns an
+ * error and has changed nothing. This loop proves that for each allocation of a call:
  *
  *     failing f = {0};
  *     while (failing_next(&f)) {
@@ -32,11 +32,11 @@ typedef enum failing_threads {
 /* The state of the loop. It begins as {0}, or with some options set, which may be changed between
  * two iterations. */
 typedef struct failing {
-    long n;           /* number of the allocation that fails */
+    long n; /* number of the allocation that fails */
     /* option: the run may succeed although an allocation failed, because some are optional */
     bool may_succeed;
-    bool lasts;       /* option: all allocations after the n-th fail, too */
-    long sparse;      /* option: if not 0, each iteration raises n by 1 + n / sparse instead of 1 */
+    bool lasts;  /* option: all allocations after the n-th fail, too */
+    long sparse; /* option: if not 0, each iteration raises n by 1 + n / sparse instead of 1 */
     failing_threads threads; /* option */
     const char *what;        /* option: name of what is run, for the messages of failures */
     bool is_over;            /* the last run made fewer than n allocations */
