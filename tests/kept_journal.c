@@ -497,7 +497,7 @@ static void tell_health(void *self, st_health *out)
 
 st_journal kept_journal_open(kept_journal *journal)
 {
-    /* begins with a journal for which everything is durable */
+    /* functions not set below are those of a journal for which everything is durable */
     st_journal out = st_journal_memory();
     out.self = journal;
     out.keeps = true;

@@ -73,7 +73,7 @@ mirror_step mirror_apply(mirror *m, const cJSON *data);
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
 /* Returns the first live element with an id from `from` on, continuing at 0 after the last id;
- * HE_NONE if no element is live. Edges are found by their half-edges. */
+ * HE_NONE if no element is live. An edge is live if its half-edges are in the copy. */
 uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
 size_t mirror_count(const mirror *m, he_kind kind);
 

@@ -15,11 +15,12 @@ typedef struct slow_journal {
     uint64_t newest;        /* position of the newest record */
     /* the newest position reported as durable; UINT64_MAX: all, also future ones */
     uint64_t durable;
-    uint64_t groups;  /* number of groups of records appended so far */
-    char key[32];     /* Idempotency-Key of the request that made the newest record */
-    st_record record; /* the first record of the newest group; its texts live as long as the mesh */
-    st_room *room;    /* the memory reserved for the newest group */
-    st_stage *stage;  /* content of the newest group's first record if it was written in advance */
+    uint64_t groups; /* number of groups of records appended so far */
+    char key[32];    /* Idempotency-Key of the request that made the newest record */
+    /* first record of the newest group of records; its texts are valid as long as its mesh */
+    st_record record;
+    st_room *room;   /* memory reserved for the newest group of records */
+    st_stage *stage; /* content of `record` if it was written in advance */
     /* result of reserving memory and of writing in advance, but deletions are accepted if it is
      * ST_FULL */
     st_status refuse;

@@ -121,8 +121,8 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
     bench_free(b);
 }
 
-/* The linker makes calls of the functions below go to the wrappers in this file (Makefile), which
- * count them. */
+/* Number of calls of the two functions that find what an edit changed. The linker makes these calls
+ * go to the wrappers below (Makefile). */
 static unsigned finds;
 
 he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,

@@ -88,7 +88,7 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
         arg->number = p->flags & HE_RANGE && p->max < 1e6
                           ? p->min + (0.1 + 0.8 * md_unit(&w->r)) * (p->max - p->min)
                           : 0.05 + md_unit(&w->r);
-        if (p->flags & HE_WHOLE) { /* more steps would make the mesh large */
+        if (p->flags & HE_WHOLE) { /* large numbers of steps would make the mesh large */
             arg->number = p->max < 1e6 ? p->min : md_below(&w->r, 200);
         }
         break;

@@ -34,7 +34,7 @@ typedef struct level {
     bool *vertex, *edge, *face;
     uint32_t (*end)[2], (*corner)[3];
     const char *next; /* position in the answer of the next vertex split */
-    uint32_t left;    /* number of splits still to be read */
+    uint32_t left;    /* number of vertex splits still to be read */
 } level;
 
 static level first_level(const bench_reply *r)

@@ -1,5 +1,6 @@
-/* The cost of a spatial search is what it visits. A search among thousands of triangles around one
- * vertex is completed, but a short request that would cause very much work is refused. */
+/* The budget of a request is charged for each bounding box and triangle that a spatial search
+ * visits. A search among thousands of triangles around one vertex must be completed, but a short
+ * request that would cause very much work must be refused. */
 #include "tests/api/fan.h"
 
 #include "api/limits.h"

@@ -122,7 +122,7 @@ static struct {
     pthread_cond_t changed;
     bool closed;
     bool begun, met;
-    atomic_bool making; /* the first request is about to build the tree */
+    atomic_bool making; /* the first request is about to build the tree of bounding boxes */
     /* The following members are protected by the lock of `place`, which will hold the tree. */
     st_derived *place;
     bool held;

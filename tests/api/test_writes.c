@@ -316,7 +316,8 @@ static void a_full_disk_takes_removals(void **state)
 
 /* --- preconditions --- */
 
-/* The linker makes calls of the functions below go to the wrappers in this file (Makefile). */
+/* Whether a write is in progress, and whether the mesh was removed during one. The linker makes
+ * calls of the store's functions go to the wrappers below (Makefile), which set these variables. */
 static bool writing, removed_under_lock;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
