@@ -80,11 +80,11 @@ static bool sync_fails(void)
     return fails;
 }
 
-/* --- a file: ours, which calls the system's --- */
+/* --- a file of this disk, which calls the functions of the system's file --- */
 
 typedef struct disk_file {
     sqlite3_file base;
-    bool writes; /* the file is the database itself, and open for writing */
+    bool writes; /* the file is a database, not a journal or log, and is open for writing */
     sqlite3_file *real;
 } disk_file;
 
@@ -204,7 +204,7 @@ static int file_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *file, int
 void disk_install(void)
 {
     static sqlite3_vfs mine;
-    (void)st_db_prepare(); /* SQLite accepts this only before it has started */
+    (void)st_db_prepare(); /* configures SQLite, which is possible only before SQLite starts */
     sqlite3_vfs *real = sqlite3_vfs_find(NULL);
     mine = *real;
     mine.pNext = NULL;

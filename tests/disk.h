@@ -1,24 +1,25 @@
-/* disk.h - a disk that a test can make full, slow or failing. After disk_install, SQLite uses it by
- * default; other programs and the other files of the store do not. */
+/* disk.h - a simulated disk that a test can make full, slow or failing. After disk_install, SQLite
+ * uses it by default; other programs, and files of the store that SQLite does not open, do not. */
 #ifndef TESTS_DISK_H
 #define TESTS_DISK_H
 
 #include <stdbool.h>
 
-/* Installs the disk; must be called before the process opens its first store. */
+/* Installs the simulated disk; must be called before the process opens its first store. */
 void disk_install(void);
-/* Makes all further writes fail for lack of space, or lets them succeed again. */
+/* Makes all further writes fail for lack of space, or, called with false, lets them succeed
+ * again. */
 void disk_fill(bool full);
-/* Makes the N-th write from now on and all later ones fail for lack of space; 0: lets all
+/* Makes the N-th write from now on and all later ones fail for lack of space; with 0 all
  * succeed. */
 void disk_fill_at(long write);
-/* Makes the N-th sync from now on fail; 0: lets all succeed. */
+/* Makes the N-th sync from now on fail; with 0 all succeed. */
 void disk_fail_at(long sync);
-/* Makes syncs wait until this is called with false. */
+/* Makes all syncs wait until this is called with false. */
 void disk_hold(bool held);
 /* Returns the number of syncs since the last disk_fill_at or disk_fail_at. */
 long disk_syncs(void);
-/* Returns the number of open connections to a database that may write. */
+/* Returns the number of open connections that may write to a database. */
 long disk_writers(void);
 
 #endif

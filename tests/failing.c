@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-/* Threads of the code under test allocate too, hence the atomics. */
+/* The variables are atomic because threads of the code under test allocate, too. */
 static atomic_long calls, fail_at, blocks;
 static atomic_int pauses, threads;
 static atomic_bool lasts;

@@ -1,7 +1,7 @@
 /* failing.h - allocations that fail on purpose, one after the other.
  *
- * What allocates memory must fail cleanly wherever an allocation fails: it is refused, and nothing
- * has changed. This loop proves it for each allocation of a run:
+ * A function that allocates memory must fail cleanly whichever allocation fails: it returns an
+ * error and has changed nothing. This loop proves that for each allocation of a call:
  *
  *     failing f = {0};
  *     while (failing_next(&f)) {
@@ -11,9 +11,10 @@
  *         }
  *     }
  *
- * In its N-th turn the N-th allocation fails. It ends after the first run that makes fewer than N
- * allocations, which must succeed; every earlier run must not. The allocator fails only between
- * failing_next() and failing_status() or failing_end(); it may be called by several threads. */
+ * In the N-th iteration, called a run, the N-th allocation fails. The loop ends after the first run
+ * that makes fewer than N allocations, which must succeed; every earlier run must not. Allocations
+ * fail only between failing_next() and failing_status() or failing_end(), in several threads if the
+ * test has them. */
 #ifndef TESTS_FAILING_H
 #define TESTS_FAILING_H
 
@@ -21,45 +22,48 @@
 
 #include <stdbool.h>
 
-/* Whose allocations count and may fail; those of other threads always succeed. */
+/* The threads whose allocations are counted and may fail; those of other threads always succeed. */
 typedef enum failing_threads {
     FAILING_ALL_THREADS,
     FAILING_THIS_THREAD, /* the thread that calls failing_next() */
     FAILING_OTHER_THREADS
 } failing_threads;
 
-/* The state of the loop. It begins as {0}, or with some of its options, which may be changed
- * between two turns. */
+/* The state of the loop. It begins as {0}, or with some options set, which may be changed between
+ * two iterations. */
 typedef struct failing {
-    long n;           /* the allocation that fails; after the loop, one that was not made */
-    bool may_succeed; /* option: some allocations are optional, and a run succeeds without them */
-    bool lasts;       /* option: all allocations after the n-th fail too */
-    long sparse;      /* option: if not 0, n grows by n / sparse more than 1 in each turn */
+    long n; /* number of the allocation that fails */
+    /* option: the run may succeed although an allocation failed, because some are optional */
+    bool may_succeed;
+    bool lasts;  /* option: all allocations after the n-th fail, too */
+    long sparse; /* option: if not 0, each iteration raises n by 1 + n / sparse instead of 1 */
     failing_threads threads; /* option */
-    const char *what;        /* option: what was run, for the messages of failures */
+    const char *what;        /* option: name of what is run, for the messages of failures */
     bool is_over;            /* the last run made fewer than n allocations */
 } failing;
 
 /* Raises n and begins a run whose n-th allocation will fail. Returns false if the loop is over. */
 bool failing_next(failing *f);
 /* Ends a run, and returns `succeeded`. Fails the test, naming n, if the run succeeded although its
- * allocation failed, or failed although it did not. */
+ * n-th allocation failed, or failed although no allocation did. */
 bool failing_end(failing *f, bool succeeded);
 /* Ends a run that returned HE_OK or HE_NO_MEMORY; another status fails the test. Returns true if
  * the status is HE_OK. */
 bool failing_status(failing *f, he_status status);
 
-/* Makes the n-th allocation from now on fail, in whatever thread it is made; with n = 0 allocations
- * are only counted. The first call and failing_off() exchange the allocator, so no other thread may
- * allocate meanwhile; later calls only choose another n. */
+/* Makes the n-th allocation from now on fail, in any thread; with n = 0, allocations are only
+ * counted. The first call and failing_off() exchange the allocator, so no other thread may allocate
+ * meanwhile. Later calls only set another n. */
 void failing_at(long n);
 /* Returns the number of allocations since failing_at(). */
 long failing_count(void);
-/* Returns the number of blocks allocated since the allocator was exchanged, less those freed. */
+/* Returns the number of blocks that were allocated, and not freed, since the allocator was
+ * exchanged. */
 long failing_blocks(void);
 /* Restores the allocator of the C library. */
 void failing_off(void);
-/* Allocations between these two are neither counted nor refused. Pauses may be nested. */
+/* Allocations between failing_pause() and failing_resume() are not counted and do not fail. Pauses
+ * may be nested. */
 void failing_pause(void);
 void failing_resume(void);
 

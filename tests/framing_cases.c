@@ -13,7 +13,7 @@
 #define LAST   "0\r\n\r\n"
 
 #define BYTES(text) text, sizeof(text) - 1
-/* A case whose bytes are a correct request, so that a handler answers it. */
+/* A case whose bytes are a correct request, so that a handler answers with this status. */
 #define TAKEN(name, bytes, status)                               \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, NULL, 0, 0 \
@@ -22,7 +22,7 @@
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 0, 0 \
     }
-/* A case whose bytes have a fault, which the daemon must find. */
+/* A case whose bytes have a framing fault, which the daemon must find. */
 #define FAULT(name, bytes, status, code)                         \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 1, 1 \
@@ -38,7 +38,7 @@
     }
 
 static const framing_case cases[] = {
-    /* the request line */
+    /* cases of the request line */
     TAKEN("a request", GET HOST "\r\n", 200),
     TAKEN("HTTP/1.0 without Host", "GET /livez HTTP/1.0\r\nConnection: keep-alive\r\n\r\n", 200),
     TAKEN("a higher minor version", "GET /livez HTTP/1.2\r\n" HOST "\r\n", 200),
@@ -133,7 +133,7 @@ static const framing_case cases[] = {
     BAD("a blank before the first header", GET " " HOST "\r\n"),
     BAD("a request line among the headers", GET HOST "GET / HTTP/1.1\r\n\r\n"),
 
-    /* Host and Origin */
+    /* cases of the headers Host and Origin */
     TAKEN("a port in Host", GET "Host: 127.0.0.1:1234\r\n\r\n", 200),
     TAKEN("IPv6 in Host", GET "Host: [::1]:9\r\n\r\n", 200),
     TAKEN("a blank after Host", GET "Host: localhost \t\r\n\r\n", 200),

@@ -1,7 +1,7 @@
-/* framing_cases.h - requests as bytes, with what RFC 9112 says about each and what the daemon
- * answers.
+/* framing_cases.h - requests as bytes, each with the answer that the daemon must give according to
+ * RFC 9112.
  *
- * Two tests share the table: test_srv_syntax.c passes the bytes through the state machine alone,
+ * Two tests share the table: test_srv_syntax.c passes the bytes through the request parser alone,
  * split at every position; test_framing.c sends them to a real daemon. */
 #ifndef TESTS_FRAMING_CASES_H
 #define TESTS_FRAMING_CASES_H
@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A case: its bytes are `head`, then `unit` repeated `times` times, then `tail`. */
+/* A case. The bytes of its request are `head`, then `unit` repeated `times` times, then `tail`. */
 typedef struct framing_case {
     const char *name;
     const char *head;
@@ -19,9 +19,9 @@ typedef struct framing_case {
     const char *tail;
     size_t tail_length;
     int status;
-    const char *code; /* of the expected problem; NULL: the answer is no problem */
-    bool fault;       /* the fault is found in the bytes; otherwise the handler answers */
-    bool closes;      /* the connection closes, as after every fault */
+    const char *code; /* error code of the expected problem; NULL: the answer is no problem */
+    bool fault;       /* the framing of the bytes is faulty; else a handler answers */
+    bool closes;      /* the daemon must close the connection, as after every fault */
 } framing_case;
 
 size_t framing_case_count(void);

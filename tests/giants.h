@@ -1,11 +1,11 @@
-/* giants.h - meshes on which some edits exceed their limit of work, or that are as large as a mesh
- * may be. */
+/* giants.h - meshes on which some edits exceed their limit of work, and meshes that are as large as
+ * a mesh may be. */
 #ifndef TESTS_GIANTS_H
 #define TESTS_GIANTS_H
 
 #include "mesh/mesh.h"
 
-/* The functions below return NULL when memory is out. */
+/* The functions below return NULL if memory is out. */
 
 /* Returns a star: a polygon with very many points. */
 he_mesh *giant_star(void);

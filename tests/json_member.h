@@ -1,4 +1,4 @@
-/* json_member.h - the members of a JSON object that must be there. */
+/* json_member.h - access to the members of a JSON object that a test requires. */
 #ifndef TESTS_JSON_MEMBER_H
 #define TESTS_JSON_MEMBER_H
 

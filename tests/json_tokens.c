@@ -62,7 +62,7 @@ static void tell_token(json_tokens *t, const he_lexer *x, he_token token)
     }
 }
 
-/* Reads tokens until the piece is used up, the text ends, or a fault is found. */
+/* Reads tokens until the piece ends, the text ends, or a fault is found. */
 static void read_tokens(json_tokens *t, he_lexer *x)
 {
     do {

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* A content of a mesh that was staged, as encoded parts. */
+/* A mesh that was written to the journal before it is published, encoded in parts. */
 struct st_stage {
     size_t parts, capacity;
     struct {
@@ -24,10 +24,10 @@ struct st_stage {
     } * part;
 };
 
-/* A stored record; its mesh and the readers of the mesh count as its users. */
+/* A stored record. `uses` counts its mesh and the readers of its mesh, all of which need it. */
 typedef struct kept_record {
     size_t uses;
-    st_record record; /* texts and body are owned; its key is not stored */
+    st_record record; /* its texts and body are copies; its Idempotency-Key is not stored */
     char name[ST_MESH_NAME + 1];
     char ops[256];
     bool sum_is_wrong;
@@ -35,7 +35,7 @@ typedef struct kept_record {
 
 typedef struct kept_mesh {
     st_card card;
-    kept_record *base; /* the record that holds a whole content, made from a stage */
+    kept_record *base; /* the record with the whole mesh, encoded in the parts of its stage */
     kept_record **records;
     size_t count, capacity, opened, parts;
     struct kept_mesh *next;
@@ -44,22 +44,22 @@ typedef struct kept_mesh {
 struct kept_journal {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    kept_mesh *meshes; /* sorted by id */
+    kept_mesh *meshes; /* list of meshes, sorted by id */
     uint64_t newest;
-    size_t out; /* rooms, stages and readers that exist */
+    size_t out; /* number of rooms, stages and readers that are not freed yet */
     st_status refuse;
-    size_t staged_edits; /* number of edits that were staged */
+    size_t staged_edits; /* number of edits that were written in advance */
     bool ignores;
     bool stopped;
     size_t waiting;
     uint64_t secret[2];
 };
 
-/* A reader of one mesh: it reads what was stored when it was opened. */
+/* Reads the records of one mesh that were stored when the reader was opened. */
 struct st_reader {
     kept_journal *journal;
     char id[ST_MESH_ID + 1];
-    kept_record **records; /* the base, then the edits after it */
+    kept_record **records; /* the base record, then the edits after it */
     size_t count, record, part;
     bool in_parts;
     char why[ST_DAMAGE];
@@ -83,7 +83,7 @@ static void count_out(kept_journal *journal, int by)
     pthread_mutex_unlock(&journal->lock);
 }
 
-/* --- rooms and stages --- */
+/* --- rooms (reserved memory) and stages (contents written in advance) --- */
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)
 {
@@ -174,7 +174,7 @@ static void unstage(void *self, st_stage *stage)
     }
 }
 
-/* --- records, under the lock --- */
+/* --- storing records, with the lock held --- */
 
 static kept_mesh **place_of(kept_journal *journal, const char *id)
 {
@@ -233,7 +233,7 @@ static kept_record *copy_of(const kept_mesh *mesh, const st_record *record)
     return out;
 }
 
-/* Encodes a content as parts. */
+/* Makes a stage from an encoded mesh, which consists of parts. */
 static st_stage *stage_of(const unsigned char *body, size_t size)
 {
     st_stage *stage = calloc(1, sizeof *stage);
@@ -246,7 +246,7 @@ static st_stage *stage_of(const unsigned char *body, size_t size)
     return stage;
 }
 
-/* Stores the first record of a mesh, which is its base, the record with a whole content. */
+/* Stores the first record of a mesh: its base, the record with the whole mesh. */
 static void keep_first(kept_journal *journal, const st_record *record)
 {
     kept_mesh *mesh = calloc(1, sizeof *mesh);
@@ -326,7 +326,7 @@ static void rebase(void *self, st_stage *stage, const st_record *facts, uint64_t
     pthread_mutex_unlock(&journal->lock);
 }
 
-/* --- reading --- */
+/* --- reading records --- */
 
 static st_status open_mesh(void *self, const char *id, st_card *card, st_reader **reader)
 {
@@ -454,7 +454,7 @@ static uint64_t count_meshes(void *self)
     return count;
 }
 
-/* --- for tests --- */
+/* --- functions for tests --- */
 
 size_t kept_journal_staged_edits(kept_journal *journal)
 {
@@ -497,7 +497,8 @@ static void tell_health(void *self, st_health *out)
 
 st_journal kept_journal_open(kept_journal *journal)
 {
-    st_journal out = st_journal_memory(); /* it reports that everything is durable */
+    /* functions not set below are those of a journal for which everything is durable */
+    st_journal out = st_journal_memory();
     out.self = journal;
     out.keeps = true;
     memcpy(out.secret, journal->secret, sizeof out.secret);

@@ -16,7 +16,7 @@
 static const he_kind kinds[] = {HE_VERTEX, HE_HALFEDGE, HE_FACE};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* --- tables --- */
+/* --- rows and tables --- */
 
 static void drop_column(mirror *m, size_t i)
 {
@@ -38,7 +38,7 @@ void mirror_clear(mirror *m)
     *m = (mirror){0};
 }
 
-/* Appends a material to the copied table of materials. */
+/* Appends a material to the text of the copied table of materials. */
 static void add_material(mirror *m, const char *name, const double numbers[9], bool two_sided)
 {
     size_t length = m->materials == NULL ? 0 : strlen(m->materials);
@@ -114,7 +114,7 @@ uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from)
     return HE_NONE;
 }
 
-/* --- columns --- */
+/* --- attributes, each a column of values --- */
 
 static mirror_column *add_column(mirror *m, he_kind domain, const char *name, size_t components)
 {
@@ -209,7 +209,7 @@ static void take_column(mirror *m, const he_column *from)
     }
 }
 
-/* --- a dump --- */
+/* --- reading a whole mesh --- */
 
 static void put_vertex(mirror *m, uint32_t id, const double position[3], uint32_t halfedge)
 {
@@ -276,8 +276,8 @@ static void read_numbers(const cJSON *list, double *out, size_t count)
     }
 }
 
-/* Rounds the values of a column of floats to float, because the shortest text of a float reads back
- * as a double that differs from it. */
+/* Rounds the values of a column of floats to float. The shortest text of a float, read as a double,
+ * differs from the float. */
 static void round_numbers(const mirror_column *c, double *values)
 {
     for (size_t k = 0; k < c->components && c->single; k++) {
@@ -306,7 +306,7 @@ void mirror_add_line(mirror *m, he_kind kind, const cJSON *element)
     }
 }
 
-/* --- an event --- */
+/* --- applying an event --- */
 
 static he_kind kind_of(const char *plural)
 {
@@ -470,7 +470,8 @@ static void apply_attributes(mirror *m, const cJSON *attributes)
     }
 }
 
-/* Requires that all elements in the sets of an event are live in the copy, or that none is. */
+/* Requires that all elements in the sets of an event are live in the copy, or, if `live` is false,
+ * that none is. */
 static void require_set(const mirror *m, const cJSON *sets, bool live)
 {
     const cJSON *set, *item;
@@ -502,7 +503,7 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     require_set(m, json_member(data, "modified"), true);
     apply_columns(m, data);
     const cJSON *materials = cJSON_GetObjectItem(data, "materials");
-    if (materials != NULL) { /* if a row changed, the whole table is sent */
+    if (materials != NULL) { /* an event that changes a row has the whole table */
         mirror_set_materials(m, materials);
     }
     apply_deleted(m, json_member(data, "deleted"));
@@ -517,7 +518,7 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     return MIRROR_APPLIED;
 }
 
-/* --- comparing --- */
+/* --- comparing two copies --- */
 
 static mirror_row row_of(const mirror_table *table, size_t i)
 {

@@ -1,7 +1,8 @@
-/* mirror.h - a client's copy of a mesh: plain tables, filled from a dump and updated by events.
+/* mirror.h - a client's copy of a mesh: plain tables that are filled by reading the whole mesh and
+ * then updated by events.
  *
- * The copy derives nothing by itself: what an event does not contain is missing from the copy, so a
- * comparison with the mesh shows it. */
+ * The copy derives nothing by itself. What an event does not contain is missing from the copy, so
+ * that a comparison with the mesh shows what is missing. */
 #ifndef TESTS_MIRROR_H
 #define TESTS_MIRROR_H
 
@@ -11,12 +12,13 @@
 
 enum { MIRROR_TEXT = 200, MIRROR_LINKS = 4, MIRROR_COMPONENTS = 16 };
 
-/* A row of the copy. A vertex has the link half-edge, a half-edge has next, prev, origin and face,
- * a face has half-edge; a vertex also has a position. */
+/* A row of the copy, for one element. The links of a vertex are its half-edge; those of a half-edge
+ * are next, prev, origin and face; those of a face are its half-edge. Only vertices have a
+ * position. */
 typedef struct mirror_row {
     bool live;
     double position[3];
-    uint32_t link[MIRROR_LINKS]; /* HE_NONE for null */
+    uint32_t link[MIRROR_LINKS]; /* HE_NONE if the link is null */
 } mirror_row;
 
 typedef struct mirror_table {
@@ -28,23 +30,24 @@ typedef struct mirror_column {
     he_kind domain;
     char name[64];
     size_t components, rows;
-    bool single; /* the values are floats, else doubles */
+    bool single; /* true if the values are floats, false if they are doubles */
     double fallback[MIRROR_COMPONENTS];
-    char *labels;    /* one per line; NULL: none */
-    double *values;  /* one per row; rows beyond the end have the default */
+    char *labels;    /* the labels of the values, one per line; NULL: none */
+    double *values;  /* values of each row; rows beyond the end have the default */
     size_t capacity; /* number of rows allocated */
 } mirror_column;
 
 typedef struct mirror {
     uint64_t revision;
-    mirror_table tables[HE_KIND_COUNT]; /* for vertices, half-edges and faces */
+    /* one for each kind of element; that of edges is not used */
+    mirror_table tables[HE_KIND_COUNT];
     mirror_column *columns;
     size_t column_count;
-    char *materials; /* the table as text, one line per row; NULL: empty */
+    char *materials; /* the table of materials as text, one line per row; NULL: empty */
 } mirror;
 
 void mirror_clear(mirror *m);
-/* Copies `mesh` at `revision`. */
+/* Makes a copy of `mesh`, which has this revision. */
 void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision);
 /* Adds an element from one line of GET .../vertices, .../halfedges or .../faces. */
 void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
@@ -52,25 +55,25 @@ void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
  * of GET .../attributes/{domain}/{name}. */
 void mirror_add_attribute(mirror *m, const cJSON *attribute);
 void mirror_add_values(mirror *m, he_kind domain, const char *name, const cJSON *page);
-/* Sets the table of materials from the list of GET .../materials. */
+/* Replaces the table of materials by the list that GET .../materials answers. */
 void mirror_set_materials(mirror *m, const cJSON *list);
 
 typedef enum mirror_step {
     MIRROR_APPLIED,
-    MIRROR_KNOWN, /* the copy already had this revision */
-    MIRROR_LOST   /* the copy lacks a revision before this one: fetch the mesh again */
+    MIRROR_KNOWN, /* the copy already had the revision of the event */
+    MIRROR_LOST   /* the copy lacks an earlier revision, so the client must fetch the whole mesh */
 } mirror_step;
 
-/* Applies the data of an `edit` event to the copy. Fails the test if the sets in it contradict the
- * copy. */
+/* Applies the data of an `edit` event to the copy. Fails the test if the sets of elements in the
+ * event contradict the copy. */
 mirror_step mirror_apply(mirror *m, const cJSON *data);
 
-/* Returns whether all links and values of two copies are equal; if not, `text` names the
+/* Returns whether all links and values of two copies are equal; if not, `text` describes the first
  * difference. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
-/* Returns the first live element from `from` on, wrapping around at the end; HE_NONE if there is
- * none. Edges are found by their half-edges. */
+/* Returns the first live element with an id from `from` on, continuing at 0 after the last id;
+ * HE_NONE if no element is live. An edge is live if its half-edges are in the copy. */
 uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
 size_t mirror_count(const mirror *m, he_kind kind);
 

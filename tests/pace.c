@@ -27,8 +27,8 @@ double pace_unit(void)
     for (uint32_t i = 0; i < WORDS; i++) {
         words[i] = i * 2654435761U;
     }
-    /* Each read depends on the one before it, and the sum is used, so that the compiler cannot
-     * remove the reads. */
+    /* Each read depends on the previous one and the sum is used, so that the compiler cannot remove
+     * the reads. */
     uint32_t at = 0;
     for (uint32_t i = 0; i < STEPS; i++) {
         at = (words[at % WORDS] ^ at) * 1664525U + i;

@@ -46,7 +46,7 @@ static void star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Makes a comb: all points but two at the bottom are tips of teeth or bottoms of gaps. */
+/* Makes a comb: all points but two at the bottom are tips of its teeth or bottoms of its gaps. */
 static void comb(uint32_t n, he_vec3 *out)
 {
     out[0] = (he_vec3){0, 0, 0};
@@ -65,7 +65,7 @@ static void tilted_comb(uint32_t n, he_vec3 *out)
     turn_all(n, out, TURN / 8);
 }
 
-/* Makes two rows of teeth, above and below, that reach into each other's gaps. */
+/* Makes a polygon with two rows of teeth, above and below, that reach into each other's gaps. */
 static void interlocked(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -75,7 +75,7 @@ static void interlocked(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Makes a zigzag: the teeth of interlocked(), longer and rotated. */
+/* Makes a zigzag: the polygon of interlocked() with longer teeth, rotated. */
 static void zigzag(uint32_t n, he_vec3 *out)
 {
     interlocked(n, out);
@@ -89,8 +89,8 @@ static void zigzag(uint32_t n, he_vec3 *out)
 static void spiral(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
-    /* The spiral gets the largest number of turns for which the sides of a turn do not cross the
-     * next one. */
+    /* The spiral gets the largest number of turns for which the sides of one turn do not cross the
+     * next turn. */
     double turns = fmin(40, cbrt(0.03 * half * half));
     for (uint32_t i = 0; i < half; i++) {
         double angle = TURN * turns * i / half, radius = 1 + angle / TURN;
@@ -170,8 +170,8 @@ static void random_star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* The cells of a square grid that are connected as a tree; each has a bit for each side that is
- * open to a neighbour, and the bit 16 once it has been reached. */
+/* The cells of a square grid that are connected as a tree. The bits of a cell tell which sides are
+ * open to a neighbour; the bit 16 tells that the cell was reached. */
 typedef struct cells {
     uint32_t side, *open;
 } cells;
@@ -214,8 +214,8 @@ static he_vec3 corner_of_cell(const cells *c, uint32_t at, uint32_t which)
     return (he_vec3){column + corner[which][0], row + corner[which][1], 0};
 }
 
-/* Walks along the wall on the right until it is back at the start; returns the number of
- * corners. */
+/* Walks along the walls of the maze, with the wall on its right, until it is back at the start.
+ * Returns the number of corners. */
 static uint32_t walk_outline(const cells *c, he_vec3 *out)
 {
     uint32_t at = 0, d = 0, made = 0;
@@ -235,8 +235,8 @@ static uint32_t walk_outline(const cells *c, he_vec3 *out)
     return made;
 }
 
-/* Makes the outline of a tree of cells, which has at most four corners per cell; the remaining
- * corners lie on straight sides. */
+/* Makes the outline of a maze, a tree of cells. The outline has at most four corners per cell;
+ * further corners are put on straight sides. */
 static void maze(uint32_t n, he_vec3 *out)
 {
     cells c = {.side = (uint32_t)sqrt(n / 4.0) + 1};
@@ -247,8 +247,8 @@ static void maze(uint32_t n, he_vec3 *out)
     }
     grow_tree(&c, n / 4, stack);
     uint32_t made = walk_outline(&c, out), left = n - made;
-    /* The corners that are missing are spread over the sides, from the last side to the first, so
-     * that the positions can be moved in place. */
+    /* The corners that are still missing are spread over the sides. The loop goes from the last
+     * side to the first, so that it can move the positions in place. */
     he_vec3 end = out[0];
     for (uint32_t i = made, to = n; i-- > 0;) {
         uint32_t extra = (uint32_t)((uint64_t)left * (i + 1) / made - (uint64_t)left * i / made);
@@ -308,7 +308,7 @@ static void wound(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Makes a polygon that visits the same four points again and again. */
+/* Makes a polygon that visits four points again and again. */
 static void repeated(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -316,8 +316,8 @@ static void repeated(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Makes a disc with a hole, connected to its outline by a bridge that is walked in both
- * directions. */
+/* Makes a disc with a hole. A bridge, which the outline walks in both directions, connects the hole
+ * with the outside. */
 static void keyhole(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -329,7 +329,7 @@ static void keyhole(uint32_t n, he_vec3 *out)
     out[n - 1] = out[half];
 }
 
-/* Makes a figure eight. */
+/* Makes a figure eight, whose outline crosses itself. */
 static void crossed(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {

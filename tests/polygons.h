@@ -8,16 +8,16 @@
 
 typedef struct polygon_shape {
     const char *name;
-    bool simple; /* its sides do not touch or cross, except neighbours at their corner */
-    /* Makes the positions of n corners, counter-clockwise, with z = 0; n must be at least 64 and
-     * even. */
+    bool simple; /* no two sides touch or cross, except neighbours at their common corner */
+    /* Writes the positions of n corners, counter-clockwise, with z = 0; n must be even and at least
+     * 64. */
     void (*make)(uint32_t n, he_vec3 *out);
 } polygon_shape;
 
 extern const polygon_shape polygon_shapes[];
 extern const unsigned polygon_shape_count;
 
-/* Makes a mesh of one face with these corners; returns NULL when memory is out. */
+/* Makes a mesh of one face with these corners; returns NULL if memory is out. */
 he_mesh *polygon_mesh(const he_vec3 *points, uint32_t n);
 
 #endif

@@ -12,7 +12,7 @@
 typedef struct draft {
     md_random *random;
     const mirror *mesh;
-    uint32_t halfedge; /* arguments are chosen in its neighbourhood */
+    uint32_t halfedge; /* the arguments of the edit are chosen near this half-edge */
     char *text;
     size_t length;
 } draft;
@@ -35,7 +35,8 @@ static uint32_t link_of(const draft *d, uint32_t halfedge, enum link which)
     return d->mesh->tables[HE_HALFEDGE].rows[halfedge].link[which];
 }
 
-/* Returns a half-edge a few random steps across faces and edges from the draft's own. */
+/* Returns a half-edge a few random steps, across faces and edges, from the half-edge of the
+ * draft. */
 static uint32_t near_halfedge(draft *d)
 {
     uint32_t h = d->halfedge;
@@ -74,7 +75,8 @@ static uint32_t element(draft *d, he_kind kind)
     return HE_NONE;
 }
 
-/* Puts `count` consecutive corners along a hole: a face of them would fill a part of the hole. */
+/* Writes `count` consecutive vertices of a hole; a face with these corners would fill a part of the
+ * hole. */
 static void put_cycle(draft *d, uint32_t count)
 {
     uint32_t h = d->halfedge;
@@ -89,7 +91,8 @@ static void put_point(draft *d)
         2 * md_unit(d->random) - 1);
 }
 
-/* Puts a small whole number, because many steps of an operation would make the mesh large. */
+/* Writes a whole number that is small, because many steps of an operation would make the mesh
+ * large. */
 static void put_whole(draft *d, const he_param *p)
 {
     enum { MANY = 400 };
@@ -105,7 +108,7 @@ static void put_number(draft *d, const he_param *p)
     }
     bool ranged = (p->flags & HE_RANGE) != 0 && p->max - p->min < 1e6;
     double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
-    /* the tolerance is kept small, because a large one would merge the whole mesh */
+    /* the tolerance is small, because a large one would merge the whole mesh */
     high = strcmp(p->name, "tolerance") == 0 ? 0.05 : high;
     put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
 }
@@ -163,7 +166,7 @@ static void put_value(draft *d, const he_param *p)
     }
 }
 
-/* Returns whether parameter i is given: of several alternative parameters one is chosen at
+/* Returns whether parameter i is in the request: of several alternatives, one is chosen at
  * random. */
 static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
 {
@@ -181,7 +184,7 @@ static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
            (md_chance(d->random, 40) || (required && later == 0));
 }
 
-/* Returns the half-edge from the target of h to the vertex v, or HE_NONE. */
+/* Returns the half-edge from the target of h to the vertex v; HE_NONE if there is none. */
 static uint32_t find_link(const draft *d, uint32_t h, uint32_t v)
 {
     uint32_t first = link_of(d, h, NEXT), k = first;
@@ -194,8 +197,8 @@ static uint32_t find_link(const draft *d, uint32_t h, uint32_t v)
     return HE_NONE;
 }
 
-/* Puts three edges that form a cycle without being a face, where the mesh can be split in two.
- * Returns false if none is found. */
+/* Writes three edges that form a cycle but no face, so that the mesh can be split there. Returns
+ * false if it finds none. */
 static bool put_neck(draft *d)
 {
     uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count;
@@ -238,7 +241,7 @@ static bool on_loop(const draft *d, uint32_t loop, uint32_t h)
     return false;
 }
 
-/* Puts a half-edge of each of two holes. Returns false if the mesh has fewer holes. */
+/* Writes one half-edge of each of two holes. Returns false if the mesh has fewer than two holes. */
 static bool put_holes(draft *d)
 {
     uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count, hole = HE_NONE;
@@ -264,7 +267,8 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
     draft d = {.random = r, .mesh = m, .text = text};
     char taken[HE_OP_PARAMS + 1] = "";
     d.halfedge = any(&d, HE_HALFEDGE);
-    /* Some operations need a hole, and holes are rare, so this looks for a half-edge beside one. */
+    /* Some operations need a hole, and holes are rare, so this searches for a half-edge next to
+     * one. */
     for (uint32_t tries = 0;
          md_chance(r, 97) && tries < 60 && link_of(&d, d.halfedge, FACE) != HE_NONE; tries++) {
         if (tries == 0 && md_chance(r, 60)) {

@@ -27,8 +27,8 @@ void sse_add(sse *s, const char *bytes, size_t length)
     s->length += length;
 }
 
-/* Takes the first block, up to its blank line, from the bytes that have arrived; returns false if
- * it is not complete. */
+/* Moves the first block of lines, up to its blank line, from the received bytes to `block`. Returns
+ * false if the block has not arrived completely. */
 static bool next_block(sse *s)
 {
     for (size_t i = 0; i + 1 < s->length; i++) {

@@ -6,22 +6,22 @@
 #include <stddef.h>
 
 typedef struct sse {
-    char *bytes; /* bytes that are not parsed yet */
+    char *bytes; /* bytes that were received but not parsed yet */
     size_t length, capacity;
-    char *block; /* the block parsed last */
-    char id[64]; /* the last id received, with or without an event */
-    size_t idle; /* number of comments */
+    char *block; /* lines of the event that was parsed last */
+    char id[64]; /* the id received last, with or without an event */
+    size_t idle; /* number of comments received */
     size_t blocks;
 } sse;
 
 typedef struct sse_event {
-    const char *name; /* "message" if the event has no name */
-    const char *data; /* NUL-terminated; both texts live until the next call */
+    const char *name; /* name of the event; "message" if it has none */
+    const char *data; /* NUL-terminated; name and data are valid until the next call */
 } sse_event;
 
 void sse_clear(sse *s);
 void sse_add(sse *s, const char *bytes, size_t length);
-/* Finds the next event that has data; returns false if none has arrived completely. */
+/* Finds the next event that has data; returns false if no such event has arrived completely. */
 bool sse_next(sse *s, sse_event *out);
 
 #endif

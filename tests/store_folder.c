@@ -85,7 +85,7 @@ void folder_copy(const char *from, const char *to)
     }
 }
 
-/* --- what the journal reported --- */
+/* --- what a journal reported to its listener --- */
 
 static void on_moved(void *context, uint64_t position)
 {
@@ -149,7 +149,7 @@ void told_end(told_journal *told)
     pthread_mutex_destroy(&told->lock);
 }
 
-/* --- records --- */
+/* --- records of meshes --- */
 
 static st_record next_record(kept_mesh *mesh, st_record_kind kind)
 {

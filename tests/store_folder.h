@@ -1,4 +1,4 @@
-/* store_folder.h - folders for the stores of tests, and records to write to these. */
+/* store_folder.h - folders for the stores of tests, and records that tests write to a journal. */
 #ifndef TESTS_STORE_FOLDER_H
 #define TESTS_STORE_FOLDER_H
 
@@ -12,27 +12,29 @@ enum { FOLDER_PATH = 256 };
 void folder_make(char out[FOLDER_PATH]);
 /* Removes the folder with all files and folders in it. */
 void folder_remove(const char *folder);
-/* Copies the files of a store without closing it, so that the copy is what a killed process would
+/* Copies the files of a store that is open, so that the copy is what a killed process would
  * leave. */
 void folder_copy(const char *from, const char *to);
-/* Reads a file of the folder; the caller frees the bytes. Returns NULL if there is none. */
+/* Reads a file of the folder; the caller must free the bytes. Returns NULL if there is no such
+ * file. */
 unsigned char *folder_read(const char *folder, const char *name, size_t *size);
 void folder_write(const char *folder, const char *name, const unsigned char *bytes, size_t size);
 
-/* A journal, and everything that it reported to its listener. */
+/* A journal, and what it has reported to its listener. */
 typedef struct told_journal {
     st_journal journal;
     pthread_mutex_t lock;
     pthread_cond_t changed;
     uint64_t position;
     unsigned losses;
-    st_loss loss; /* the last loss */
+    st_loss loss; /* the latest loss reported */
 } told_journal;
 
 void told_begin(told_journal *told, const st_journal *journal);
-/* Opens the store in a folder, and begins with its journal. */
+/* Opens the journal of the store in a folder and listens to it. */
 void told_open(told_journal *told, const char *folder);
-void told_wait(told_journal *told, uint64_t position); /* waits until it is durable or lost */
+/* Waits until this position is durable or lost. */
+void told_wait(told_journal *told, uint64_t position);
 unsigned told_losses(told_journal *told);
 void told_end(told_journal *told); /* closes the journal */
 
@@ -43,16 +45,16 @@ typedef struct kept_mesh {
     const he_mesh *content;
 } kept_mesh;
 
-/* Make a record that creates the mesh or replaces its whole content, and a record of an edit. The
- * caller must provide the body. */
+/* Make a record that creates the mesh or replaces the whole mesh, and a record of an edit. The
+ * caller must add the body. */
 st_record kept_content(kept_mesh *mesh);
 st_record kept_edit(kept_mesh *mesh);
 st_record kept_rename(kept_mesh *mesh, const char *name);
 st_record kept_remove(kept_mesh *mesh);
-/* Appends one record. Its body is `body`, or the encoded content if the record has a content that
- * was not staged. Returns the record's position, 0 if it is refused. */
+/* Appends one record. Its body is `body`, or the encoded mesh if the record has a content that was
+ * not written in advance. Returns the record's position, 0 if the record is refused. */
 uint64_t kept_append(const st_journal *journal, st_record record, const kept_mesh *mesh,
                      const void *body, size_t size);
-st_status kept_status(void); /* returns the reason of the last refusal */
+st_status kept_status(void); /* returns the reason of the latest refusal */
 
 #endif

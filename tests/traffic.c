@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-/* Writes a JSON string without cJSON, because cJSON allocates through the api, where a test may be
- * making allocations fail. */
+/* Writes a JSON string without cJSON. cJSON allocates through the api, whose allocations a test may
+ * be making fail. */
 static void write_string(FILE *out, const char *text)
 {
     fputc('"', out);
@@ -74,7 +74,7 @@ void traffic_record(const char *method, const char *target, const traffic_messag
     write_message(out, "answer", answer);
     fputs("}\n", out);
     assert_int_equal(fclose(out), 0);
-    /* A line is written by one call, because the threads of a test share the file and lines must
+    /* A line is written by one call, because threads of a test share the file and their lines must
      * not mix. */
     snprintf(path, sizeof path, "%s/c-%d.ndjson", folder, (int)getpid());
     int fd = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);

@@ -121,8 +121,8 @@ void arrays_assert_same(const arrays *a, const arrays *b)
     }
 }
 
-/* Checks that the triangles of each live face are consecutive and in order, that all other slots
- * for triangles are zeros, and that each vertex has its row. */
+/* Checks that the triangles of each live face are consecutive and in order, that the rows reserved
+ * for further triangles are zeros, and that each vertex has its row. */
 void arrays_check(const arrays *c, const he_mesh *m)
 {
     he_frame frame;

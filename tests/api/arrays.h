@@ -1,5 +1,6 @@
-/* arrays.h - a client of GET .../geometry, the arrays that a viewer draws: it fetches all rows
- * once, and from then on only the changes since the last revision it has. */
+/* arrays.h - a client of GET .../geometry, which answers with the arrays that a viewer draws. The
+ * client fetches all rows once, and from then on only the changes since the revision that it
+ * has. */
 #ifndef TESTS_API_ARRAYS_H
 #define TESTS_API_ARRAYS_H
 
@@ -10,24 +11,24 @@
 enum { HEADER = 96, ROW = 16, VERTEX_PART = 0, TRIANGLE_PART = 1 };
 
 typedef struct arrays {
-    uint64_t revision, layout; /* of the last answer; 0 before the first one */
+    uint64_t revision, layout; /* revision and layout of the last answer; 0 before the first one */
     char *rows[2];
     uint32_t count[2];
     char frame[32];
-    /* The number of answers with all rows, the number of answers with changes only, and the bytes
-     * in the latter. */
+    /* The number of answers with all rows, the number of answers with changes only, and the number
+     * of bytes in the answers with changes only. */
     uint64_t whole, changes, bytes;
 } arrays;
 
 void arrays_forget(arrays *c);
-/* arrays_ask requests what changed since the revision of the arrays, arrays_apply applies the body
- * of such an answer, and arrays_update does both. */
+/* arrays_ask requests the changes since the revision in `c`, arrays_apply applies the body of the
+ * answer to `c`, and arrays_update does both. */
 bench_reply arrays_ask(api_bench *b, const char *mesh, const arrays *c);
 void arrays_apply(arrays *c, const char *body, size_t length);
 void arrays_update(api_bench *b, const char *mesh, arrays *c);
 void arrays_assert_same(const arrays *a, const arrays *b);
-/* Checks that the triangles of each live face are consecutive and in order, that all other slots
- * for triangles are zeros, and that each vertex has its row. */
+/* Checks that the triangles of each live face are consecutive and in order, that the rows reserved
+ * for further triangles are zeros, and that each vertex has its row. */
 void arrays_check(const arrays *c, const he_mesh *m);
 
 /* Read little-endian numbers at any address, aligned or not. */

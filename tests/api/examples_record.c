@@ -18,7 +18,7 @@ static const uint64_t UNDO_BUDGET = (uint64_t)256 << 20;
 
 /* --- layout --- */
 
-/* Appends a value on one line. */
+/* Appends a JSON value without line breaks. */
 static void add_line(const api_examples *file, uint32_t value, api_text *out)
 {
     api_text text = {0};
@@ -46,7 +46,8 @@ static void add_indent(api_text *out, size_t depth)
     }
 }
 
-/* Appends a value that begins in column `column` and has a comma after it. */
+/* Appends a JSON value that begins in column `column` and is followed by a comma, on several lines
+ * if it does not fit on one. */
 static void lay_out(const api_examples *file, uint32_t value, size_t depth, size_t column,
                     api_text *out)
 {
@@ -90,7 +91,8 @@ void examples_lay_out(const char *json, size_t length, api_text *out)
 /* --- the session --- */
 
 typedef struct job {
-    char shown[NAME], real[NAME]; /* its id in the file, and in this session */
+    /* id of the job as the examples file shows it, and its id in the present run */
+    char shown[NAME], real[NAME];
 } job;
 
 typedef struct session {
@@ -111,7 +113,7 @@ const api_route *examples_route(const char *name)
     return NULL;
 }
 
-/* Reads a member that is a string; "" if there is none. */
+/* Reads a member that is a string; without that member `out` becomes "". */
 static void string_of(const session *s, uint32_t object, const char *name, char out[NAME])
 {
     const he_json *json = &s->file->json;
@@ -127,7 +129,7 @@ static void swap_bytes(api_text *text, const char *bytes, size_t length)
     assert_false(text->failed);
 }
 
-/* Replaces each `from` by `to`. */
+/* Replaces each occurrence of the string `from` by `to`. */
 static void replace_all(api_text *text, const char *from, const char *to)
 {
     api_text out = {0};
@@ -142,7 +144,8 @@ static void replace_all(api_text *text, const char *from, const char *to)
     api_text_clear(&out);
 }
 
-/* Replaces what a row of "differs" describes by what it shows. */
+/* Replaces each part of the text that matches the pattern in a row of the file's list "differs" by
+ * the text "shown" in that row. */
 static void show(const session *s, uint32_t row, api_text *text)
 {
     char after[NAME], form[NAME], shown[NAME], pattern[2 * NAME + 2];
@@ -166,7 +169,8 @@ static void show(const session *s, uint32_t row, api_text *text)
     regfree(&compiled);
 }
 
-/* Makes an answer the one that the file shows. */
+/* Replaces the parts of an answer that differ from run to run, such as ids, by what the file
+ * shows. */
 static void settle(const session *s, api_text *text)
 {
     const he_json *json = &s->file->json;

@@ -1,5 +1,5 @@
-/* fan.h - a vertex with many triangles around it. If the triangles cross each other, the search for
- * self-intersections takes long. */
+/* fan.h - a mesh in which many triangles share one vertex. If the triangles cross each other, the
+ * search for self-intersections takes long. */
 #ifndef TESTS_API_FAN_H
 #define TESTS_API_FAN_H
 

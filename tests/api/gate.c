@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-/* The secret of each token is its name followed by this word, so that a leak is noticed by
- * either. */
+/* The secret of each token is the token's name followed by this word. A search for the word finds a
+ * secret that an answer reveals. */
 #define SECRET "-s3cr3t"
 
 static const struct {
@@ -59,8 +59,8 @@ static void secret_of(const char *name, char out[80])
     snprintf(out, 80, "%s" SECRET, name);
 }
 
-/* Writes a file of tokens with all holders in the table except `without`; NULL: with all of
- * them. */
+/* Writes a file of tokens with all rows of the table of tokens, except the one named `without`
+ * unless that is NULL. */
 static void write_file(char out[FILE_BYTES], const char *without)
 {
     size_t used = 0;
@@ -75,7 +75,7 @@ static void write_file(char out[FILE_BYTES], const char *without)
     }
 }
 
-/* Sends a request and requires that no secret of any token appears in the answer. */
+/* Sends a request and requires that the answer contains no secret of any token. */
 static bench_reply ask_with(world *w, const char *method, const char *target,
                             const char *const *headers, const char *body)
 {
@@ -225,8 +225,8 @@ static bool are_alike(const bench_reply *x, const char *a, const bench_reply *y,
 
 /* --- what must hold --- */
 
-/* Sends requests without a valid token: every route that is not open must give one and the same
- * answer, whether the mesh in its path exists or not. */
+/* Sends requests without a valid token: all routes that need a token must give the same answer,
+ * whether the mesh in the path exists or not. */
 static void try_strangers(world *w)
 {
     static const char *const methods[] = {"GET",   "HEAD",   "POST",    "PUT",

@@ -1,19 +1,20 @@
-/* gate.h - tries every route of the table with every kind of token, and each limit of a client, and
- * counts the answers that are wrong. */
+/* gate.h - sends requests to every route with every kind of token, exceeds each limit of a client,
+ * and counts the answers that are wrong. */
 #ifndef TESTS_API_GATE_H
 #define TESTS_API_GATE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Returns the number of answers that break the rules of api/request/gate.h; if `tell`, prints
- * each. */
+/* Returns the number of answers that break the rules of api/request/gate.h; prints each of them if
+ * `tell` is set. */
 size_t gate_findings(bool tell);
 
-/* Seconds by which the wall clock of the service under test is ahead; its program adds them. */
+/* Number of seconds by which the service's clock is ahead of the real time. The test program adds
+ * them when the service reads the clock. */
 extern double gate_seconds_passed;
-/* Returns the number of limits of tokens and addresses, and of ends of tickets, that do not hold;
- * if `tell`, prints each. */
+/* Returns how many limits of tokens and addresses, and how many expiries of tickets, the service
+ * does not enforce; prints each of them if `tell` is set. */
 size_t gate_limit_findings(bool tell);
 
 #endif

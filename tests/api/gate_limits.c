@@ -15,7 +15,7 @@
 
 double gate_seconds_passed;
 
-/* Tokens, each with one limit. */
+/* The tokens of this test, with at most one limit each. */
 static const struct {
     const char *name, *limit;
 } tokens[] = {{"free", ""},       {"paced", "requests=1"},     {"maker", "meshes=1"},
@@ -37,7 +37,7 @@ static void found(world *w, const char *what)
     }
 }
 
-/* Sends a GET, or a POST of a body, with this token. */
+/* Sends a GET, or a POST if `body` is not NULL, with the token of this name. */
 static bench_reply ask(world *w, const char *token, const char *target, bool as_job,
                        const char *body)
 {
@@ -56,7 +56,7 @@ static int status_of(world *w, const char *token, const char *target, bool as_jo
     return status;
 }
 
-/* Returns how many of many requests in a row are refused. */
+/* Sends REQUESTS requests without a pause and returns how many of them are refused. */
 static int refused(world *w, const char *token)
 {
     int count = 0;
@@ -71,11 +71,12 @@ static void try_rates(world *w)
     if (refused(w, "free") > 0) {
         found(w, "a token without a limit is refused");
     }
-    /* None of these machines takes a second for each request. */
+    /* The token "paced" may send one request a second, and even a slow machine sends these requests
+     * faster. */
     if (refused(w, "paced") == 0) {
         found(w, "a token has more requests than its rate");
     }
-    char body[4096]; /* blanks are no JSON, but they count */
+    char body[4096]; /* a body of blanks is not JSON, but its bytes count toward the limit */
     memset(body, ' ', sizeof body - 1);
     body[sizeof body - 1] = '\0';
     if (status_of(w, "loud", "/v1/meshes/m/query", false, body) == 429 || refused(w, "loud") == 0) {
@@ -135,8 +136,8 @@ static void try_ends(world *w)
     }
 }
 
-/* With so many tokens in force a wrong one often falls into a bucket of the table that is not
- * empty, where its hash must be compared. */
+/* The number of tokens in force besides those with limits. With so many, an unknown token often has
+ * the same bucket in the hash table as a valid one, and the whole hashes must be compared. */
 enum { OTHERS = 2000, GUESSES = 100 };
 
 static void try_guesses(world *w)
@@ -152,7 +153,7 @@ static void try_guesses(world *w)
     }
 }
 
-/* Appends a line for a token and returns the new length. */
+/* Appends the line of a token to the file and returns the new length of the file. */
 static size_t add_token(char *file, size_t used, const char *name, const char *limit)
 {
     char secret[40], line[API_TOKEN_SHORT_LINE];

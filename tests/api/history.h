@@ -17,10 +17,10 @@ enum { TARGET = 200 };
 /* Sends a POST to a resource of the mesh, such as "edits". */
 bench_reply history_post(api_bench *b, const char *what, const char *body);
 
-/* Returns a member that is a number. */
+/* Returns the number in a member of the answer. */
 double history_number(const cJSON *object, const char *name);
 
-/* Returns the code of a problem. */
+/* Returns the error code of an answer that is a problem document. */
 const char *history_code(const bench_reply *r);
 
 /* Creates a cube (revision 1), pokes one of its faces (revision 2), deletes another face (3), and

@@ -50,9 +50,9 @@ static void link_halfedges(pg_mesh *pg)
         }
         pg->face_first[f] = find_halfedge(pg, pg->corners[f][0], pg->corners[f][1]);
     }
-    /* The next half-edge of a boundary half-edge is one that leaves the vertex where it arrives. At
-     * a bow-tie, a vertex with several fans of faces, several do: pg_learn_next decides which it
-     * is. */
+    /* The next half-edge of a boundary half-edge is a boundary half-edge that starts at its target.
+     * At a bow-tie, a vertex with several fans of faces, several half-edges qualify: pg_learn_next
+     * records which one the API has chosen. */
     for (unsigned h = 0; h < pg->halfedges; h++) {
         for (unsigned k = 0; k < pg->halfedges && pg->face[h] == PG_NONE; k++) {
             if (pg->face[k] == PG_NONE && pg->origin[k] == target(pg, h)) {
@@ -114,7 +114,7 @@ void pg_make(pg_mesh *pg, const char *faces, unsigned vertices)
     pg_make_corners(pg, corners, count, vertices);
 }
 
-/* --- choices of the API --- */
+/* --- choices that the API makes --- */
 
 bool pg_is_isolated(const pg_mesh *pg, unsigned v)
 {
@@ -227,7 +227,7 @@ static unsigned read_off(const pg_mesh *pg, const char *kind, const char *what, 
     if (strcmp(what, "faces") == 0) {
         return pg->face[strcmp(kind, "face") == 0 ? h ^ 1u : h];
     }
-    return h; /* for the relations outgoing, halfedges, loop and ring */
+    return h; /* current half-edge in the relations outgoing, halfedges, loop and ring */
 }
 
 void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out)
@@ -324,8 +324,8 @@ void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_
     }
 }
 
-/* Returns the half-edge that follows `h` in a walk along edges or, if `across` is set, across
- * faces; PG_NONE where the walk ends. */
+/* Returns the half-edge that follows `h` in a walk along edges, or across faces if `across` is set;
+ * PG_NONE at the end of the walk. */
 static unsigned onward(const pg_mesh *pg, bool across, unsigned h)
 {
     pg_list about = {.count = 0};

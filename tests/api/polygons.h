@@ -1,8 +1,10 @@
-/* polygons.h - a small mesh as lists of corners, in which everything is found by searching.
+/* polygons.h - a small mesh stored as lists of corners, without links: all neighbours are found by
+ * searching.
  *
- * It is slow and obvious, and the answers of the API are compared with it. Where the design leaves
- * a choice, pg_learn takes it from the API and checks that it is allowed: the half-edge that a
- * vertex or face stores, and the order in which boundary links connect the fans of a bow-tie. */
+ * The searches are slow but obviously right, so that the answers of the API can be compared with
+ * them. Where the API has a choice, pg_learn_vertex, pg_learn_face and pg_learn_next record what it
+ * chose and check that it is allowed: the half-edge that a vertex or face stores, and the order in
+ * which boundary links connect the fans of faces at a bow-tie. */
 #ifndef TESTS_API_POLYGONS_H
 #define TESTS_API_POLYGONS_H
 
@@ -29,7 +31,8 @@ typedef struct pg_mesh {
  * least `vertices` vertices. Edges are numbered in the order in which the faces name them, and each
  * edge is directed as in the first face that has it. */
 void pg_make(pg_mesh *pg, const char *faces, unsigned vertices);
-/* Makes a mesh from any list of corners: PG_NONE ends a face. */
+/* Makes a mesh from faces, each a list of vertices that ends in PG_NONE; all faces are in one
+ * list. */
 void pg_make_corners(pg_mesh *pg, const unsigned *corners, size_t count, unsigned vertices);
 
 /* Records which half-edge the API has chosen to store with a vertex or a face; fails the test if
@@ -38,14 +41,14 @@ void pg_learn_vertex(pg_mesh *pg, unsigned v, unsigned halfedge);
 void pg_learn_face(pg_mesh *pg, unsigned f, unsigned halfedge);
 void pg_learn_next(pg_mesh *pg, unsigned h, unsigned next);
 
-/* An element, such as the "vertex" 3. */
+/* An element of the mesh, such as the vertex 3: `kind` is "vertex" and `id` is 3. */
 typedef struct pg_element {
     const char *kind;
     unsigned id;
 } pg_element;
 
-/* Finds the elements in a relation to an element: `what` names the relation, as in "faces" of the
- * "vertex" 3. */
+/* Finds the elements that are in the relation `what` to the element `of`, such as the "faces" of
+ * vertex 3. */
 void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out);
 bool pg_is_isolated(const pg_mesh *pg, unsigned v);
 bool pg_is_boundary(const pg_mesh *pg, unsigned v);
@@ -54,21 +57,22 @@ double pg_length(const pg_mesh *pg, unsigned e);
 /* Returns the area of a face; `out` becomes its area vector, half of the sum of p[i] x p[i + 1]. */
 double pg_area(const pg_mesh *pg, unsigned f, double out[3]);
 
-/* A breadth-first walk from a vertex along edges or from a face across them: `depth` is its maximum
- * number of steps, `limit` its maximum number of elements, 0: no limit. */
+/* A breadth-first walk that starts at a vertex and goes along edges, or starts at a face and goes
+ * across edges. `depth` is the maximum number of steps, `limit` the maximum number of elements that
+ * are found; a limit of 0 means no limit. */
 typedef struct pg_flood {
     pg_element from;
     unsigned depth, limit;
 } pg_flood;
 void pg_breadth_first(const pg_mesh *pg, const pg_flood *flood, pg_list *ids, pg_list *depths);
-/* Finds the distances between all pairs of vertices, in edges or by length; HUGE_VAL: not
- * connected. */
+/* Finds the distance between each two vertices, as a number of edges or by length; HUGE_VAL if no
+ * path connects them. */
 void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_VERTICES]);
-/* Finds the edges of the loop through `edge`, which goes straight on at vertices of four edges, or
- * of its ring, which goes across faces of four sides. */
+/* Finds the edges of the edge loop through `edge`, which goes straight on at vertices of four
+ * edges, or, if `ring` is set, of the edge ring, which goes across faces of four sides. */
 void pg_edges(const pg_mesh *pg, bool ring, unsigned edge, pg_list *out, bool *closed);
-/* Finds the boundary loops. Each starts with its lowest half-edge, and the loops are in the order
- * of these. Returns the number of loops. */
+/* Finds the boundary loops and returns their number. Each loop starts with its lowest half-edge,
+ * and the loops are in the order of their lowest half-edges. */
 unsigned pg_boundaries(const pg_mesh *pg, pg_list loops[PG_FACES]);
 /* Finds for each face the lowest face in its connected component. */
 void pg_components(const pg_mesh *pg, bool by_vertex, unsigned lowest[PG_FACES]);

@@ -25,23 +25,24 @@ typedef struct piece {
 } piece;
 
 struct api_bench {
-    st_pool *pool; /* the store's pool of threads */
+    st_pool *pool; /* the thread pool of the store */
     st_store *store;
     api_job_table *jobs;
     piece waiting[BENCH_JOBS];
     size_t waits, most;
-    api_tokens *tokens; /* NULL: no token is needed */
-    const char *file;   /* file of tokens for the next reload; NULL: there is none */
-    char bearer[300];   /* "": no token is sent */
+    api_tokens *tokens; /* NULL: requests need no token */
+    /* contents of the file of tokens that the next reload reads; NULL: there is no file */
+    const char *file;
+    char bearer[300]; /* token sent with each request; "": none */
     uint64_t address;
     bool is_beyond;
-    const char *kept; /* contents of the file that a backup answers */
-    bool is_lent;     /* a backup is being read */
+    const char *kept; /* contents of the backup file that POST /v1/admin/backup answers with */
+    bool is_lent;     /* an answer with the backup file exists and is not freed yet */
     api_service *service;
 };
 
-/* Puts a job into the queue of the test: there are no threads, a job runs when bench_run_jobs calls
- * it. */
+/* Puts a job into the bench's own queue. The bench has no threads: the job runs when the test calls
+ * bench_run_jobs. */
 static bool submit(void *pool, const st_task *task)
 {
     api_bench *b = pool;
@@ -378,9 +379,9 @@ bool bench_try(api_bench *b, const bench_request *sent, bench_reply *out)
     return true;
 }
 
-/* Writes a request and its answer to the recorded traffic, which a later test compares with the
- * OpenAPI document. Tests with failing allocations record nothing, because their answers are cut
- * short. */
+/* Writes a request and its answer to the recorded traffic, which the last step of `make test`
+ * compares with the OpenAPI document. Tests with failing allocations record nothing, because their
+ * answers may be incomplete. */
 static void record(const bench_request *sent, const bench_reply *r)
 {
     const char *const *headers = sent->headers;

@@ -1,5 +1,5 @@
-/* request.h - the test bench: requests to the api without a socket, on the same kind of store as
- * the daemon's. */
+/* request.h - the test bench, which calls the api without a socket. Its store is of the same kind
+ * as that of the daemon. */
 #ifndef TESTS_API_REQUEST_H
 #define TESTS_API_REQUEST_H
 
@@ -9,48 +9,51 @@
 
 #include <cjson/cJSON.h>
 
-typedef struct api_bench api_bench; /* a service over an empty store */
+/* A service with an empty store, and the settings for the next requests to it. */
+typedef struct api_bench api_bench;
 
 api_bench *bench_new(void);
-/* Makes a bench whose store uses this journal; the store of bench_new() uses a journal in
- * memory. */
+/* Makes a bench whose store writes to this journal; the store of bench_new() has a journal in
+ * memory only. */
 api_bench *bench_new_over(const st_journal *journal);
-/* Makes a bench with this limit for the memory of undo, and with this limit for an uploaded mesh;
- * `upload` 0: the limit of bench_new(). */
+/* Makes a bench with a memory budget `undo` for undo, and a limit `upload` on the bytes of an
+ * uploaded mesh; `upload` 0 means the limit of bench_new(). */
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
-/* Makes a service that requires the tokens in `file` (api/token/token_file.h). */
+/* Makes a bench whose service requires the tokens in the text `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
-/* Makes a service with limits for clients without a token, each of which may use the requests of
- * `burst` seconds at once; `file` NULL: no tokens are required. */
+/* Makes a bench with rate limits for clients without a token. Such a client may use what the limit
+ * allows in `burst` seconds at once. `file` is the text of a file of tokens; NULL: no token is
+ * required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
-/* Sets the client address of further requests; a new bench has address 0. `is_beyond`: the address
- * has one connection more than it may have. */
+/* Sets the client address of all further requests; a new bench has the address 0. `is_beyond` means
+ * that this address has one connection more than it is allowed. */
 void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
 /* Sets the file of tokens that the next POST /v1/admin/reload will read. */
 void bench_change_tokens(api_bench *b, const char *file);
-/* Makes POST /v1/admin/backup answer with a file of this text. NULL: the store is in memory only,
- * of which there is no backup. */
+/* Makes POST /v1/admin/backup answer with a file that contains this text. NULL: the answer says
+ * that a store in memory has no backup. */
 void bench_keep(api_bench *b, const char *text);
-/* Makes further requests without a header Authorization send this token; NULL: no token. */
+/* Sends this token with all further requests that have no header Authorization; NULL: no token. */
 void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 st_store *bench_store(api_bench *b);
-/* Runs up to `most` waiting jobs, in order, on this thread; jobs run only here. */
+/* Runs the waiting jobs in order on the calling thread, at most `most` of them. Jobs run only
+ * during this call. */
 void bench_run_jobs(api_bench *b, size_t most);
-/* Sets how many jobs may wait; it is BENCH_JOBS in a new bench. */
+/* Sets how many jobs may wait in the queue; a new bench lets BENCH_JOBS wait. */
 enum { BENCH_JOBS = 32 };
 void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {
     int status;
-    char *body; /* ends in NUL; streams are read to their end, or until they would wait */
+    char *body; /* ends in NUL; of a stream, all that can be read without waiting */
     size_t length;
-    cJSON *json;       /* NULL: the body is not JSON */
-    const char *route; /* template, "-" if no route matched */
+    cJSON *json;       /* the body, parsed; NULL: the body is not JSON */
+    const char *route; /* path template of the route, "-" if no route matched */
     api_header headers[API_ANSWER_HEADERS];
     size_t header_count;
-    api_exchange *exchange; /* owner of the headers */
+    api_exchange *exchange; /* the exchange whose memory the headers are in */
 } bench_reply;
 
 /* Sends a request. `target` is path and query. `headers` are pairs of name and value, ended by
@@ -63,14 +66,15 @@ typedef struct bench_request {
     const char *method, *target;
     const char *const *headers;
     const char *body;
-    size_t length; /* bytes of the body; 0 if there is none */
+    size_t length; /* number of bytes in the body; 0 if there is no body */
 } bench_request;
 bench_reply bench_send_bytes(api_bench *b, const bench_request *request);
-/* Sends a request and does not parse the answer; returns false if the service could not allocate
- * the exchange. */
+/* Sends a request without parsing the body of the answer as JSON. Returns false if the service
+ * could not allocate the exchange. */
 bool bench_try(api_bench *b, const bench_request *request, bench_reply *out);
-const char *bench_header(const bench_reply *r, const char *name); /* returns "" when absent */
-/* Returns a member of the answer, which must be a string. */
+/* Returns "" if the answer has no such header. */
+const char *bench_header(const bench_reply *r, const char *name);
+/* Returns a member of the answer's JSON; the member must be a string. */
 const char *bench_text(const bench_reply *r, const char *member);
 void bench_reply_free(bench_reply *r);
 

@@ -146,8 +146,8 @@ void specimen_put(api_bench *b, const pg_mesh *pg)
     bench_reply_free(&r);
 }
 
-/* Asks the API once for the choices that it is free to make, such as the half-edge that it stores
- * with a vertex, so that later answers can be predicted exactly. */
+/* Asks the API for the choices that it is free to make, such as the half-edge that it stores with a
+ * vertex, so that the test can predict all later answers exactly. */
 static void learn(api_bench *b, pg_mesh *pg)
 {
     for (unsigned h = 0; h < pg->halfedges; h++) {

@@ -1,4 +1,5 @@
-/* specimens.h - small meshes in the API, and the texts that the API must answer about them. */
+/* specimens.h - small meshes that tests create through the API, and the texts that the API must
+ * answer about them. */
 #ifndef TESTS_API_SPECIMENS_H
 #define TESTS_API_SPECIMENS_H
 
@@ -47,29 +48,29 @@ void page_expect(const bench_reply *r, const page *wanted);
 bench_reply specimen_get(api_bench *b, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Sends a GET to the target, whose answer must be this text. */
+/* Sends a GET and requires that the answer is this text. */
 void page_expect_get(api_bench *b, const page *wanted, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Sends a POST, whose answer must be this text. */
+/* Sends a POST and requires that the answer is this text. */
 void page_expect_post(api_bench *b, const page *wanted, const char *target, const char *body);
 
 /* --- specimens --- */
 
-/* In this order: an empty mesh, closed and open meshes, a bow-tie, isolated vertices, polygons,
- * faces that share two edges, two components, two components that touch at a vertex, three fans
- * around a vertex, and a mesh of genus 1. */
+/* Number of specimens. They are, in this order: an empty mesh, closed and open meshes, a bow-tie,
+ * isolated vertices, polygons, faces that share two edges, two components, two components that
+ * touch at a vertex, three fans around a vertex, and a mesh of genus 1. */
 enum { SPECIMENS = 14 };
 extern const char *const specimens[SPECIMENS];
 
-/* Creates the mesh "m" in the API. */
+/* Creates the mesh "m" in the API from these polygons. */
 void specimen_put(api_bench *b, const pg_mesh *pg);
 
-/* Creates the mesh in the API and as lists of polygons, with one isolated vertex in addition to
- * those of the faces. */
+/* Creates one specimen both as the mesh "m" in the API and as lists of polygons. The mesh has one
+ * isolated vertex in addition to the vertices of the faces. */
 api_bench *specimen_begin(const char *faces, pg_mesh *pg);
 
-/* Begins with each specimen in turn, and calls `try` with it. */
+/* Calls `try` for each specimen, with a new service that has this specimen as its only mesh. */
 void for_each_specimen(void (*try)(api_bench *b, const pg_mesh *pg));
 
 enum { VERTEX, HALFEDGE, EDGE, FACE, KINDS };

@@ -74,8 +74,8 @@ static void wait_for_wake(listener *l)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* Returns the name of the next event, "" at the end of the stream. If `patient` is false, also
- * returns "" where the stream has no event at present. */
+/* Waits for the next event and returns its name, or "" at the end of the stream. If `patient` is
+ * false, it does not wait: it also returns "" if no event is ready. */
 const char *stream_next(listener *l, bool patient)
 {
     char buffer[777];
@@ -141,8 +141,8 @@ void stream_require(api_bench *b, const mirror *copy, const char *after)
     mirror_clear(&fresh);
 }
 
-/* Reads all events and applies them to the copy; returns how often the copy had to be fetched
- * again. */
+/* Reads all events that are ready and applies them to the copy. Returns how often the events did
+ * not suffice, so that the whole mesh was copied again. */
 unsigned stream_follow(api_bench *b, listener *l, mirror *copy)
 {
     unsigned anew = 0;

@@ -1,4 +1,5 @@
-/* stream.h - listening to the events of a mesh without a socket, and updating a copy from them. */
+/* stream.h - a listener to the events of a mesh, without a socket, and a copy of the mesh that
+ * these events update. */
 #ifndef TESTS_API_STREAM_H
 #define TESTS_API_STREAM_H
 
@@ -15,7 +16,7 @@ typedef struct listener {
     pthread_cond_t changed;
     bool woken;
     sse events;
-    sse_event event; /* the result of the last stream_next */
+    sse_event event; /* result of the latest stream_next */
     cJSON *data;
 } listener;
 
@@ -24,20 +25,20 @@ typedef struct listener {
 listener *stream_try(api_bench *b, const char *path, const char *query, const char *last);
 listener *stream_open(api_bench *b, const char *path, const char *query, const char *last);
 void stream_close(listener *l);
-/* Returns the name of the next event, "" at the end of the stream. If `patient` is false, also
- * returns "" where the stream has no event at present. */
+/* Waits for the next event and returns its name, or "" at the end of the stream. If `patient` is
+ * false, it does not wait: it also returns "" if no event is ready. */
 const char *stream_next(listener *l, bool patient);
-/* Return a member of the last event's data; "" if the data has no such text. */
+/* Return a member of the latest event's data; "" if the data has no text of that name. */
 const char *stream_text(const listener *l, const char *member);
 uint64_t stream_number(const listener *l, const char *member);
 
-/* Returns the mesh "m"; the caller must release it. */
+/* Returns the mesh "m" of the store; the caller must release it. */
 st_mesh *stream_mesh(api_bench *b);
 /* Copies the present state of the mesh "m". */
 void stream_dump(api_bench *b, mirror *m);
 void stream_require(api_bench *b, const mirror *copy, const char *after);
-/* Reads all events and applies them to the copy; returns how often the copy had to be fetched
- * again. */
+/* Reads all events that are ready and applies them to the copy. Returns how often the events did
+ * not suffice, so that the whole mesh was copied again. */
 unsigned stream_follow(api_bench *b, listener *l, mirror *copy);
 
 #endif

@@ -1,5 +1,5 @@
-/* strip.h - a strip of two polygons, for test_attributes.c and test_attribute_writes.c, which write
- * its attributes. */
+/* strip.h - a mesh of two polygons, called the strip, to which test_attributes.c and
+ * test_attribute_writes.c write attributes. */
 #ifndef TESTS_API_STRIP_H
 #define TESTS_API_STRIP_H
 
@@ -9,11 +9,11 @@
 
 static const char OCTETS[] = "application/octet-stream";
 
-/* Sends a request, whose answer must have this status. */
+/* Sends a request and requires this status of the answer. */
 void strip_send(api_bench *b, int status, const char *method, const char *target, const char *body);
 
-/* Creates the strip as the mesh `id`; if `edited` is set, one of its faces and one of its vertices
- * have been deleted. */
+/* Creates the strip as the mesh `id`. If `edited` is set, one face and one vertex are then
+ * deleted. */
 void strip_make(api_bench *b, const char *id, bool edited);
 
 #endif

@@ -1,5 +1,5 @@
-/* The edit `append` names another mesh: it is found, its present state is used, and the edit is
- * refused if it is not available. */
+/* The edit `append` adds another mesh to this one. The other mesh is found by its id, its present
+ * state is used, and the edit is refused if the other mesh is not available. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -152,8 +152,7 @@ static void attributes_of_one_name_and_two_types_are_refused(void **state)
     bench_free(b);
 }
 
-/* The maximum number of attributes counts those of the mesh together with those that the appended
- * mesh brings. */
+/* The attributes of the appended mesh count toward the maximum number of attributes of the mesh. */
 static void no_mesh_gets_more_attributes_than_it_may(void **state)
 {
     (void)state;
@@ -176,7 +175,7 @@ static void no_mesh_gets_more_attributes_than_it_may(void **state)
     bench_free(b);
 }
 
-/* The appended mesh is so large that the edit claims its own mesh and works outside the lock. Each
+/* The appended mesh is so large that the edit makes its result outside the mesh's lock. Each
  * `append`, of the mesh to itself or to a small mesh, must use the state before the edit. */
 static void a_large_mesh_takes_in_and_is_taken_in(void **state)
 {

@@ -1,4 +1,4 @@
-/* Earlier revisions of a mesh are read, copied and listed. */
+/* Reading, copying and listing earlier revisions of a mesh. */
 #include "tests/api/history.h"
 #include "tests/failing.h"
 
@@ -21,7 +21,7 @@ static void elements_are_those_of_the_revision(void **state)
         int status;
     } rows[] = {
         {"/v1/meshes/m/vertices/8", 200},
-        {"/v1/meshes/m/vertices/8?revision=1", 404}, /* created by the next revision */
+        {"/v1/meshes/m/vertices/8?revision=1", 404}, /* revision 2 creates this vertex */
         {"/v1/meshes/m/vertices/8?revision=2", 200},
         {"/v1/meshes/m/faces/1?revision=2", 200},
         {"/v1/meshes/m/faces/1?revision=3", 410},
@@ -74,8 +74,8 @@ static void a_tag_names_the_revision_that_was_read(void **state)
         bench_done(r);
         const char *const known[] = {"If-None-Match", etag, NULL};
         bench_done(bench_expect(304, bench_send(b, "GET", target, known, NULL)));
-        /* The tag of revision 2 must not match a GET that names no revision, because that one reads
-         * the present state. */
+        /* The entity tag of revision 2 must not match a GET that names no revision, because such a
+         * GET reads the present state. */
         *strstr(target, "revision=2") = '\0';
         target[strlen(target) - 1] = '\0';
         bench_done(bench_expect(200, bench_send(b, "GET", target, known, NULL)));
@@ -83,7 +83,7 @@ static void a_tag_names_the_revision_that_was_read(void **state)
     bench_free(b);
 }
 
-/* A state that no undo or redo reaches any more can be copied to a new mesh. */
+/* A state that can no longer be reached by undo or redo can still be copied to a new mesh. */
 static void an_earlier_revision_can_be_copied(void **state)
 {
     (void)state;
@@ -102,7 +102,7 @@ static void an_earlier_revision_can_be_copied(void **state)
     bench_free(b);
 }
 
-/* --- the list --- */
+/* --- the list of revisions --- */
 
 static void the_history_tells_what_each_revision_did(void **state)
 {

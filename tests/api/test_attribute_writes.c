@@ -1,5 +1,5 @@
-/* Writing attributes: sets in place of lists, when a revision is made, undo of large writes, and
- * the maximum number. */
+/* Writing attributes: to sets of elements instead of lists of ids, whether a write makes a
+ * revision, undo of large writes, and the maximum number of attributes. */
 #include "tests/api/strip.h"
 
 #include "api/json/text.h"
@@ -189,7 +189,7 @@ static void an_edit_adds_no_more_attributes_or_labels(void **state)
     for (int i = 1; i < API_MAX_LABELS; i++) {
         api_text_add_format(&labels, ",\"%d\"", i);
     }
-    api_text_add(&labels, "]}", 3); /* with its NUL */
+    api_text_add(&labels, "]}", 3); /* the 3 bytes include the NUL */
     assert_false(labels.failed);
     strip_send(b, 201, "PUT", "/v1/meshes/n/attributes/faces/material", labels.bytes);
     strip_send(b, 413, "POST", "/v1/meshes/n/edits",

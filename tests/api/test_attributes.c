@@ -1,5 +1,6 @@
-/* Attributes: values read back bit for bit, by JSON, by octets, through documents, copies, compact,
- * undo and redo; mistakes are refused with their pointer. */
+/* Attributes: values are read back bit for bit as JSON and as octets, also from documents and
+ * copies and after compact, undo and redo. Mistakes in a request are refused with a pointer to the
+ * mistake. */
 #include "tests/api/strip.h"
 
 #include "tests/model/random.h"
@@ -68,8 +69,8 @@ static size_t issued_rows(api_bench *b, const char *mesh, const char *domain)
     return length;
 }
 
-/* Adds columns of every type, rule and number of components to every domain, with random values;
- * their names are built like "c2_float_copy". */
+/* Adds attributes of every type, interpolation rule and number of components to every domain, with
+ * random values; their names are built like "c2_float_copy". */
 static void add_columns(api_bench *b, const char *mesh, md_random *r)
 {
     for (unsigned d = 0; d < 5; d++) {
@@ -92,7 +93,7 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
             size_t got;
             char *back = read_all(b, target, OCTETS, &got);
             assert_int_equal(got, length);
-            if (strcmp(mesh, "plain") == 0) { /* no dead rows */
+            if (strcmp(mesh, "plain") == 0) { /* this mesh has no rows of deleted elements */
                 assert_memory_equal(back, body, length);
             }
             free(back);
@@ -167,8 +168,8 @@ static void documents_carry_every_value(void **state)
         strip_send(b, 201, "PUT", "/v1/meshes/three", two);
         char *three = read_all(b, "/v1/meshes/three/content", "application/json", &third);
         assert_string_equal(document, three);
-        /* The attributes of both meshes must have equal bits, since equal ids name the same
-         * elements. */
+        /* The attributes of both meshes must have equal bits, because elements with equal ids
+         * correspond. */
         for (unsigned d = 0; i == 0 && d < 5; d++) {
             for (unsigned a = 0; a < 15; a++) {
                 snprintf(target, sizeof target, "/v1/meshes/plain/attributes/%s/a%u", domains[d],
@@ -202,9 +203,9 @@ static void copies_and_compact_keep_values(void **state)
     char *copy = dump(b, "twin", &other);
     assert_int_equal(length, other);
     assert_memory_equal(before, copy, length);
-    /* A document and the edit `compact` number the elements without gaps, but a document numbers
-     * the edges by faces. So after both, only the attributes of vertices, faces and the mesh must
-     * read equal. */
+    /* A document and the edit `compact` both number the elements without gaps, but a document
+     * numbers the edges in the order of the faces. So the attributes of edges and half-edges may be
+     * in another order, and only those of vertices, faces and the mesh are compared. */
     char *document = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
     strip_send(b, 200, "POST", "/v1/meshes/edited/edits", "{\"op\":\"compact\"}");
     char *compact = read_all(b, "/v1/meshes/edited/content", "application/json", &other);

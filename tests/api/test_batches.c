@@ -1,5 +1,6 @@
-/* Lists of ten thousand operations are parsed one at a time, make one revision and one undo step,
- * are applied completely or not at all, and are predicted by a dry run. */
+/* An edit that is a list of ten thousand operations: it is parsed one operation at a time, makes
+ * one revision and one undo step, is applied completely or not at all, and a dry run predicts its
+ * result. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -15,8 +16,8 @@
 
 enum { MANY = 10000 };
 
-/* Writes a list of `count` edge splits in which each splits an edge that the one before made;
- * `last`, if not NULL, replaces the last one. */
+/* Writes a list of `count` edge splits, each of an edge that the previous split made. If `last` is
+ * not NULL, it replaces the last split. */
 static void write_chain(api_text *body, const char *before, size_t count, const char *last)
 {
     api_text_empty(body);
@@ -70,7 +71,7 @@ static state_of take(api_bench *b)
                       bench_expect(200, bench_get(b, "/v1/meshes/m/edits"))};
 }
 
-/* Requires that the mesh, its answers and its history equal the state `before`. */
+/* Requires that the mesh, the answers about it and its history are as they were in `before`. */
 static void expect_same(api_bench *b, state_of *before)
 {
     state_of now = take(b);
@@ -248,8 +249,8 @@ static void *count(void *context, void *memory, size_t size)
     return block + 2;
 }
 
-/* Returns the peak of the memory that a request with this list uses, from its first byte to its
- * answer, less what stays allocated afterwards. */
+/* Returns the peak of the memory that a request with this list of operations allocates, less what
+ * stays allocated after its answer. */
 static size_t peak_of(api_bench *b, const api_text *body)
 {
     most = held;
@@ -262,8 +263,9 @@ static size_t peak_of(api_bench *b, const api_text *body)
     return most - before;
 }
 
-/* A list is read one operation at a time, so its memory must stay near the size of its text and its
- * results. A parser that built a tree of all its values would need fifteen times the text. */
+/* A list is parsed one operation at a time, so its memory must stay near the size of its text and
+ * its results. A parser that built a tree of all JSON values would need fifteen times the size of
+ * the text. */
 static void a_list_costs_its_text_and_its_results(void **state)
 {
     (void)state;

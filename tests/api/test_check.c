@@ -1,4 +1,5 @@
-/* GET .../check reports the defects of a mesh, takes thresholds for them, and can run as a job. */
+/* GET .../check reports the defects of a mesh, uses the thresholds in the request, and can run as a
+ * job. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -127,7 +128,8 @@ static void thresholds_are_of_the_box_or_given(void **state)
     assert_true(threshold(&r, "merge") == 10 && threshold(&r, "flat") == 0.5 &&
                 threshold(&r, "small") == 20);
     assert_int_equal(total(&r, "zero_length_edge"), 12);
-    assert_int_equal(total(&r, "duplicate_position"), 4); /* every other corner stays */
+    /* 4 of the 8 corners are within the merge distance of another one */
+    assert_int_equal(total(&r, "duplicate_position"), 4);
     assert_int_equal(total(&r, "small_component"), 1);
     bench_reply_free(&r);
     static const char *const bad[] = {
@@ -218,7 +220,8 @@ static void a_starved_check_says_so(void **state)
     const char *target = "/v1/meshes/m/check?self_intersections=true";
     api_bench *b = bench_new();
     put(b, mess);
-    /* If the failed allocation was for something optional, the answer must still be complete. */
+    /* If the failed allocation was for something optional, the request succeeds: the answer must be
+     * complete. */
     failing f = {.may_succeed = true};
     while (failing_next(&f)) {
         bench_reply r;

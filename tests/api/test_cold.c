@@ -1,5 +1,5 @@
-/* Requests about cold meshes, those that are on the disk and not in memory: the answers must equal
- * those before the service was restarted, and a damaged mesh can be deleted or replaced. */
+/* Requests about cold meshes, which are on the disk and not in memory. The answers must equal those
+ * before the restart of the service, and a damaged mesh can be deleted or replaced. */
 #include "tests/api/request.h"
 #include "tests/kept_journal.h"
 
@@ -225,8 +225,8 @@ static void what_the_client_has_of_a_cold_mesh_loads_nothing(void **state)
     assert_string_equal(bench_header(&is, "ETag"), tag);
     bench_done(is);
     assert_int_equal(loads("m"), 0);
-    /* A client whose copy is of another revision than the one asked for gets the whole answer,
-     * which loads the mesh. */
+    /* If the entity tag in the request is from another revision than the requested one, the client
+     * gets the whole answer, which loads the mesh. */
     bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m?revision=2", has, NULL)));
     poke(b, "m", 0);
     b = restart(b);
@@ -248,7 +248,7 @@ static void a_cold_mesh_is_deleted_without_being_loaded(void **state)
     bench_done(bench_expect(412, bench_send(b, "DELETE", "/v1/meshes/m", none, NULL)));
     kept_journal_refuse(journal, ST_FAILED);
     expect_code(503, "store_failed", bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL));
-    assert_int_equal(loads("m"), 0); /* nothing up to here loaded the mesh */
+    assert_int_equal(loads("m"), 0); /* no request so far has loaded the mesh */
     kept_journal_refuse(journal, ST_FULL);
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", match, NULL)));
     kept_journal_refuse(journal, ST_OK);

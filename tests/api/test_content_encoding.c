@@ -1,5 +1,5 @@
-/* Content codings: request bodies that arrive compressed by gzip or zstd, and answers compressed by
- * them. */
+/* Content codings: request bodies that arrive compressed with gzip or zstd, and answers that the
+ * service compresses with them. */
 #include "tests/api/request.h"
 
 #include "tests/codings.h"
@@ -160,8 +160,8 @@ static void what_is_short_or_live_stays_plain(void **state)
         assert_string_equal(bench_header(&r, "Vary"), live ? "" : "Accept-Encoding");
         bench_reply_free(&r);
     }
-    /* The length of an OFF file is not known in advance. The server must find it before it decides
-     * that a file is too small to be compressed. */
+    /* The length of an exported OFF file is not known in advance. The service must still find that
+     * this file is too small to be compressed. */
     done(expect(201, bench_send(b, "PUT", "/v1/meshes/c", NULL, "{\"shape\":\"tetrahedron\"}")));
     bench_reply r = expect(200, get(b, "/v1/meshes/c/content?format=off", "zstd"));
     assert_string_equal(bench_header(&r, "Content-Encoding"), "");
@@ -209,8 +209,8 @@ static void tags_of_each_coding_are_good(void **state)
         snprintf(list, sizeof list, "\"other\", W/%s", tag);
         bench_reply_free(&r);
         for (size_t k = 0; k < 3; k++) {
-            /* A client may keep its cached copy (304) if it still accepts the coding of that copy;
-             * the 304 names the entity tag of that copy. */
+            /* If the client still accepts the coding of its cached copy, the answer is 304 and
+             * names the entity tag of that copy. */
             bool good = i == 0 || i == k;
             r = expect(good ? 304 : 200,
                        bench_send(b, "GET", target,
@@ -324,7 +324,7 @@ static void every_format_comes_back(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         bench_reply plain = expect(200, bench_send(b, "GET", files[i].target, NULL, NULL));
         for (size_t c = 0; c < 2; c++) {
-            /* The server must read a body that it compressed itself, and one that another program
+            /* The service must read a body that it compressed itself, and one that another program
              * compressed. */
             bench_reply file = expect(200, get(b, files[i].target, both[c]));
             char again[100];
@@ -411,8 +411,8 @@ static void what_is_not_the_coding_is_refused(void **state)
         assert_string_equal(bench_header(&r, "Accept-Encoding"), "gzip, zstd");
         refused(415, "unsupported_encoding", "\"supported\":[\"gzip\",\"zstd\",\"identity\"]", r);
     }
-    /* A 415 because of the media type must not carry the header that a 415 because of the coding
-     * has. */
+    /* If the media type is wrong, the 415 must not have the header that a 415 about the content
+     * coding has. */
     bench_reply other = expect(
         415, bench_send(b, "POST", "/v1/meshes", HEADERS("Content-Type", "text/plain"), json));
     assert_string_equal(bench_header(&other, "Accept-Encoding"), "");
@@ -468,10 +468,11 @@ static api_exchange *begin_wide(api_bench *b, api_step *step)
     return x;
 }
 
-/* Sends the next KiB of a body begun by begin_wide(): one block of zeros. */
+/* Sends the next block of zeros of a body that begin_wide() began: 1 KiB when decompressed. */
 static api_step more_of(api_exchange *x)
 {
-    static const char block[] = {2 | 1 << 3, 32, 0, '\n'}; /* RLE, 1025 times */
+    /* a run-length block: the last byte is repeated 1025 times */
+    static const char block[] = {2 | 1 << 3, 32, 0, '\n'};
     size_t used;
     return api_body(x, block, sizeof block, &used);
 }
@@ -488,8 +489,9 @@ static void expect_gave_way(api_exchange *x)
     assert_true(later);
 }
 
-/* The windows of slow uploads share a limited memory. One upload continues while many others begin
- * and then send nothing: those must be ended, not the one that makes progress. */
+/* Slow uploads share a limited memory for the windows of their decoders. While one upload
+ * continues, many others begin and then send nothing: the service must end those, and not the
+ * upload that makes progress. */
 static void slow_senders_give_way_to_others(void **state)
 {
     (void)state;
@@ -510,7 +512,8 @@ static void slow_senders_give_way_to_others(void **state)
     for (size_t i = 0; i < MANY; i++) {
         if (more_of(open[i]) != API_MORE) {
             expect_gave_way(open[i]);
-            assert_int_equal(gone, i); /* those that waited longest were evicted first */
+            /* the uploads that sent nothing for longest were ended first */
+            assert_int_equal(gone, i);
             gone++;
         }
     }
@@ -523,8 +526,8 @@ static void slow_senders_give_way_to_others(void **state)
     bench_free(b);
 }
 
-/* The Idempotency-Key belongs to the decompressed body: the same body in another coding, or in
- * none, is the same request. */
+/* An Idempotency-Key identifies the decompressed body: a request that repeats the body in another
+ * coding, or uncompressed, counts as the same request. */
 static void a_key_is_of_the_unfolded_body(void **state)
 {
     (void)state;
@@ -629,7 +632,9 @@ static void every_allocation_may_fail(void **state)
         const char *const accept[] = {"Accept-Encoding", both[c], NULL};
         for (size_t i = 0; i < READ; i++) {
             if (strstr(read[i].target, "stl") != NULL) {
-                continue; /* the reader of this format allocates for each corner */
+                /* the STL reader makes allocations for each corner, too many to let each of them
+                 * fail */
+                continue;
             }
             bench_reply plain = expect(200, bench_send(b, "GET", read[i].target, NULL, NULL));
             starve(b, &(bench_request){"GET", read[i].target, accept, NULL, 0}, &plain);

@@ -22,8 +22,8 @@ static bool take(void *context, const char *bytes, size_t length)
     return true;
 }
 
-/* A zstd frame: its header with a window of 8 MiB and an empty block, a block of 1,024 zeros, and
- * such a block marked as the last. */
+/* Parts of a zstd frame: `head` is the frame header, with a window of 8 MiB, and an empty block;
+ * `block` is a block of 1,024 zeros; `last` is such a block that ends the frame. */
 static const char head[] = {0x28, (char)0xB5, 0x2F, (char)0xFD, 0, 13 << 3, 0, 0, 0};
 static const char block[] = {2, 1 << 5, 0, '\0'}, last[] = {3, 1 << 5, 0, '\0'};
 
@@ -37,8 +37,8 @@ static bool feed(api_decompressor *u, const char *bytes, size_t length)
     return good;
 }
 
-/* Feeds bodies in turn, more than have room for their windows in memory; each body that was not
- * evicted must be decompressed completely. */
+/* Decompresses many bodies at the same time, a part of each in turn. Their windows need more memory
+ * than there is for decoders; each body that was not evicted must be decompressed completely. */
 static void *unfold_many(void *context)
 {
     (void)context;

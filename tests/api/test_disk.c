@@ -36,11 +36,11 @@ static void lose_newest(st_status why)
     slow_journal_advance(&journal, newest);
 }
 
-/* --- the mesh is lost when a write begins --- */
+/* --- changes of the mesh are lost before a write begins --- */
 
-/* The reason for which the newest change is lost right before the next write begins; ST_OK: it is
- * not lost. The linker redirects calls of st_write_begin to a wrapper (Makefile), which lets the
- * journal report the loss. */
+/* If not ST_OK, the newest change is lost for this reason right before the next write begins. The
+ * linker makes calls of st_write_begin go to the wrapper in this file (Makefile), in which the
+ * journal reports the loss. */
 static st_status loss_before;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -64,8 +64,8 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
         const char *code, *retry;
     } cases[] = {{ST_FULL, ST_FULL, 507, "store_full", ""},
                  {ST_FAILED, ST_FAILED, 503, "store_failed", "1"},
-                 /* The change was lost while the disk was full, and now there is space again: if
-                  * the client repeats the request, it finds the mesh in its last durable state. */
+                 /* The change was lost while the disk was full, but now there is space again. If
+                  * the client repeats the request, the mesh is in its last durable state. */
                  {ST_FULL, ST_OK, 503, "store_lost", "0"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_bench *b = begin();
@@ -76,17 +76,18 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
             cases[i].status, bench_send(b, "PATCH", "/v1/meshes/m", NULL, "{\"name\":\"y\"}"));
         assert_string_equal(bench_text(&r, "code"), cases[i].code);
         assert_string_equal(bench_header(&r, "Retry-After"), cases[i].retry);
-        /* The refusal does not wait for the disk; otherwise, when the lost change is noticed,
-         * another refusal could replace it. */
+        /* The refusal does not wait for the disk. If it waited, it could be replaced by another
+         * refusal when the service notices the lost change. */
         assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
         bench_reply_free(&r);
         bench_free(b);
     }
 }
 
-/* --- a mesh is lost between reading it and using it --- */
+/* --- changes are lost between reading a mesh and committing the result --- */
 
-static st_status loss_between; /* result between the read and the commit */
+/* If not ST_OK, the newest change is lost for this reason before the next commit. */
+static st_status loss_between;
 
 st_status __real_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
                                 st_mesh **out);
@@ -116,8 +117,8 @@ st_status __wrap_st_write_commit(st_write *w, const char *ops)
     return __real_st_write_commit(w, ops);
 }
 
-/* When the copy is made the disk works again: only the loss of the source's changes can be the
- * reason why it is refused. */
+/* When the copy is made the disk works again, so the copy can only be refused because changes of
+ * its source were lost. */
 static void what_was_lost_is_not_copied_or_appended(void **state)
 {
     (void)state;
@@ -162,12 +163,12 @@ static void a_change_that_is_too_large_to_be_kept_names_the_limit(void **state)
     bench_free(b);
 }
 
-/* --- a list with many changes --- */
+/* --- a list of operations with many changes --- */
 
 static api_bench *staging_for;
 
-/* Runs while a list of operations is being written to the disk: its mesh must still be readable in
- * the old state, and another mesh must be writable. */
+/* Called while an edit that is a list of operations is being written to the disk. The edited mesh
+ * must still be readable in its old state, and another mesh must be writable. */
 static void look_and_write(void)
 {
     bench_reply r = bench_expect(200, bench_get(staging_for, "/v1/meshes/m"));
@@ -220,8 +221,8 @@ static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void *
     assert_int_equal(journal.staged_edits, 0);
     staging_for = b;
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    /* A list of API_CLAIM_EDITS operations changes so many rows that it needs a claim on the mesh,
-     * whether it runs on a worker or as a job. */
+    /* A list of API_CLAIM_EDITS operations changes so many rows that the edit needs the exclusive
+     * right to write the mesh (a claim), whether it runs on a worker or as a job. */
     splits(b, API_CLAIM_EDITS);
     assert_int_equal(journal.staged_edits, 1);
     bench_free(b);
@@ -238,7 +239,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     char body[80];
     api_bench *b = begin();
     slow_journal_advance(&journal, UINT64_MAX);
-    /* The attribute of a small mesh is encoded under the lock. */
+    /* The attribute of a small mesh is encoded while the mesh is locked, and not staged in
+     * advance. */
     bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\"}")));
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     (void)snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE,
@@ -256,7 +258,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     assert_int_equal(journal.staged_edits, 1);
     assert_true(journal.record.staged_edit && journal.record.body == NULL);
     journal.staging = NULL;
-    /* One value for all of them, and a rehearsal, which stages nothing. */
+    /* The next edits set one value for all vertices. The first of them is a dry run, which stages
+     * nothing for the journal. */
     bench_done(bench_expect(200, bench_send(b, "PUT", path, NULL,
                                             "{\"type\":\"double\",\"value\":2,\"dry_run\":true}")));
     assert_int_equal(journal.staged_edits, 1);
@@ -267,7 +270,7 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/attributes/vertices/a?ids=0,1"));
     assert_non_null(strstr(r.body, "\"values\":[1,0]"));
     bench_reply_free(&r);
-    /* What the mesh refuses is refused as it is for a small one. */
+    /* A wrong number of values is refused for a large mesh, too. */
     bench_done(bench_expect(
         422,
         bench_send_bytes(b, &(bench_request){"PUT", "/v1/meshes/m/attributes/edges/b?type=double",
@@ -275,9 +278,10 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     bench_free(b);
 }
 
-/* --- an answer that waits --- */
+/* --- an answer that waits until its change is durable --- */
 
-/* The answer to a write is ready, but it was not sent yet. */
+/* The answers to the writes wait because the changes are not on the disk yet. Once these are
+ * durable, the meshes can be evicted from memory, even if the answers have not been sent. */
 static void a_mesh_can_be_evicted_while_the_answer_that_made_it_waits(void **state)
 {
     (void)state;
@@ -291,7 +295,8 @@ static void a_mesh_can_be_evicted_while_the_answer_that_made_it_waits(void **sta
     st_memory_count(MIB);
     st_make_room(bench_store(b), 1);
     st_store_measure(bench_store(b), &measures);
-    assert_int_equal(measures.meshes_in_memory, 2); /* their changes are not on the disk yet */
+    /* meshes with changes that are not on the disk yet stay in memory */
+    assert_int_equal(measures.meshes_in_memory, 2);
     slow_journal_advance(&journal, slow_journal_newest(&journal));
     st_make_room(bench_store(b), 1);
     st_store_measure(bench_store(b), &measures);
@@ -303,7 +308,7 @@ static void a_mesh_can_be_evicted_while_the_answer_that_made_it_waits(void **sta
     bench_free(b);
 }
 
-/* --- readiness --- */
+/* --- readiness of the service --- */
 
 static void readiness_tells_how_the_disk_is(void **state)
 {
@@ -326,7 +331,7 @@ static void readiness_tells_how_the_disk_is(void **state)
     bench_free(b);
 }
 
-/* Does the page of metrics have this line? */
+/* Requires that the page of metrics has this line. */
 static void expect_metric(const bench_reply *page, const char *line)
 {
     char whole[120];

@@ -1,5 +1,6 @@
-/* The messages of an event stream, without sockets: they describe every operation exactly, whether
- * they come from the listener's queue or from the history, and whichever allocation fails. */
+/* The messages of an event stream, read without a socket. They must describe every operation
+ * exactly, whether they come from the listener's queue or from the history, and whichever
+ * allocation fails. */
 #include "tests/api/stream.h"
 #include "tests/random_edit.h"
 #include "tests/writing.h"
@@ -39,7 +40,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* This mesh is closed, because some operations need a closed one. */
+/* A mesh without boundary, because some operations need one. */
 static const char TETRAHEDRON[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\n"
                                   "g base\nf 1//1 3//1 2//1\n"
                                   "g sides\nf 1//1 2//1 4//1\nf 2//1 3//1 4//1\nf 3//1 1//1 4//1\n";
@@ -120,7 +121,8 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
     bench_free(b);
 }
 
-/* The linker redirects calls of these functions to the wrappers (Makefile). */
+/* Number of calls of the two functions that find what an edit changed. The linker makes these calls
+ * go to the wrappers below (Makefile). */
 static unsigned finds;
 
 he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
@@ -146,8 +148,8 @@ he_status __wrap_he_changes_sum(const he_mesh *mesh, const he_change_part *parts
     return __real_he_changes_sum(mesh, parts, count, out, err);
 }
 
-/* The set of elements that a request changed is computed once, for the answer, the history and all
- * listeners. */
+/* The sets of elements that a request changed must be computed only once, and then be used for the
+ * answer, the history and all listeners. */
 static void what_a_request_changes_is_found_once(void **state)
 {
     (void)state;
@@ -173,8 +175,8 @@ static void what_a_request_changes_is_found_once(void **state)
     bench_free(b);
 }
 
-/* Writes columns of attributes directly through the store, because no request makes them in this
- * way, and requires events about them. */
+/* Adds and removes attributes directly through the store, because no request adds one attribute and
+ * removes another in a single edit, and requires events about them. */
 static void columns_that_come_and_go_are_told(void **state)
 {
     (void)state;
@@ -220,8 +222,8 @@ static void columns_that_come_and_go_are_told(void **state)
     bench_free(b);
 }
 
-/* An attribute is replaced by another of its name and type: events must not let the listener's copy
- * keep values of the old attribute. */
+/* An attribute is replaced by another one of the same name. After the event, the listener's copy
+ * must have no values of the old attribute. */
 static void a_column_written_over_is_told(void **state)
 {
     (void)state;
@@ -342,8 +344,8 @@ static void who_was_cut_off_goes_on_where_it_was(void **state)
     assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
     assert_int_equal(send(b, "PATCH", "/v1/meshes/m", "{\"name\":\"x\"}"), 200);
     assert_int_equal(send(b, "POST", "/v1/meshes/m/undo", NULL), 200);
-    /* The header Last-Event-ID is newer than `since` in the URL and must win: a browser sends the
-     * URL of the first connection again when it reconnects. */
+    /* The header Last-Event-ID names a later revision than `since` in the URL and must win, because
+     * a browser that reconnects sends the URL of its first connection again. */
     l = stream_open(b, "/v1/meshes/m/events", "since=1", id);
     assert_string_equal(stream_next(l, false), "edit");
     assert_int_equal(stream_number(l, "base"), 2);
@@ -358,8 +360,8 @@ static void who_was_cut_off_goes_on_where_it_was(void **state)
     bench_free(b);
 }
 
-/* The listener is behind by more events than its queue holds: it gets the older ones from the
- * history in batches, and the rest from the queue. */
+/* The listener is behind by more events than its queue holds. It gets the older events from the
+ * history, in batches, and the rest from the queue. */
 static void who_is_far_behind_is_told_from_the_history(void **state)
 {
     (void)state;
@@ -373,10 +375,10 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     stream_dump(b, &now);
     stream_dump(b, &copy);
     while (now.revision < EDITS) {
-        /* Three kinds of edits are left out: `compact`, which deletes the history, and two that the
-         * history cannot describe, refinements and attributes added with a material. The mesh stays
-         * so small that an edit of all of it fits into a message; an edit that emptied it is
-         * undone. */
+        /* The random edits leave out `compact`, which deletes the history, and two kinds of edits
+         * that the history does not describe in detail: refinements, and attributes that a material
+         * adds. The mesh stays so small that an edit of all its elements fits into one message; an
+         * edit that emptied the mesh is undone. */
         size_t row = md_below(&random, (uint32_t)he_op_count());
         const char *name = he_op_at(row)->name;
         size_t faces = mirror_count(&now, HE_FACE);
@@ -404,7 +406,8 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
     stream_require(b, &copy, "the history and an undo");
     stream_close(l);
-    /* The listener begins in the middle of the history, and leaves in the middle of it. */
+    /* This listener begins in the middle of the history and disconnects before it has read all of
+     * it. */
     l = stream_open(b, "/v1/meshes/m/events", "since=2", NULL);
     assert_string_equal(stream_next(l, true), "metadata");
     assert_string_equal(stream_next(l, true), "edit");
@@ -454,7 +457,7 @@ static void what_cannot_be_told_is_one_resync(void **state)
     (void)state;
     api_bench *b = bench_new();
     make_four_revisions(b);
-    require_resync(b, "since=1", NULL, "gap"); /* before the replace */
+    require_resync(b, "since=1", NULL, "gap"); /* revision 1 is from before the mesh was replaced */
     make_four_revisions(b);
     require_resync(b, "since=5", NULL, "future");
     make_four_revisions(b);
@@ -478,8 +481,8 @@ static void what_cannot_be_told_is_one_resync(void **state)
     bench_free(b);
 }
 
-/* The listener reads nothing until its queue overflows: it must get one `resync` and then the
- * events from the newest one on. */
+/* The listener reads nothing until its queue overflows. It must then get one `resync`, and after it
+ * the events from the newest one on. */
 static void a_slow_listener_is_told_to_fetch_anew(void **state)
 {
     (void)state;
@@ -508,7 +511,7 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
 static void too_many_listeners_are_503(void **state)
 {
     (void)state;
-    api_bench *b = bench_new(); /* 2 about a mesh, 3 in total */
+    api_bench *b = bench_new(); /* allows 2 listeners of one mesh, 3 in total */
     put_mesh(b);
     assert_int_equal(send(b, "PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     listener *first = stream_open(b, "/v1/meshes/m/events", "", NULL);
@@ -529,7 +532,7 @@ static void too_many_listeners_are_503(void **state)
 
 /* --- when an allocation fails --- */
 
-/* Each allocation made for an event fails in turn, with all later ones: the edit must succeed, and
+/* The N-th allocation for an event and all later ones fail, for each N. The edit must succeed, and
  * the listener must get either the event or a `resync`. */
 static void a_failed_allocation_loses_no_listener(void **state)
 {
@@ -571,8 +574,8 @@ static void a_failed_allocation_loses_no_listener(void **state)
     assert_true(told > 0);
 }
 
-/* Each allocation of the thread that reads events from the history fails in turn, with all later
- * ones: the listener must get events in order, and possibly a `resync` after them. */
+/* The N-th allocation of the thread that reads events from the history and all later ones fail, for
+ * each N. The listener must get the events in order, possibly followed by a `resync`. */
 static void a_failed_allocation_in_the_history_is_a_resync(void **state)
 {
     (void)state;

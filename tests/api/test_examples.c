@@ -1,5 +1,5 @@
-/* The examples in the OpenAPI document must equal the answers of the service. Called as
- * `test_examples record FILE`, which `make examples` does, this program writes the file anew. */
+/* The examples in the OpenAPI document must equal the answers of the service. If this program is
+ * called as `test_examples record FILE`, as by `make examples`, it writes the examples anew. */
 #include "tests/api/examples_record.h"
 #include "tests/json_member.h"
 
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-/* Prints a line of the file, and its end. */
+/* Prints one line of a text, which ends in a line feed or NUL. */
 static void print_line(const char *mark, const char *line)
 {
     print_error("%s%.*s\n", mark, (int)strcspn(line, "\n"), line);
@@ -30,7 +30,7 @@ static bool is_same_line(const char *a, const char *b)
     return length == strcspn(b, "\n") && memcmp(a, b, length) == 0;
 }
 
-/* Moves `*a` and `*b` to the nearest lines that are equal. */
+/* Moves `*a` and `*b`, positions in two texts, to the nearest lines that are equal. */
 static void find_equal(const char **a, const char **b)
 {
     for (size_t distance = 0;; distance++) {
@@ -49,7 +49,8 @@ static void find_equal(const char **a, const char **b)
     }
 }
 
-/* Prints the lines that differ, each group below the route of its example. */
+/* Prints the lines in which two examples files differ. Above each group of such lines it prints the
+ * route of the example to which they belong. */
 static void print_difference(const char *recorded, const char *answered)
 {
     const char *route = recorded;
@@ -90,7 +91,8 @@ static void each_example_is_a_real_answer(void **state)
     api_examples_clear(&file);
 }
 
-/* Requires that the example of `content` for this media type is this body of an example. */
+/* Requires that `content`, a part of the OpenAPI document, shows the body of this recorded example
+ * for this media type. */
 static void find_in(const cJSON *content, const char *media, const api_examples *file,
                     uint32_t example, api_example_part part)
 {
@@ -156,8 +158,8 @@ static void the_description_shows_them(void **state)
     api_examples_clear(&file);
 }
 
-/* The document shows no examples for these answers, because they are as long as the tables that
- * they print. */
+/* Returns whether the answers of the route are too long for an example: they print whole tables of
+ * the API. */
 static bool is_too_long(const char *route)
 {
     return strcmp(route, "list_operations") == 0 || strcmp(route, "get_openapi") == 0;
@@ -208,7 +210,8 @@ static void long_values_are_laid_out_on_lines(void **state)
     api_text_clear(&text);
 }
 
-/* Writes the file at `path` with the answers of the service; a person reads the difference. */
+/* Writes the examples file at `path` with the present answers of the service; a person then reviews
+ * the difference. */
 static int record_file(const char *path)
 {
     api_examples file;

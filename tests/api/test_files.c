@@ -1,5 +1,5 @@
-/* Mesh files are exported in every encoding, and read back under every name and media type that
- * identifies their format. */
+/* Exports of mesh files in every encoding, and imports under every file name and media type that
+ * identifies a format. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -92,8 +92,8 @@ static void each_encoding_has_its_tag(void **state)
         }
         bench_reply_free(&file);
     }
-    /* A request that names no encoding gets the default of the format, which Accept names as well
-     * as ?format= does. */
+    /* A request that names no encoding gets the default encoding of the format. The header Accept
+     * selects a format as well as ?format= does. */
     static const char *const accept[] = {"Accept", "model/ply", NULL};
     bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content", accept, NULL));
     assert_string_equal(bench_header(&r, "Content-Type"), "model/ply");
@@ -108,8 +108,8 @@ static void each_encoding_has_its_tag(void **state)
     bench_free(b);
 }
 
-/* The warnings about an export go into a header of at most 1000 bytes. The 40 attributes that this
- * export drops need more: those that do not fit must be counted. */
+/* The warnings about an export go into a header of at most 1000 bytes. This export drops 40
+ * attributes, whose warnings need more: the header must say how many warnings did not fit. */
 static void warnings_that_find_no_room_are_counted(void **state)
 {
     (void)state;
@@ -272,8 +272,8 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     bench_free(b);
 }
 
-/* Uploads a glTF file, whose reading is left to the pool because a glTF is read only when it is
- * complete; returns the request at that point. */
+/* Uploads a glTF file and returns the request after the last byte. A glTF file is read only when it
+ * is complete, and then by a thread of the job pool. */
 static api_exchange *upload_gltf(api_bench *b, const char *text, size_t length)
 {
     const api_request request = {.method = "POST",
@@ -301,8 +301,8 @@ static bool give_up_reading(void *context, const char *phase, double done)
     return *told < 3 || done < 0;
 }
 
-/* A glTF file is parsed in the pool after its last byte has arrived: the client may cancel it
- * during that. */
+/* A glTF file is parsed in the job pool after its last byte has arrived. The client must be able to
+ * cancel the request during that time. */
 static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
 {
     (void)state;
@@ -327,7 +327,8 @@ static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
     free(text);
 }
 
-/* Even a short glTF file is read by the pool, because a few bytes can describe a large mesh. */
+/* Even a short glTF file is parsed in the job pool and not by a worker, because a few bytes can
+ * describe a large mesh. */
 static void a_small_file_that_is_read_at_its_end_leaves_the_worker(void **state)
 {
     (void)state;
@@ -348,8 +349,8 @@ static const char *warning(const cJSON *report, int i)
     return item == NULL ? "" : cJSON_GetObjectItem(item, "code")->valuestring;
 }
 
-/* The report counts the edges of a file when they are built; a repair may replace some of them, so
- * the mesh may have others. */
+/* The report of an import counts the edges right after the file was read. A repair may remove or
+ * add edges, so the mesh may have another number. */
 static void a_report_says_what_was_read_and_what_was_not(void **state)
 {
     (void)state;
@@ -388,8 +389,8 @@ static void a_report_says_what_was_read_and_what_was_not(void **state)
     bench_free(b);
 }
 
-/* The format of a body is decided by ?format= or else by its Content-Type; if the bytes look like
- * another format, the refusal says which. */
+/* ?format= determines the format of a body, or else its Content-Type. If the bytes look like
+ * another format, the refusal must say which. */
 static void a_body_of_another_format_is_told(void **state)
 {
     (void)state;
@@ -422,8 +423,8 @@ static void a_body_of_another_format_is_told(void **state)
     bench_free(b);
 }
 
-/* The body is an image: whatever format is declared, the refusal says that it is no mesh, rather
- * than taking its bytes for a number of facets. */
+/* The body is an image. Whatever format is declared, the refusal must say that the body is no mesh,
+ * instead of interpreting its bytes as a number of triangles. */
 static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
 {
     (void)state;
@@ -457,8 +458,8 @@ static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
     bench_free(b);
 }
 
-/* curl -T sends no Content-Type, and --data-binary a generic one: for these, ?format= names the
- * format. */
+/* curl -T sends no Content-Type and curl --data-binary a generic one. In both cases ?format= must
+ * determine the format. */
 static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
 {
     (void)state;

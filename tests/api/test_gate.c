@@ -1,8 +1,9 @@
-/* The gate, which decides whether the token of a request may do what it asks (api/request/gate.h),
- * gives the right answers; and if any one of its checks is left out, the tests notice.
+/* The gate, which decides whether a request may do what it asks for with its token
+ * (api/request/gate.h), must decide correctly, and the tests must fail if any one of its checks is
+ * left out.
  *
- * The linker redirects the calls of each check to a wrapper (Makefile), so that this program can
- * leave out one check at a time. */
+ * The linker makes calls of each check go to a wrapper in this file (Makefile), so that the program
+ * can leave out one check at a time. */
 #include "tests/api/gate.h"
 
 #include "api/request/gate.h"
@@ -18,7 +19,8 @@
 
 #include <cmocka.h>
 
-/* X(name of the check, its return type, parameters, arguments, result if the check is left out) */
+/* X(name of a check, its return type, its parameters, its arguments, the result if it is left
+ * out) */
 #define CHECKS(X)                                                                                  \
     X(api_gate_enter, bool, (api_exchange * x), (x), true)                                         \
     X(api_gate_sees, bool, (const api_exchange *x, const char *mesh), (x, mesh), true)             \
@@ -55,7 +57,8 @@
     X(api_tokens_find, api_token *, (api_tokens * s, const char *text, size_t length, double now), \
       (s, text, length, now), __real_api_tokens_find(s, "boss-s3cr3t", 11, now))
 
-/* X(name, parameters, arguments); what has no result is not done when it is left out */
+/* X(name of a function without a result, its parameters, its arguments); if it is left out, the
+ * wrapper does nothing */
 #define ACTIONS(X)                                                       \
     X(api_rating_charge, (api_exchange * x, uint64_t bytes), (x, bytes)) \
     X(api_tokens_watch, (api_tokens * s, api_token_watch * w), (s, w))
@@ -65,7 +68,7 @@ enum { CHECKS(NUMBER) ACTIONS(NUMBER) CHECK_COUNT };
 #undef NUMBER
 
 static int left_out = -1;
-static size_t compared; /* calls of the functions that compare hashes */
+static size_t compared; /* number of calls of the function that compares hashes */
 
 static const api_job_work *unlimited(const api_job_work *work)
 {
@@ -125,7 +128,7 @@ static void each_check_that_is_left_out_is_noticed(void **state)
 #undef NAME
     size_t unnoticed = 0;
     for (left_out = 0; left_out < CHECK_COUNT; left_out++) {
-        size_t findings = gate_limit_findings(false); /* which takes less time */
+        size_t findings = gate_limit_findings(false); /* called first because it takes less time */
         findings = findings > 0 ? findings : gate_findings(false);
         printf("note: without %s: %zu findings\n", names[left_out], findings);
         unnoticed += findings == 0;
@@ -134,8 +137,9 @@ static void each_check_that_is_left_out_is_noticed(void **state)
     assert_int_equal(unnoticed, 0);
 }
 
-/* How long a lookup takes does not tell how much of a hash was right, or which one: all that could
- * be meant are compared, whether one of them is found or not. */
+/* The time of a lookup must not reveal whether a ticket was found, or how much of its hash was
+ * correct. So the lookup must compare the hashes of all tickets, even after it has found the right
+ * one. */
 static void as_many_tickets_are_compared_whichever_is_found(void **state)
 {
     (void)state;
@@ -160,8 +164,9 @@ static void as_many_tickets_are_compared_whichever_is_found(void **state)
     api_tickets_free(tickets);
 }
 
-/* Each of k tokens in one bucket is found after k comparisons. So the tokens that are found after k
- * are a multiple of k; if a lookup ended at the first match, they would be any number. */
+/* A lookup must compare the tokens of its whole hash bucket, even after it has found the right one.
+ * So each of the k tokens in a bucket is found after k comparisons, and the number of tokens that
+ * are found after k comparisons is a multiple of k. */
 static void as_many_tokens_are_compared_whichever_is_found(void **state)
 {
     (void)state;

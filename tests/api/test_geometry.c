@@ -1,5 +1,5 @@
-/* The arrays of GET .../geometry, from which a viewer draws, compared with the polygons of the
- * mesh. */
+/* The arrays in the answers of GET .../geometry, from which a viewer draws, are compared with the
+ * polygons of the mesh. */
 #include "tests/api/specimens.h"
 
 #include "unit/fixture.h"
@@ -36,7 +36,8 @@ static float float_at(const char *p)
     return value;
 }
 
-/* The parts of an answer to GET .../geometry: its header and its arrays. */
+/* An answer to GET .../geometry: the numbers in its header, and its arrays of vertices and
+ * triangles. */
 typedef struct arrays {
     bench_reply reply;
     uint64_t revision, layout;
@@ -83,7 +84,7 @@ static unsigned face_of(const arrays *a, unsigned triangle)
     return corner_of(a, triangle, 3) & ((1u << 29) - 1);
 }
 
-/* Returns which side of the face `f` goes from the vertex `from` to the vertex `to`. */
+/* Returns the index of the side of face `f` that goes from the vertex `from` to the vertex `to`. */
 static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned to)
 {
     for (unsigned h = 0; h < pg->halfedges; h++) {
@@ -180,8 +181,8 @@ static void edit(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* Deleting elements must leave a gap in the rows of the vertices, whose ids stay, and none in the
- * triangles. */
+/* If elements are deleted, the rows of the other vertices must stay in their places, because
+ * vertices keep their ids. The rows of triangles must stay without gaps. */
 static void rows_of_vertices_keep_their_ids_when_others_are_deleted(void **state)
 {
     (void)state;
@@ -203,7 +204,7 @@ static void rows_of_vertices_keep_their_ids_when_others_are_deleted(void **state
     bench_free(b);
 }
 
-/* An edit followed by its undo must give the same rows as before: only the revision may differ. */
+/* An edit followed by its undo must give the same rows as before; only the revision may differ. */
 static void an_undo_brings_back_the_same_rows(void **state)
 {
     (void)state;
@@ -269,14 +270,14 @@ static void a_wrong_type_parameter_or_mesh_is_refused(void **state)
 
 /* --- memory --- */
 
-/* Each allocation in turn fails: the service must give the complete answer or a refusal. */
+/* Each allocation fails in turn: the service must give the complete answer or a refusal. */
 static void arrays_without_memory_are_complete_or_refused(void **state)
 {
     (void)state;
     pg_mesh pg;
     api_bench *b = bench_new();
-    /* The polygon is a concave star, so a fan of triangles from one of its corners would be
-     * wrong. */
+    /* The polygon is a concave star, which a fan of triangles from one corner would not fill
+     * correctly. */
     pg_make(&pg, "01234567", 0);
     for (unsigned v = 0; v < 8; v++) {
         double radius = v % 2 == 0 ? 4 : 1, angle = v * acos(-1) / 4;

@@ -1,9 +1,9 @@
-/* A client's arrays, updated by the changes in the answers of GET .../geometry?since=, must equal
- * all rows fetched anew.
+/* A client's arrays that are updated by the answers of GET .../geometry?since= must equal the rows
+ * that a new client fetches.
  *
  * The environment gives EDITS, the number of random edits (default 3000), and SEED (default: from
- * the clock). A layout is an arrangement of rows and slots; an answer of another layout has all
- * rows. */
+ * the clock). A layout is an assignment of elements to rows; a client whose layout is outdated gets
+ * an answer with all rows. */
 #include "tests/api/arrays.h"
 #include "tests/writing.h"
 
@@ -50,7 +50,7 @@ static uint32_t any(world *w, const he_mesh *m, he_kind kind)
     return id;
 }
 
-/* Returns the mesh that the edit `append` adds, a single vertex; it is made once. */
+/* Returns the mesh that the edit `append` adds: a single vertex. The first call makes this mesh. */
 static const he_mesh *a_vertex(void)
 {
     static he_mesh *made;
@@ -88,7 +88,7 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
         arg->number = p->flags & HE_RANGE && p->max < 1e6
                           ? p->min + (0.1 + 0.8 * md_unit(&w->r)) * (p->max - p->min)
                           : 0.05 + md_unit(&w->r);
-        if (p->flags & HE_WHOLE) { /* more steps would make the mesh large */
+        if (p->flags & HE_WHOLE) { /* large numbers of steps would make the mesh large */
             arg->number = p->max < 1e6 ? p->min : md_below(&w->r, 200);
         }
         break;
@@ -228,8 +228,8 @@ static void end(world *w)
     bench_free(w->b);
 }
 
-/* Two clients follow random edits. One requests the changes after nearly every edit, the other
- * after many: both must arrive at the rows that a new client fetches. */
+/* Two clients follow random edits. One requests the changes after nearly every edit, the other one
+ * only after many edits. Both must have the rows that a new client fetches. */
 static void patched_arrays_equal_fresh_ones(void **state)
 {
     (void)state;
@@ -316,8 +316,8 @@ static void an_answer_lists_only_the_rows_that_an_edit_touched(void **state)
     arrays_update(w.b, "m", &c);
     post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":5}");
     bench_reply r = arrays_ask(w.b, "m", &c);
-    /* The poke added a vertex and made pentagons of two quadrilaterals; their triangles leave four
-     * slots and take six. */
+    /* The split added a vertex and made pentagons of two quadrilaterals, so their triangles need
+     * six rows instead of four. */
     assert_int_equal(arrays_u32(r.body + 88), 1);
     assert_true(arrays_u32(r.body + 92) <= 10);
     assert_true(r.length <= HEADER + 16 + 16 + 48 + 160);
@@ -326,8 +326,8 @@ static void an_answer_lists_only_the_rows_that_an_edit_touched(void **state)
     end(&w);
 }
 
-/* The entity tag must contain the revision, the layout, and the revision since which the changes
- * are listed. */
+/* The entity tag must contain the revision, the layout, and the revision `since` which the answer
+ * lists changes. */
 static void tags_depend_on_the_revision_and_on_since(void **state)
 {
     (void)state;
@@ -382,8 +382,8 @@ static void bad_parameters_are_refused_and_old_layouts_get_all_rows(void **state
         assert_int_equal(r.status, 400);
         bench_reply_free(&r);
     }
-    /* A revision later than the newest is refused. If the client names another layout, its revision
-     * says nothing, and it gets all rows. */
+    /* A request with a `since` later than the newest revision is refused. If the request names
+     * another layout, its `since` is ignored and it gets all rows. */
     arrays ahead = {.revision = c.revision + 1, .layout = c.layout};
     bench_reply r = arrays_ask(w.b, "m", &ahead);
     assert_int_equal(r.status, 400);
@@ -393,7 +393,7 @@ static void bad_parameters_are_refused_and_old_layouts_get_all_rows(void **state
     assert_int_equal(r.status, 200);
     assert_true(arrays_u64(r.body + 16) == 0 && arrays_u64(r.body + 80) == c.layout);
     bench_reply_free(&r);
-    /* The service records changes only from the first request for arrays on; a client that names an
+    /* The service records changes only after the first request for arrays. A client that names an
      * earlier revision must get all rows. */
     poke(w.b, 0);
     poke(w.b, 1);
@@ -436,24 +436,25 @@ static void a_layout_outlives_small_edits_and_ends_when_it_does_not_fit(void **s
     assert_true(layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,0.01]}") ==
                 first);
     assert_true(c.whole == 1);
-    /* A vertex that leaves the sphere around the mesh, to which coordinates are relative, begins a
-     * new layout. */
+    /* A new layout begins when a vertex leaves the bounding sphere of the mesh, because coordinates
+     * are relative to that sphere. */
     uint64_t second =
         layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,100]}");
     assert_true(second != first);
-    /* More than half of the vertices move, so a new layout, with coordinates relative to the new
-     * extent, is better. */
+    /* A new layout begins when more than half of the vertices move: its coordinates are relative to
+     * the new extent of the mesh. */
     uint64_t third = layout_after(
         &w, &c, "{\"op\":\"transform\",\"matrix\":[0.01,0,0,0,0,0.01,0,0,0,0,0.01,0,0,0,0,1]}");
     assert_true(third != second);
-    /* `compact`, which renumbers, and a replacement of the mesh begin a new layout. */
+    /* A new layout begins at `compact`, which renumbers the elements, and when the mesh is
+     * replaced. */
     uint64_t fourth = layout_after(&w, &c, "{\"op\":\"compact\"}");
     assert_true(fourth != third);
     put(w.b, starts[1]);
     arrays_update(w.b, "m", &c);
     uint64_t fifth = c.layout;
     assert_true(fifth != fourth);
-    /* When more than half of the slots for triangles have no face, a new layout begins. */
+    /* A new layout begins when more than half of the rows of triangles are unused. */
     for (int face = 0; face < 48; face += 12) {
         char body[200];
         int used = snprintf(body, sizeof body, "{\"op\":\"face_delete\",\"faces\":[%d", face);
@@ -469,8 +470,8 @@ static void a_layout_outlives_small_edits_and_ends_when_it_does_not_fit(void **s
     end(&w);
 }
 
-/* The mesh is so large that the answer is made in the pool and not by a worker: it must be the
- * same. */
+/* The mesh is so large that a thread of the job pool, and not a worker, makes the answer. The
+ * answer must be the same. */
 static void the_pool_answers_a_large_mesh_with_changes(void **state)
 {
     (void)state;
@@ -481,7 +482,8 @@ static void the_pool_answers_a_large_mesh_with_changes(void **state)
     poke(w.b, 77);
     arrays_update(w.b, "m", &c);
     assert_true(c.whole == 1 && c.changes == 1 && c.bytes < 300);
-    /* The transform changes many rows, but not most of them: it must be answered as changes. */
+    /* The transform changes many rows, but not most of them, so the answer must still consist of
+     * changes. */
     post(w.b, "/v1/meshes/m/edits",
          "{\"op\":\"transform\",\"matrix\":[1,0,0,0.001,0,1,0,0,0,0,1,0,0,0,0,1]}");
     arrays_update(w.b, "m", &c);
@@ -492,8 +494,8 @@ static void the_pool_answers_a_large_mesh_with_changes(void **state)
     end(&w);
 }
 
-/* A face with many corners takes long to triangulate, so the pool does it from a snapshot of the
- * mesh. */
+/* A face with many corners takes long to triangulate, so a thread of the job pool does it from a
+ * snapshot of the mesh. */
 static void changes_of_a_face_of_400_corners_equal_fresh_rows(void **state)
 {
     (void)state;
@@ -528,8 +530,8 @@ static void changes_of_a_face_of_400_corners_equal_fresh_rows(void **state)
 
 /* --- memory --- */
 
-/* Each allocation in turn fails: the service must give the complete answer or a refusal, and later
- * answers must be right. */
+/* Each allocation fails in turn: the service must give the complete answer or a refusal, and all
+ * later answers must be right. */
 static void changes_without_memory_are_complete_or_refused(void **state)
 {
     (void)state;

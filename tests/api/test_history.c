@@ -26,8 +26,8 @@ static uint64_t head_of(api_bench *b)
     return revision;
 }
 
-/* Returns every element with all its links and values, and the document of the mesh, at a revision;
- * 0 is the present one. */
+/* Returns every element with all its links and values, and the document of the mesh, at this
+ * revision; revision 0 means the present one. */
 static char *dump(api_bench *b, uint64_t revision)
 {
     static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
@@ -97,7 +97,7 @@ static void random_op(const he_mesh *m, md_random *random, char body[BODY])
     }
 }
 
-/* --- net sets --- */
+/* --- sets of created, deleted and modified elements --- */
 
 static bool holds(const cJSON *list, uint32_t id)
 {
@@ -117,8 +117,9 @@ static const cJSON *set_of(const bench_reply *r, const char *set, he_kind kind)
     return cJSON_GetObjectItemCaseSensitive(sets, he_kind_plural(kind));
 }
 
-/* The sets `created` and `deleted` of the answer must be exactly the elements that are live after
- * or before only; a vertex that moved must be in `modified`. */
+/* The set `created` of the answer must be exactly the elements that are live after the request but
+ * not before, the set `deleted` those that are live before but not after. A vertex that moved must
+ * be in `modified`. */
 static void check_sets(const bench_reply *r, const he_mesh *before, const he_mesh *after)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -145,13 +146,14 @@ static void check_sets(const bench_reply *r, const he_mesh *before, const he_mes
 
 /* --- random histories --- */
 
-/* What the test expects of the server: the edits that are done and undone, by the revision that
- * made them. */
+/* The state that the test expects of the server. The edits in `done` can be undone, those in
+ * `undone` can be redone; each edit is represented by the revision that it made. */
 typedef struct model {
     uint64_t head;
     uint64_t done[MOST], undone[MOST];
     size_t done_count, undone_count;
-    uint64_t state[MOST]; /* for each revision: the edit on top, 1 for none */
+    /* for each revision, the last edit that is not undone; 1 if there is none */
+    uint64_t state[MOST];
     char *dumps[MOST];
 } model;
 
@@ -178,7 +180,7 @@ static void redo_one(model *m)
     m->state[++m->head] = top(m);
 }
 
-/* Returns the number of undo or redo steps to a state; -1: the state cannot be reached by them. */
+/* Returns the number of undo or redo steps that lead to a state; -1 if they cannot lead to it. */
 static int steps_to(const model *m, bool undo, uint64_t state)
 {
     if (state == top(m)) {
@@ -198,8 +200,8 @@ static int steps_to(const model *m, bool undo, uint64_t state)
     return -1;
 }
 
-/* A request of several steps makes one revision. The revisions in between exist only if the request
- * asks for them one by one. */
+/* Takes several undo or redo steps in the model and compares it with the answer `r`. Each step
+ * makes a revision, which must read like the earlier revision with the same state. */
 static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply r,
                        const he_mesh *before)
 {
@@ -312,8 +314,8 @@ static void every_revision_stays_what_it_was(void **state)
     while (m->done_count == 0) {
         edit_once(b, m, &random);
     }
-    /* Undoes all steps and then redoes all of them, comparing the mesh after each step with what it
-     * was then. */
+    /* Undoes all steps and then redoes all of them. After each step, the mesh must equal what it
+     * was in that state before. */
     he_mesh *end = content_of(b);
     size_t deepest = m->done_count + m->undone_count;
     while (m->undone_count > 0 && m->head < MOST - 40) {
@@ -330,8 +332,8 @@ static void every_revision_stays_what_it_was(void **state)
     char *again = dump(b, 0);
     assert_string_equal(again, last);
     printf("note: %" PRIu64 " revisions, %zu steps deep\n", m->head, deepest);
-    /* Reads the earlier revisions in a mixed order: each must read as it did when it was the
-     * present one. */
+    /* Reads the earlier revisions in a mixed order. Each must read as it did when it was the newest
+     * one. */
     for (uint64_t i = 0; i < m->head; i++) {
         uint64_t revision = 1 + (i * 37 + 11) % m->head;
         char *then = dump(b, revision);
@@ -349,7 +351,7 @@ static void every_revision_stays_what_it_was(void **state)
     bench_free(b);
 }
 
-/* --- a small budget --- */
+/* --- a small memory budget --- */
 
 static void the_history_stays_within_its_budget_and_says_so(void **state)
 {
@@ -396,7 +398,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
             snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
             r = history_post(b, "undo", body);
             assert_true(r.status == 410 || r.status == 200);
-            if (r.status == 200) { /* its content exists again, under another revision, too */
+            if (r.status == 200) { /* 200 if another revision with equal content can be reached */
                 char *same = dump(b, 0);
                 assert_string_equal(same, dumps[oldest - 1]);
                 free(same);
@@ -416,7 +418,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     bench_free(b);
 }
 
-/* Adds one vertex in each of `edits` edits; returns how many steps can be undone. */
+/* Makes `edits` edits, each of which adds a vertex; returns how many of them can be undone. */
 static uint32_t fill_history(api_bench *b, int edits)
 {
     bench_done(
@@ -432,8 +434,8 @@ static uint32_t fill_history(api_bench *b, int edits)
     return left;
 }
 
-/* Makes undo or redo steps, which must leave `undo` and `redo` steps possible; the answer must
- * report the same numbers as the history right afterwards. */
+/* Requests undo or redo steps. The answer must say that `undo` and `redo` more steps are possible,
+ * and the history that is read right afterwards must say the same. */
 static void expect_stacks(api_bench *b, const char *which, uint32_t steps, uint32_t undo,
                           uint32_t redo)
 {
@@ -468,8 +470,9 @@ static void all_that_was_undone_in_a_full_history_can_be_done_again(void **state
     bench_free(b);
 }
 
-/* Each undo adds an entry to the history. When the budget is full, new entries displace the oldest
- * ones and with them the oldest steps to undo, but must never displace a step to redo. */
+/* Each undo adds an entry to the history. When its memory budget is full, new entries displace the
+ * oldest ones, so that fewer steps can be undone. They must never displace a step that can be
+ * redone. */
 static void an_undo_never_costs_a_redo(void **state)
 {
     (void)state;
@@ -492,8 +495,8 @@ static void an_undo_never_costs_a_redo(void **state)
     bench_free(b);
 }
 
-/* After the undo of a subdivision, its step keeps the fine mesh for redo, which alone exceeds the
- * budget: it must not be dropped for that. */
+/* After a subdivision is undone, the history keeps the fine mesh for a redo. The fine mesh alone
+ * exceeds the memory budget, but must be kept. */
 static void what_an_edit_made_does_not_count_against_its_redo(void **state)
 {
     (void)state;
@@ -514,8 +517,8 @@ static void what_an_edit_made_does_not_count_against_its_redo(void **state)
         assert_int_equal(history_number(r.json, "undo"), 1);
         bench_done(r);
     }
-    /* A new edit ends the possibility to redo; now the fine mesh counts toward the budget and must
-     * be dropped. */
+    /* After a new edit nothing can be redone, so the fine mesh counts toward the budget and must be
+     * dropped. */
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/undo", NULL)));
     bench_done(bench_expect(
         200, bench_post(b, "/v1/meshes/c/edits", "{\"op\":\"face_poke\",\"face\":0}")));
@@ -560,7 +563,7 @@ static void an_edit_beyond_the_budget_says_that_the_history_ends(void **state)
     bench_free(b);
 }
 
-/* --- refusals of steps --- */
+/* --- refusals of undo and redo --- */
 
 static void steps_that_cannot_be_taken_change_nothing(void **state)
 {
@@ -572,7 +575,8 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     } rows[] = {
         {"undo", "{\"to_revision\":9}", 422, "no_such_revision"},
         {"redo", "{\"to_revision\":9}", 422, "no_such_revision"},
-        {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"}, /* only redo leads there */
+        /* only a redo leads to that revision */
+        {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"},
         {"redo", "{\"to_revision\":1}", 409, "unreachable_revision"},
         {"undo", "{\"steps\":2}", 409, "nothing_to_undo"},
         {"redo", "{\"steps\":2}", 409, "nothing_to_redo"},
@@ -601,8 +605,8 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     bench_reply r = bench_expect(200, history_post(b, "undo", "{\"to_revision\":2}"));
     assert_int_equal(history_number(r.json, "revision"), 4);
     bench_done(r);
-    /* A state that was undone and then replaced by other edits can be read, but no undo or redo
-     * leads to it. */
+    /* A state that was undone and then followed by another edit can be read, but neither undo nor
+     * redo leads to it. */
     bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
     r = bench_expect(409, history_post(b, "undo", "{\"to_revision\":3}"));
     assert_string_equal(history_code(&r), "unreachable_revision");
@@ -635,7 +639,7 @@ static void a_finer_mesh_is_one_step_of_the_history(void **state)
     bench_done(bench_expect(200, history_post(b, "redo", "{\"steps\":2}")));
     char *again = dump(b, 0);
     assert_string_equal(again, after);
-    /* Ids that were issued by edits which are undone must not be issued again. */
+    /* An id that an undone edit has issued must not be issued again. */
     bench_done(bench_expect(200, history_post(b, "undo", "{\"steps\":3}")));
     r = bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}"));
     const cJSON *results = cJSON_GetObjectItem(r.json, "results");

@@ -1,5 +1,5 @@
-/* A request with an Idempotency-Key is executed once and answered equally each time it is
- * repeated. */
+/* A request with an Idempotency-Key is executed only once; each repetition of the request gets the
+ * same answer. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -91,7 +91,7 @@ static void a_write_is_done_once_and_answered_twice(void **state)
         for (size_t h = 0; h < sizeof headers / sizeof *headers; h++) {
             assert_string_equal(bench_header(&first, headers[h]), bench_header(&again, headers[h]));
         }
-        /* The repeated answer, like the first one, must be held back until the change is
+        /* Like the first answer, the answer to the repeated request must wait until the change is
          * durable. */
         const st_shown *shown = &api_answer_of(first.exchange)->shown;
         assert_true(shown->position > 0 && shown->incarnation != 0);
@@ -120,8 +120,8 @@ static void a_key_is_of_one_request(void **state)
             bench_send(b, "PATCH", "/v1/meshes/m",
                        (const char *const[]){"Idempotency-Key", "k", NULL}, "{}"));
     assert_int_equal(revision(b), now);
-    /* A key is one of its mesh, and keys for creating meshes are of the store: with another name or
-     * for another mesh, a key is independent of this one. */
+    /* Keys of edits belong to one mesh, and keys of requests that create a mesh belong to the
+     * store. A key with another name, or for another mesh, is independent of the key above. */
     bench_done(bench_expect(
         200, keyed(b, "POST", "/v1/meshes/m/edits", "K", "{\"op\":\"face_poke\",\"face\":2}")));
     bench_done(bench_expect(201, keyed(b, "POST", "/v1/meshes?id=n", "k", "{\"shape\":\"cube\"}")));
@@ -186,8 +186,8 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 2);
 
-    /* The request that created the deleted mesh is repeated: it gets the answer of the first time,
-     * and no mesh is created. */
+    /* The mesh was deleted. The request that created it is repeated: it gets its first answer
+     * again, and no mesh is created. */
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     r = bench_expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}"));
     assert_string_equal(bench_header(&r, "Location"), "/v1/meshes/m");
@@ -197,8 +197,8 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     bench_free(b);
 }
 
-/* If the answer is huge, only the fact that the request was executed is kept, and the repeated
- * request is answered without a body. */
+/* The store does not keep a huge answer, only the fact that the request was executed. A repetition
+ * of the request is answered without a body. */
 static void a_huge_answer_is_given_again_without_its_body(void **state)
 {
     (void)state;

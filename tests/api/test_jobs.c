@@ -1,5 +1,5 @@
 /* Jobs, which continue after their request is answered: each state of a job, and the effects of a
- * long edit on other requests. Jobs run when a test calls them; there are no threads. */
+ * long edit on other requests. There are no threads; a job runs when the test says so. */
 #include "tests/api/request.h"
 
 #include "api/header/prefer.h"
@@ -56,7 +56,7 @@ static void send(int status, const char *method, const char *target, const char 
     bench_reply_free(&r);
 }
 
-/* Submits a job; `path` becomes its path. */
+/* Submits a job; `path` becomes the path of the job in the API. */
 static void submit(const char *method, const char *target, const char *body, char path[64])
 {
     bench_reply r = expect(202, method, target, async, body);
@@ -75,7 +75,7 @@ static bench_reply job_in(const char *path, const char *state)
     return r;
 }
 
-/* Returns the member `inner` of the member `outer` of the job. */
+/* Returns the member `inner` of the member `outer` of the job in the answer. */
 static const cJSON *inside(const bench_reply *r, const char *outer, const char *inner)
 {
     const cJSON *found = cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, outer), inner);
@@ -149,7 +149,7 @@ static void what_is_wrong_with_the_request_is_said_at_once(void **state)
     bench_reply_free(&r);
     r = expect(412, "POST", "/v1/meshes/m/copy", stale, NULL);
     bench_reply_free(&r);
-    send(200, "POST", "/v1/meshes/m/edits", POKE); /* no job claims the mesh */
+    send(200, "POST", "/v1/meshes/m/edits", POKE); /* works because no job has claimed the mesh */
 }
 
 static void preconditions_are_asked_again_at_the_end(void **state)
@@ -232,8 +232,8 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
-/* Requires that the request is refused because this job claims the mesh, and that the refusal names
- * the job. */
+/* Requires that the request is refused because a job has claimed the mesh, and that the refusal
+ * names this job. */
 static void expect_named(const char *job, const char *method, const char *target, const char *body)
 {
     bench_reply r = expect(409, method, target, NULL, body);
@@ -320,15 +320,15 @@ static void a_refused_long_edit_gives_the_mesh_back(void **state)
     assert_string_equal(inside(&r, "problem", "pointer")->valuestring, "/ops/1");
     bench_reply_free(&r);
     submit("POST", "/v1/meshes/m/edits", TRANSFORM, path);
-    r = expect(202, "DELETE", path, NULL, NULL); /* it had not begun */
+    r = expect(202, "DELETE", path, NULL, NULL); /* the job is cancelled before it begins */
     bench_reply_free(&r);
     r = expect(200, "POST", "/v1/meshes/m/edits", NULL, POKE);
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 2);
     bench_reply_free(&r);
 }
 
-/* The answers to the long edits are ready but the clients still read them: the mesh must not stay
- * claimed until they have. */
+/* The answers to the long edits are ready, but the clients have not read them yet. The mesh must be
+ * writable already. */
 static void who_has_the_answer_to_a_long_edit_may_write(void **state)
 {
     (void)state;
@@ -400,8 +400,8 @@ static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
     send(410, "GET", "/v1/meshes/m/faces/6", NULL);
 }
 
-/* The refinements would need more ids than there are: they must be refused before a job begins, and
- * the mesh must not stay claimed. */
+/* The refinements would need more ids than exist. The edit must be refused before a job begins, and
+ * the mesh must stay writable. */
 static void more_steps_than_ids_allow_are_refused_at_once(void **state)
 {
     (void)state;
@@ -435,8 +435,8 @@ static void a_dry_run_changes_nothing_as_a_job_either(void **state)
     bench_reply_free(&r);
 }
 
-/* An edit whose estimated time is above a second becomes a job, unless the client says how long it
- * waits. */
+/* An edit that is estimated to take longer than a second becomes a job, unless the client says how
+ * long it waits. */
 static void what_is_estimated_above_a_second_becomes_a_job(void **state)
 {
     (void)state;
@@ -474,7 +474,7 @@ static void preferences_are_read(void **state)
     assert_true(api_prefer_read("wait=99999999999999999999").wait > 1e5);
 }
 
-/* --- listening --- */
+/* --- listening to a job --- */
 
 static int wakes;
 
@@ -494,7 +494,7 @@ static size_t read_some(const api_source *live, char *text, size_t size, int64_t
     return length;
 }
 
-/* Begins to listen to the events of a job; the caller must free the exchange. */
+/* Opens the event stream of a job; the caller must free the exchange. */
 static api_exchange *listen_to(const char *job, const api_source **live)
 {
     char path[80];
@@ -509,8 +509,8 @@ static api_exchange *listen_to(const char *job, const api_source **live)
     return x;
 }
 
-/* The mesh of a job is deleted, and another mesh gets its id: listeners of the new mesh must get no
- * events about the job. */
+/* The mesh of a job is deleted, and another mesh is created with its id. Listeners of the new mesh
+ * must get no events about the job. */
 static void a_job_is_told_to_followers_of_its_own_mesh_only(void **state)
 {
     (void)state;
@@ -554,7 +554,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "\"queued\""));
     assert_int_equal(wakes, 0);
     bench_run_jobs(bench, 1);
-    assert_int_equal(wakes, 1); /* a listener is woken once, until it reads */
+    assert_int_equal(wakes, 1); /* the listener is not woken again until it has read */
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "\"state\":\"done\""));
@@ -585,7 +585,7 @@ static void a_listener_is_told_that_the_server_stops(void **state)
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "stopping"));
     api_free(x);
-    bench_run_jobs(bench, 1); /* a listener that left is not woken */
+    bench_run_jobs(bench, 1); /* a listener whose stream has ended is not woken */
 }
 
 /* --- when an allocation fails --- */
@@ -598,8 +598,8 @@ static const char *state_of(const char *path, char out[16])
     return out;
 }
 
-/* Each allocation in turn fails, while the job is submitted or while it runs: the request is
- * refused, or the job fails and leaves the mesh as it was, or everything succeeds. */
+/* Each allocation fails in turn, while the job is submitted or while it runs. Either the request is
+ * refused, or the job fails and the mesh is unchanged, or both succeed. */
 static void starve(const char *method, const char *target, const char *body)
 {
     failing f = {.may_succeed = true, .what = target};

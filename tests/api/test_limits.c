@@ -1,5 +1,5 @@
-/* Limits per client: requests and bytes a second of tokens and addresses, connections, jobs. The
- * test sets the clock. */
+/* Limits per client: requests and bytes a second of tokens and addresses, connections, and jobs.
+ * The test sets the time of the clock. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -112,7 +112,7 @@ static void a_body_is_not_read_of_a_request_that_is_not_let_in(void **state)
     assert_non_null(x);
     assert_int_equal(step, API_READY);
     assert_int_equal(api_answer_of(x)->status, 429);
-    assert_true(api_answer_of(x)->close); /* its body has not been read */
+    assert_true(api_answer_of(x)->close); /* the connection closes because the body was not read */
     assert_int_equal(api_answer_of(x)->shown.position, 0);
     api_free(x);
     bench_free(b);
@@ -129,14 +129,15 @@ static void bytes_are_counted_both_ways_and_a_debt_is_waited_for(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"bytes\";r=200;t=0");
     const uint64_t taken = sizeof cube - 1 + r.length;
     bench_done(r);
-    assert_true(taken > 200); /* the answer took more than the bucket held */
+    assert_true(taken > 200); /* the answer took more bytes than the rate limit's bucket held */
     const uint64_t wait = (taken - 200) / 100 + 1;
     r = bench_expect(429, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(strtoull(bench_header(&r, "Retry-After"), NULL, 10), wait);
     assert_true(strncmp(bench_header(&r, "RateLimit"), "\"bytes\";r=0;t=", 14) == 0);
     expect_code(r, 429, "rate_limit", "the address is limited to 100 bytes a second");
     for (int i = 0; i < 50; i++) {
-        expect(b, 429, "/v1/meshes/m"); /* a refused request takes nothing from the bucket */
+        /* a refused request takes nothing from the rate limit's bucket */
+        expect(b, 429, "/v1/meshes/m");
     }
     pass_seconds(wait);
     bench_done(
@@ -170,7 +171,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
     pass_seconds(10);
     bench_done(bench_expect(404, bench_send(b, "HEAD", "/v1/meshes/none", NULL, NULL)));
     pass_seconds(10);
-    api_charge(x, 200); /* the bytes of the answer */
+    api_charge(x, 200); /* counts the bytes of an answer */
     expect(b, 429, "/v1/meshes");
     api_free(x);
     pass_seconds(10);
@@ -183,7 +184,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
         status = r.status;
         bench_done(r);
     }
-    assert_int_equal(status, 429); /* the opening and closing messages are counted, too */
+    assert_int_equal(status, 429); /* the first and last messages of a stream are counted, too */
     assert_true(streams > 1);
     bench_free(b);
 }
@@ -198,7 +199,7 @@ static void a_token_has_a_bucket_of_its_own_wherever_it_comes_from(void **state)
     expect(b, 200, "/v1/meshes");
     expect_code(bench_get(b, "/v1/meshes"), 429, "rate_limit",
                 "the token is limited to 1 requests a second");
-    expect(b, 200, "/v1/openapi.json"); /* an open route uses the bucket of the address */
+    expect(b, 200, "/v1/openapi.json"); /* a route that needs no token counts for the address */
     bench_use_token(b, "prueba");
     for (int i = 0; i < 4; i++) {
         expect(b, 200, "/v1/meshes");
@@ -235,7 +236,7 @@ static void a_reload_limits_at_once_and_forgets_no_debt(void **state)
     bench_change_tokens(b, ALICE " requests=3\n" BOB " requests=1\n");
     bench_done(bench_expect(200, bench_post(b, "/v1/admin/reload", NULL)));
     expect(b, 200, "/v1/meshes");
-    expect(b, 200, "/v1/meshes"); /* the reload itself came before the limit */
+    expect(b, 200, "/v1/meshes"); /* the reload counted before the new limit applied */
     expect(b, 429, "/v1/meshes");
     bench_use_token(b, "test");
     expect(b, 200, "/v1/meshes");
@@ -277,7 +278,8 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     expect_code(r, 429, "too_many_jobs_of_token",
                 "the token is limited to 2 jobs that wait or run");
-    bench_done(bench_expect(200, bench_get(b, check))); /* only jobs are limited */
+    /* a request that does not become a job is admitted */
+    bench_done(bench_expect(200, bench_get(b, check)));
     bench_use_token(b, "prueba");
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));
     bench_run_jobs(b, 1);

@@ -1,5 +1,5 @@
-/* Long edits together with everything else that happens to a mesh: the events that listeners get,
- * and the history. */
+/* Long edits while other things happen to their mesh: what the listeners hear, and what the history
+ * contains afterwards. */
 #include "tests/api/stream.h"
 
 #include "api/job/job_table.h"
@@ -87,8 +87,8 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
     assert_job(l, "cancelled");
     bench_run_jobs(b, 1);
     assert_string_equal(stream_next(l, false), "");
-    /* The mesh is deleted while the job waits: the stream of events about the mesh ends, and the
-     * end of the job is not reported in it. */
+    /* The mesh is deleted while a job waits. The event stream of the mesh ends, without an event
+     * about the end of the job. */
     api_free(submit(b, "/v1/meshes/m/edits", poke));
     assert_int_equal(send(b, "DELETE", "/v1/meshes/m", NULL), 204);
     bench_run_jobs(b, 1);
@@ -98,11 +98,12 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
     bench_free(b);
 }
 
-/* --- long edits, attributes and steps together --- */
+/* --- long edits, attributes and undo steps together --- */
 
 enum { REVISIONS = 80, SOME = 6 };
 
-/* Creates a mesh so large that an edit of all of it claims the mesh and publishes a copy. */
+/* Creates a mesh so large that an edit of all its elements works on a copy, which then replaces the
+ * content of the mesh. */
 static void put_large(api_bench *b)
 {
     int status =
@@ -167,8 +168,8 @@ static void do_something(api_bench *b, md_random *random, int turn)
     }
 }
 
-/* Copies the revisions made since `known`, each as it is read now; the newest one must equal the
- * mesh. Some of the earlier revisions are read once more. */
+/* Stores a copy of each revision since `known`. The newest one must equal the mesh. Some of the
+ * earlier revisions are read again and compared with the stored copy. */
 static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_t known)
 {
     st_mesh *mesh = stream_mesh(b);

@@ -94,7 +94,7 @@ static void vectors_have_three_components(void **state)
     expect_answer(
         b, "{\"measure\":\"normal\",\"of\":{\"vertices\":\"all\"},\"weights\":\"uniform\"}",
         "{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],[0,0,1],[0,0,1],[0,0,1]]}");
-    /* The half-edge 1 is on the boundary and so has no corner of a face: its normal is 0. */
+    /* Half-edge 1 is on the boundary, so it is not the corner of a face and has the normal 0. */
     expect_answer(b, "{\"measure\":\"normal\",\"of\":{\"halfedges\":[0,1]},\"crease\":0}",
                   "{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],[0,0,0]]}");
     expect_answer(b, "{\"measure\":\"area\",\"of\":{\"faces\":[]}}",
@@ -149,7 +149,7 @@ static void octets_are_doubles_and_null_is_nan(void **state)
         numbers += !isnan(value);
         assert_true(isnan(value) || fabs(value) < 1e-12);
     }
-    assert_int_equal(numbers, 1); /* the one inside */
+    assert_int_equal(numbers, 1); /* the one vertex that is not on the boundary */
     bench_reply_free(&r);
     r = bench_send(b, "POST", QUERY, octets,
                    "{\"queries\":[{\"measure\":\"normal\",\"of\":{\"faces\":[0,3]}}]}");
@@ -263,8 +263,9 @@ static void faces_that_meet_are_listed_up_to_a_limit(void **state)
     bench_free(b);
 }
 
-/* A thousand triangles lie in one place, so a question has to visit all of them. The steps of all
- * questions in a request count toward one budget; the first question is always answered. */
+/* Three thousand triangles lie in one place, so a question about that place has to visit all of
+ * them. The steps of all questions in a request count toward one budget, but the first question is
+ * always answered. */
 static void crowded_places_have_a_budget(void **state)
 {
     (void)state;
@@ -291,7 +292,8 @@ static void crowded_places_have_a_budget(void **state)
     assert_true(in(found, "total")->valuedouble >= 1 << 20);
     assert_true(cJSON_IsFalse(in(found, "complete")));
     bench_reply_free(&r);
-    /* Each of the rays visits two or three thousand bounding boxes. */
+    /* The number of nearest-point questions; each of them visits two or three thousand bounding
+     * boxes. */
     enum { RAYS = 9000, RAYS_TEXT = RAYS * 64 };
     char *rays = malloc(RAYS_TEXT);
     assert_non_null(rays);
@@ -316,10 +318,10 @@ static void crowded_places_have_a_budget(void **state)
     bench_free(b);
 }
 
-/* --- far vertices --- */
+/* --- isolated vertices far away --- */
 
-/* Returns the answer to a request about a cube with an isolated vertex at the distance `far`; for 0
- * the vertex is at the origin, where it is inside the cube and on no face. */
+/* Returns the answer to a request about a cube and an isolated vertex. The vertex is at the
+ * distance `far`, or, if that is 0, at the origin: inside the cube and on no face. */
 static bench_reply ask_cube(api_bench *b, double far, const char *method, const char *target,
                             const char *body)
 {

@@ -1,4 +1,5 @@
-/* A handler that reads is called once per request, with the state of its mesh in x->content. */
+/* The handler of a route that reads is called once per request, with the requested state of the
+ * mesh in x->content. */
 #include "tests/api/request.h"
 
 #include "api/request/mesh_access.h"
@@ -11,7 +12,7 @@
 
 #include <cmocka.h>
 
-/* --- a table of routes of its own --- */
+/* --- a table of routes for this test --- */
 
 static struct {
     unsigned entered;
@@ -101,8 +102,8 @@ static api_bench *bench_of_two_revisions(void)
     return b;
 }
 
-/* Sends a request to a route of the test's table. Returns the status; `*step` becomes the state of
- * the request after the worker. */
+/* Sends a request to a route of the test's table and returns the status of the answer. `*step`
+ * becomes the state of the request when it left the worker. */
 static int ask(api_service *service, const char *word, const char *query, const char *tag,
                api_step *step)
 {
@@ -205,7 +206,7 @@ static void a_handler_that_leaves_the_worker_is_entered_anew(void **state)
     bench_free(b);
 }
 
-/* --- each row of the API declares what it reads --- */
+/* --- each route of the API declares what it reads --- */
 
 static void rows_that_read_content_say_so(void **state)
 {
@@ -233,9 +234,10 @@ static void rows_that_read_content_say_so(void **state)
     }
 }
 
-/* --- two requests make slots at the same time --- */
+/* --- two requests compute the layout of the arrays at the same time --- */
 
-static api_bench *interrupted; /* another request makes slots while this one does */
+/* If not NULL, another request computes the layout while this one does. */
+static api_bench *interrupted;
 static uint64_t others_layout;
 
 static uint64_t layout_of(const bench_reply *r)

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* Returns what a reference "#/components/GROUP/NAME" names. */
+/* Returns the object to which a reference "#/components/GROUP/NAME" points. */
 static const cJSON *resolve(const cJSON *root, const char *reference)
 {
     char group[32], name[64];
@@ -22,8 +22,8 @@ static const cJSON *resolve(const cJSON *root, const char *reference)
     return json_member(json_member(json_member(root, "components"), group), name);
 }
 
-/* Follows every reference below `at`, counts the references, and marks the schemas that they
- * reach. */
+/* Follows every reference below `at`, adds their number to `*references`, and marks the schemas to
+ * which they point. */
 static void follow(const cJSON *root, cJSON *at, size_t *references)
 {
     cJSON *child;
@@ -88,8 +88,8 @@ static void shapes_are_those_of_the_table(void **state)
     bench_free(b);
 }
 
-/* Each member that the schema of a request lists must be known to the service: with a value of the
- * wrong type it is refused as a wrong type and not as an unknown member. */
+/* The service must know each member that a request's schema lists: a value of the wrong type must
+ * be refused because of its type, and not as an unknown member. */
 static void bodies_take_what_their_schemas_list(void **state)
 {
     (void)state;
@@ -134,8 +134,8 @@ static bool is_exposed(const char *name)
     return found;
 }
 
-/* Requires that each header which the document lists for an answer is exposed to scripts in
- * browsers (Access-Control-Expose-Headers); returns how many there are. */
+/* Requires that scripts in browsers may read each header that the document lists for an answer
+ * (Access-Control-Expose-Headers). Returns the number of these headers. */
 static unsigned expect_exposed(const cJSON *at)
 {
     unsigned count = 0;

@@ -1,5 +1,5 @@
-/* Meshes that consist of several files in one multipart body: a .gltf with its .bin, an OBJ with
- * its library of materials. */
+/* A mesh in several files that are sent in one multipart body: a .gltf with its .bin, or an OBJ
+ * with its material library. */
 #include "base/mem.h"
 #include "tests/api/request.h"
 #include "tests/codings.h"
@@ -21,7 +21,7 @@ static const char type[] = "multipart/form-data; boundary=" BOUNDARY;
 typedef struct file {
     const char *name, *type;
     const char *bytes;
-    size_t length; /* 0: `data` is a text */
+    size_t length; /* 0: `bytes` is a NUL-terminated text */
 } file;
 
 enum { MOST_FILES = 4, MOST_BODY = 4096 };
@@ -88,8 +88,8 @@ static const unsigned char corners[36] = {[14] = 0x80, [15] = 0x3F, [30] = 0x80,
 #define OBJ "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
 #define MTL "newmtl red\nKd 1 0 0\n"
 
-/* Requires that the answer is about a mesh of three vertices and one face, in this format; returns
- * the answer. */
+/* Requires that the answer describes a mesh of three vertices and one face that was read in this
+ * format; returns the answer. */
 static bench_reply expect_triangle(const char *format, bench_reply r)
 {
     r = bench_expect(201, r);
@@ -123,8 +123,8 @@ static void a_gltf_finds_its_buffers_by_name(void **state)
         {{"a.gltf", NULL, GLTF("the%20%C3%BC.bin"), 0}, {"the \xC3\xBC.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("100%25.bin"), 0}, {"100%25.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("the \\u00fc.bin"), 0}, {"the \xC3\xBC.bin", NULL, BIN}},
-        /* A browser leaves the folders out of the names of chosen files, so a file is also found by
-         * the last part of its path. */
+        /* A browser sends the names of chosen files without their folders. So a file that is not
+         * found by its path is found by the last part of that path. */
         {{"a.gltf", NULL, GLTF("./a.bin"), 0}, {"a.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("a.bin"), 0}, {"dir\\a.bin", NULL, BIN}},
         {{"d/a.gltf", NULL, GLTF("x/a.bin"), 0},
@@ -156,8 +156,8 @@ static void a_buffer_that_did_not_come_is_named(void **state)
     expect_refused(
         422, "unsupported", "the buffer is in another file, 'a.bin': send both",
         send_files(b, "/v1/meshes", (file[MOST_FILES]){{"a.gltf", NULL, GLTF("a.bin"), 0}}));
-    /* Two files have the name that the glTF refers to, in different folders: the request is refused
-     * because neither is the right one for certain. */
+    /* The body has two files of the name to which the glTF refers, in other folders. The request is
+     * refused, because either file could be the right one. */
     expect_refused(422, "unsupported", "the file 'x/a.bin' of a buffer was not sent",
                    send_files(b, "/v1/meshes",
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("x/a.bin"), 0},
@@ -279,7 +279,7 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     expect_refused(415, "unsupported_media_type", "multipart/mixed",
                    bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", mixed, packed.bytes,
                                                         packed.length}));
-    packed.length -= 4; /* the last hyphens and the line break */
+    packed.length -= 4; /* cuts off "--" and the line break at the end of the body */
     expect_refused(400, "bad_multipart", "ends before its last delimiter",
                    send_body(b, "POST", "/v1/meshes", &packed));
     /* A mistake in the mesh file is reported as soon as it is read, before the other files have

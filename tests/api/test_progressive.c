@@ -1,6 +1,6 @@
-/* Progressive meshes, sent from coarse to fine: this test decodes them with a decoder written from
- * the published description of the bytes only. Its faces are lists of corners and its edges pairs
- * of ends, without links. */
+/* Progressive meshes, which are sent from coarse to fine. This test decodes them with a decoder
+ * that was written only from the published description of the format. In the decoder, faces are
+ * lists of corners and edges are pairs of vertices. */
 #include "tests/api/request.h"
 
 #include "unit/fixture.h"
@@ -33,8 +33,8 @@ typedef struct level {
     he_vec3 *place;
     bool *vertex, *edge, *face;
     uint32_t (*end)[2], (*corner)[3];
-    const char *next; /* bytes of the next vertex split */
-    uint32_t left;    /* number of splits still to be read */
+    const char *next; /* position in the answer of the next vertex split */
+    uint32_t left;    /* number of vertex splits still to be read */
 } level;
 
 static level first_level(const bench_reply *r)
@@ -104,7 +104,7 @@ static void add_face(level *l, uint32_t face, uint32_t a, uint32_t b, uint32_t c
     }
 }
 
-/* Replaces the edge between v and x by one between u and x. */
+/* Replaces the edge between the vertices v and x by an edge between u and x. */
 static void move_edge(level *l, uint32_t v, uint32_t x, uint32_t u)
 {
     for (uint32_t e = 0; e < l->edges; e++) {
@@ -147,8 +147,8 @@ static void split(level *l)
     l->left--;
 }
 
-/* Requires that the level is a mesh whose faces can be built, and whose edges are those of the
- * faces. */
+/* Requires that the faces of the decoded mesh form a valid mesh, and that its edges are the sides
+ * of these faces. */
 static void assert_level(const level *l)
 {
     uint32_t *name = calloc(l->vertices + 1, sizeof *name), edges = 0;
@@ -218,7 +218,7 @@ static void assert_same(const level *l, const he_mesh *m)
     }
 }
 
-/* Requires that the mesh `id` has this revision and equals the decoded level. */
+/* Requires that the mesh `id` has this revision and equals the decoded mesh. */
 static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
 {
     st_store *store = bench_store(b);
@@ -231,7 +231,8 @@ static void assert_is(api_bench *b, const char *id, const level *l, uint64_t rev
     st_release(mesh);
 }
 
-/* Decodes the answer and checks the mesh after each vertex split; if there are many, after some. */
+/* Decodes the answer and checks the mesh after each vertex split, or after some if there are
+ * many. */
 static void replay(api_bench *b, const char *id)
 {
     char path[64];
@@ -293,8 +294,7 @@ static void splits_lead_back_to_the_mesh(void **state)
     bench_free(b);
 }
 
-/* The mesh is curved and has rows of deleted elements between the live ones, as edits leave
- * them. */
+/* The mesh is curved, and edits have left gaps in the ids of its elements. */
 static void ids_that_are_not_in_order_come_back(void **state)
 {
     (void)state;
@@ -365,7 +365,7 @@ static void a_large_mesh_is_decimated_in_a_job(void **state)
     bench_free(b);
 }
 
-/* --- cancelling, memory, and what it holds --- */
+/* --- cancelling, failing allocations, and the memory of an answer --- */
 
 #define LARGE "{\"shape\":\"icosphere\",\"subdivisions\":4}"
 
@@ -388,7 +388,8 @@ static api_exchange *ask(api_bench *b, const char *query,
     return x;
 }
 
-/* Asks to cancel in the n-th call, by returning false, and in all later ones; with n = 0 never. */
+/* Cancels the request in the n-th call and in all later ones, by returning false. The context
+ * points to n; 0 means never. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -408,7 +409,7 @@ static void it_can_be_given_up_at_any_time(void **state)
         int status = api_answer_of(x)->status;
         api_free(x);
         if (left > 0) {
-            assert_int_equal(status, 200); /* the work ended before the n-th call */
+            assert_int_equal(status, 200); /* the request was finished before the n-th call */
             break;
         }
         assert_int_equal(status, 503);
@@ -425,7 +426,7 @@ static void every_allocation_may_fail(void **state)
     api_bench *b = bench_new();
     make(b, "m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
     int never = 0;
-    failing f = {.may_succeed = true}; /* to shrink a block is optional */
+    failing f = {.may_succeed = true}; /* shrinking a block of memory may fail */
     while (failing_next(&f)) {
         api_exchange *x = ask(b, "splits=50", count_down, &never);
         int status = x == NULL ? 507 : api_answer_of(x)->status;
@@ -437,7 +438,7 @@ static void every_allocation_may_fail(void **state)
     bench_free(b);
 }
 
-/* The number of bytes that are allocated, as malloc counts them. */
+/* The number of bytes that are allocated now, as malloc counts them. */
 static size_t held;
 
 static void *count_resize(void *context, void *memory, size_t size)
@@ -466,7 +467,8 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     held = 0;
     api_bench *b = bench_new();
     make(b, "m", LARGE);
-    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive"))); /* makes a snapshot */
+    /* this first request makes a snapshot, which stays */
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive")));
     int never = 0;
     for (size_t i = 0; i < sizeof queries / sizeof *queries; i++) {
         size_t before = held;
@@ -484,8 +486,8 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* The history keeps the order in which a decimation collapsed edges as long as it keeps the edit,
- * whether the edit is stored as single changes or as a replacement of the mesh. */
+/* The history keeps the sequence of edge collapses of a decimation as long as it keeps the edit,
+ * whether it stores the edit as changes of single elements or as a replacement of the mesh. */
 static void the_history_keeps_the_record_of_a_decimation(void **state)
 {
     (void)state;

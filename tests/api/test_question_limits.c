@@ -1,4 +1,4 @@
-/* Questions that are refused, what questions cost, and questions during which an allocation
+/* Questions that must be refused, what questions cost, and questions during which an allocation
  * fails. */
 #include "tests/api/request.h"
 
@@ -22,7 +22,7 @@ static void put(api_bench *b, const char *document)
     bench_reply_free(&r);
 }
 
-/* A document of a cube and of vertex 8, which no face has. */
+/* A mesh document of a cube with an isolated vertex, 8. */
 static const char cube[] =
     "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[5,5,5]],"
     "\"faces\":[[3,2,1,0],[4,5,6,7],[5,4,0,1],[6,5,1,2],[7,6,2,3],[4,7,3,0]]}";
@@ -50,7 +50,7 @@ static api_bench *begin(void)
 
 typedef struct refusal {
     const char *target; /* after /v1/meshes/m */
-    const char *body;   /* NULL: a GET */
+    const char *body;   /* NULL: the request is a GET */
     int status;
     const char *code;
     const char *pointer; /* NULL: none */
@@ -90,7 +90,7 @@ static const refusal refusals[] = {
     {"/components?by=face", NULL, 400, "bad_parameter", NULL},
     {"/boundaries?by=edge", NULL, 400, "unknown_parameter", NULL},
     {"/check?limit=1", NULL, 400, "unknown_parameter", NULL},
-    /* walks: the object */
+    /* mistakes in the object that describes a walk */
     {TRAVERSE, "[]", 400, "wrong_type", ""},
     {TRAVERSE, "{}", 400, "missing_member", ""},
     {TRAVERSE, "{\"walk\":1}", 400, "wrong_type", "/walk"},
@@ -101,7 +101,7 @@ static const refusal refusals[] = {
     {TRAVERSE, WALK("\"loop\",\"walk\":\"loop\""), 400, "duplicate_member", "/walk"},
     {TRAVERSE, "{\"walk\":\"loop\"", 400, "malformed_json", NULL},
     {TRAVERSE, "", 400, "missing_body", NULL},
-    /* the member "from" */
+    /* mistakes in the member "from" of a walk */
     {TRAVERSE, WALK("\"loop\",\"from\":2"), 400, "wrong_type", "/from"},
     {TRAVERSE, WALK("\"loop\",\"from\":{}"), 400, "missing_member", "/from"},
     {TRAVERSE, WALK("\"loop\",\"from\":{\"corner\":2}"), 400, "unknown_member", "/from/corner"},
@@ -119,7 +119,7 @@ static const refusal refusals[] = {
      "/from/halfedge"},
     {TRAVERSE, WALK("\"breadth_first\",\"from\":{\"face\":0}"), 422, "deleted_element",
      "/from/face"},
-    /* the member "path" */
+    /* mistakes in the member "path" of a walk */
     {TRAVERSE, PATH("\"repeat\":1"), 400, "missing_member", ""},
     {TRAVERSE, PATH("\"path\":[]"), 400, "bad_value", "/path"},
     {TRAVERSE, PATH("\"path\":\"next\""), 400, "wrong_type", "/path"},
@@ -131,7 +131,7 @@ static const refusal refusals[] = {
     {TRAVERSE, PATH("\"path\":[\"next\"],\"repeat\":9007199254740992"), 413, "limit_exceeded", ""},
     {TRAVERSE, PATH("\"path\":[\"next\"],\"repeat\":9007199254740994"), 400, "bad_value",
      "/repeat"},
-    /* the members "depth", "limit", "to" and "by" */
+    /* mistakes in the members "depth", "limit", "to" and "by" of a walk */
     {TRAVERSE, WALK("\"rings\",\"from\":{\"vertex\":1}"), 400, "missing_member", ""},
     {TRAVERSE, WALK("\"rings\",\"from\":{\"vertex\":1},\"depth\":10000001"), 400, "bad_value",
      "/depth"},
@@ -153,7 +153,8 @@ static const refusal refusals[] = {
     {QUERY, "{\"queries\":[],\"limit\":1}", 400, "unknown_member", "/limit"},
 };
 
-/* A mistake in one question of several, here the second, is reported in the place of its answer. */
+/* Questions with mistakes. Each is sent as the second of several questions: the refusal must stand
+ * in the place of its answer, and the other questions must be answered. */
 static const refusal bad_questions[] = {
     {NULL, "1", 400, "wrong_type", ""},
     {NULL, "{}", 400, "missing_member", ""},
@@ -203,7 +204,7 @@ static const refusal bad_questions[] = {
      "/crease"},
     {NULL, "{\"measure\":\"angle\",\"of\":{\"halfedge\":4},\"crease\":1}", 400, "unknown_member",
      "/crease"},
-    /* mistakes in rays, nearest points and intersections */
+    /* mistakes in questions about rays, nearest points and intersections */
     {NULL, "{\"ray\":{\"origin\":[0,0,0]}}", 400, "missing_member", "/ray"},
     {NULL, "{\"ray\":{\"origin\":[0,0],\"direction\":[0,0,1]}}", 400, "bad_value", "/ray/origin"},
     {NULL, "{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,-0.0,0]}}", 400, "bad_value",
@@ -291,9 +292,10 @@ static void a_bad_question_stops_no_other(void **state)
     bench_free(b);
 }
 
-/* --- representations --- */
+/* --- media types of answers --- */
 
-/* Returns the status of the answer to a request with one header: a GET, or a POST of a body. */
+/* Returns the status of the answer to a request with one header: a POST, or a GET if `body` is
+ * NULL. */
 static int status_of(api_bench *b, const char *target, const char *name, const char *value,
                      const char *body)
 {
@@ -396,8 +398,8 @@ static void a_cursor_is_of_its_revision(void **state)
     int revision = (int)number_of(r.json, "revision");
     int degree = (int)number_of(cJSON_GetArrayItem(items, 0), "degree");
     bench_reply_free(&r);
-    /* The next page is of the same revision as the first, so an edit in between must not
-     * change it. */
+    /* The next page shows the revision of the first page, so an edit between the two requests must
+     * not change it. */
     edit(b, "{\"op\":\"face_poke\",\"face\":3}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 200);
@@ -412,7 +414,7 @@ static void a_cursor_is_of_its_revision(void **state)
     assert_int_equal(r.status, 400);
     assert_string_equal(text_of(r.json, "code"), "bad_cursor");
     bench_reply_free(&r);
-    /* `compact` deletes the history, so the revision of the pages can no longer be read. */
+    /* `compact` deletes the history, so the next page cannot be read at its revision any more. */
     edit(b, "{\"op\":\"compact\"}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 410);
@@ -429,7 +431,7 @@ typedef struct driven {
     size_t length;
 } driven;
 
-/* Set while requests are worked on by a worker that must stop at once. */
+/* If set, a worker that runs a request must stop immediately. */
 static bool is_hurried;
 
 static bool has_no_time(void *context, const char *phase, double done)
@@ -440,8 +442,8 @@ static bool has_no_time(void *context, const char *phase, double done)
     return false;
 }
 
-/* Runs the steps of a request one by one, to see whether it left the worker for the job pool;
- * streams are read in pieces of odd sizes. */
+/* Runs a request step by step, which shows whether it moved from the worker to the job pool.
+ * Streamed answers are read in pieces of odd sizes. */
 static driven drive(api_bench *b, const char *method, const char *path, const char *accept,
                     const char *body)
 {
@@ -501,8 +503,8 @@ static void expect_place(api_bench *b, const char *path, const char *accept, con
     }
 }
 
-/* Whether a question moves from the worker to the job pool is decided by its own cost, not by the
- * size of its mesh. */
+/* A question moves from the worker to the job pool because of its own cost, not because of the size
+ * of its mesh. */
 static void long_questions_leave_the_worker(void **state)
 {
     (void)state;
@@ -536,16 +538,16 @@ static void long_questions_leave_the_worker(void **state)
     expect_place(b, query, NULL,
                  "{\"queries\":[{\"measure\":\"mean_curvature\",\"of\":{\"vertices\":\"all\"}}]}",
                  true);
-    /* The first question needs the tree of bounding boxes built, in the job pool; the next one uses
-     * it on the worker. */
+    /* The first question builds the tree of bounding boxes, for which it moves to the job pool. The
+     * second one finds the tree built and stays on the worker. */
     expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", true);
     expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", false);
     expect_place(b, query, NULL, "{\"queries\":[{\"self_intersections\":{}}]}", true);
     bench_free(b);
 }
 
-/* Two faces with many corners lie back to back: each has only one neighbour, but finding it visits
- * all corners. */
+/* Returns a document of two faces with many corners that lie back to back. Each face has only one
+ * neighbour, but a search for the neighbours visits all corners. */
 static char *pillow(unsigned corners)
 {
     size_t size = 64 + 64 * (size_t)corners, used = 0;
@@ -581,7 +583,8 @@ static char *repeated(const char *question, unsigned times)
     return text;
 }
 
-/* A read stopped on a worker starts again on another thread, with one answer; a write goes on. */
+/* A read that a worker has to stop is started again on another thread and must be answered once. A
+ * write is not stopped. */
 static void a_read_that_outstays_the_worker_begins_anew(void **state)
 {
     (void)state;
@@ -614,8 +617,9 @@ static void a_read_that_outstays_the_worker_begins_anew(void **state)
     bench_free(b);
 }
 
-/* Requires that a request with this question many times exhausts its budget after at least `least`
- * answers. The client waits up to a minute; otherwise the request would become a job. */
+/* Requires that a request that repeats this question `times` times exhausts its budget after at
+ * least `least` answers. The client waits up to a minute, so that the request does not become a
+ * job. */
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
 {
     static const char *const patient[] = {"Prefer", "wait=60", NULL};
@@ -630,7 +634,7 @@ static void expect_exhaustion(api_bench *b, const char *question, unsigned times
     cJSON_ArrayForEach(result, results)
     {
         const char *code = text_of(result, "code");
-        /* After the first refusal no further question may be answered. */
+        /* No question after the first refused one may be answered. */
         assert_true(code != NULL || !refused);
         refused = code != NULL;
         answered += code == NULL;
@@ -646,8 +650,8 @@ static void expect_exhaustion(api_bench *b, const char *question, unsigned times
     free(body);
 }
 
-/* Each kind of question that is short and visits a whole mesh is asked more often in a request than
- * the budget allows. */
+/* Each kind of question that is short but visits a whole mesh is repeated in one request, more
+ * often than the budget allows. */
 static void the_work_of_a_query_is_bounded(void **state)
 {
     (void)state;
@@ -664,8 +668,8 @@ static void the_work_of_a_query_is_bounded(void **state)
     bench_free(b);
 }
 
-/* The answer must not depend on earlier requests: a question that finds the tree of bounding boxes
- * built is charged as much as one that builds it. */
+/* An answer must not depend on earlier requests. So a question that finds the tree of bounding
+ * boxes built costs as much as one that builds it. */
 static void a_tree_costs_everybody_the_same(void **state)
 {
     (void)state;
@@ -705,7 +709,8 @@ static void too_many_queries_are_refused(void **state)
 
 /* --- memory --- */
 
-/* Fails the N-th allocation of a request, for N = 1, 2, 3 ... until none fails. */
+/* Lets the N-th allocation of a request fail, for N = 1, 2, 3 and so on until the request makes
+ * fewer than N allocations. */
 static void try_without_memory(api_bench *b, const char *path, const char *accept, const char *body)
 {
     const char *method = body == NULL ? "GET" : "POST";

@@ -1,5 +1,6 @@
-/* Spatial searches are charged for what they visit: a fan of thousands of triangles is searched
- * completely, and a short request that would cause very much work is refused by its limit. */
+/* The budget of a request is charged for each bounding box and triangle that a spatial search
+ * visits. A search among thousands of triangles around one vertex must be completed, but a short
+ * request that would cause very much work must be refused. */
 #include "tests/api/fan.h"
 
 #include "api/limits.h"
@@ -158,8 +159,8 @@ static void expect_result(api_bench *b, const bench_reply *begun, const bench_re
     bench_done(r);
 }
 
-/* The client waits for 0 s, so that a small mesh suffices: a question becomes a job if it takes
- * longer than the client waits, and with the default only a mesh of a million faces would do so. */
+/* A question becomes a job if it takes longer than the client waits. The client waits for 0 s here;
+ * with the default wait, only a mesh of a million faces would take that long. */
 static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_waits(void **state)
 {
     (void)state;
@@ -168,7 +169,8 @@ static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_
     static const struct {
         const char *target, *accept, *body;
     } cases[] = {
-        {QUERY, json, "{\"queries\":[{\"closest\":[2,0,0]}]}"}, /* builds the tree of boxes */
+        /* builds the tree of bounding boxes */
+        {QUERY, json, "{\"queries\":[{\"closest\":[2,0,0]}]}"},
         {QUERY, json, "{\"queries\":[{\"self_intersections\":{}}]}"},
         {QUERY, json, "{\"queries\":[{\"measure\":\"area\",\"of\":{\"faces\":\"all\"}}]}"},
         {QUERY, octets, "{\"queries\":[{\"measure\":\"dihedral\",\"of\":{\"edges\":\"all\"}}]}"},
@@ -197,8 +199,8 @@ static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_
     bench_free(b);
 }
 
-/* The mesh has 92,162 elements, and each measure is a number for each of 20,480 faces. By the
- * estimate of costs, 89 of these passes take a second, which is the border to a job. */
+/* The mesh has 92,162 elements, and each question computes a number for each of its 20,480 faces.
+ * At 89 such questions the estimated time of the request exceeds a second, so it becomes a job. */
 static void seconds_of_passes_over_a_mesh_add_up(void **state)
 {
     (void)state;

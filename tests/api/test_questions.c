@@ -1,5 +1,5 @@
-/* Elements, adjacency and queries: the answers are compared with those found by searching lists of
- * polygons. */
+/* Elements, adjacency and queries: the answers are compared with those that a search through lists
+ * of polygons finds. */
 #include "tests/api/specimens.h"
 
 /* --- elements --- */
@@ -142,7 +142,7 @@ static void relations_turn_counter_clockwise(void **state)
     for_each_specimen(try_relations);
 }
 
-/* --- pages and lines --- */
+/* --- pages of lists, and one JSON line per element --- */
 
 static void try_pages(api_bench *b, const pg_mesh *pg)
 {
@@ -206,7 +206,7 @@ static void lines_give_all_elements_and_their_count(void **state)
     for_each_specimen(try_lines);
 }
 
-/* --- many at once --- */
+/* --- many elements in one question --- */
 
 static void try_query(api_bench *b, const pg_mesh *pg)
 {
@@ -305,8 +305,8 @@ static void queries_answer_in_order(void **state)
     for_each_specimen(try_query);
 }
 
-/* Requests a relation of all elements of a kind, either as "all" or, if `backwards`, as a list of
- * their ids in descending order. */
+/* Requests a relation of all elements of a kind. The request names the elements as "all" or, if
+ * `backwards` is set, by a list of their ids in descending order. */
 static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const char *what,
                                bool backwards)
 {
@@ -366,8 +366,8 @@ static void dense_answers_are_offsets_and_ids(void **state)
     for_each_specimen(try_dense);
 }
 
-/* A question with ?revision= is answered for that revision: as JSON, as octets, with a problem for
- * an element that did not exist then, and for a walk. */
+/* A question with ?revision= must be answered for that revision, as JSON and as octets. It must be
+ * refused for an element that did not exist at that revision. */
 static void questions_are_of_the_revision(void **state)
 {
     (void)state;
@@ -378,7 +378,7 @@ static void questions_are_of_the_revision(void **state)
     static const char walk[] = "{\"walk\":\"breadth_first\",\"from\":{\"face\":1}}";
     static const struct {
         int revision;
-        const char *first, *second; /* expected codes; NULL: an answer */
+        const char *first, *second; /* expected error codes; NULL: the question is answered */
         int faces, walked;          /* 0: refused */
     } rows[] = {{1, NULL, "no_such_element", 6, 6},
                 {2, NULL, NULL, 9, 9},

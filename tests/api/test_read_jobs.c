@@ -1,5 +1,5 @@
-/* Long reads run as jobs: when the job has ended, the client fetches the answer with the bytes,
- * media type and entity tag that a direct answer would have had, be it JSON, lines, octets or a
+/* Long reads that run as jobs. After the job the client fetches the answer, which must have the
+ * bytes, media type and entity tag of a direct answer, whether it is JSON, JSON lines, octets or a
  * file. */
 #include "tests/api/request.h"
 
@@ -40,7 +40,7 @@ static api_bench *bench_of_sphere(void)
 /* A request that reads; `accept` NULL: the client accepts anything. */
 typedef struct reading {
     const char *method, *target, *body, *accept;
-    bool linked; /* its answer is no JSON, or a whole mesh: it is not in the job itself */
+    bool linked; /* the job has a link to the answer, because that is not JSON or is a whole mesh */
 } reading;
 
 static const reading readings[] = {
@@ -68,7 +68,7 @@ static const reading readings[] = {
      NULL, false},
 };
 
-/* Sends a read with If-None-Match: `known`; NULL: without it. */
+/* Sends a request that reads, with If-None-Match: `known` unless `known` is NULL. */
 static bench_reply send_known(api_bench *b, const reading *r, bool async, const char *known)
 {
     const char *headers[9] = {"Content-Type", "application/json"};
@@ -144,7 +144,7 @@ static void each_long_read_can_be_a_job_with_the_answer_it_would_have_given(void
     bench_free(b);
 }
 
-/* Starts a job; `path` becomes its path. */
+/* Starts a job; `path` becomes the path of the job in the API. */
 static void begin(api_bench *b, const char *target, char path[PATH])
 {
     const reading r = {"GET", target, NULL, NULL, true};
@@ -177,7 +177,7 @@ static void what_is_refused_is_refused_before_there_is_a_job(void **state)
     static const char octets[] = "application/octet-stream", lines[] = "application/x-ndjson";
     static const struct {
         reading read;
-        const char *said; /* expected in the problem */
+        const char *said; /* text that the problem must contain */
     } cases[] = {
         {{"GET", "/v1/meshes/none/geometry", NULL, NULL, false}, "none"},
         {{"GET", "/v1/meshes/m?none=1", NULL, NULL, false}, "none"},
@@ -248,8 +248,8 @@ static void what_is_refused_is_refused_before_there_is_a_job(void **state)
     bench_free(b);
 }
 
-/* If the client has the tag of the answer, a 304 must come at once and no job be made, even for an
- * earlier revision, which would have to be restored to be read. */
+/* If the client names the entity tag of the answer, it must get a 304 at once and no job, even for
+ * an earlier revision, which would have to be restored before it can be read. */
 static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state)
 {
     (void)state;
@@ -268,13 +268,14 @@ static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state
             told++;
         }
     }
-    assert_int_equal(told, sizeof readings / sizeof *readings - 3); /* POST has no tag */
+    /* answers to POST have no entity tag */
+    assert_int_equal(told, sizeof readings / sizeof *readings - 3);
     expect_no_jobs(b);
     bench_free(b);
 }
 
-/* An answer with only the changes since a revision has an entity tag of its own, which must be
- * found without making the answer. */
+/* An answer that lists only the changes since a revision has an entity tag of its own. The service
+ * must know this tag without making the answer. */
 static void changed_rows_that_the_client_has_are_told_at_once(void **state)
 {
     (void)state;
@@ -296,7 +297,7 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_done(r);
     assert_non_null(strstr(tag, "-3\""));
     bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
-    /* The tag of the changes must not stand for all rows: those are read by a job. A `since` later
+    /* The entity tag of the changes must not match all rows, which a job reads. A `since` later
      * than the newest revision is refused when the rows are read, whatever tag the client names. */
     bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
     const char *later = strchr(target, '?') + 1;
@@ -305,8 +306,8 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_free(b);
 }
 
-/* The client guesses the tag of a revision that is made while its job waits: the result must still
- * be the whole answer and no 304, because the request was accepted before. */
+/* The client guesses the entity tag of a revision that is made while its job waits. The result of
+ * the job must be the whole answer and not a 304, because the request was accepted before. */
 static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **state)
 {
     (void)state;
@@ -318,7 +319,7 @@ static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **st
         bench_reply now = bench_expect(200, send(b, r, false));
         snprintf(tag, sizeof tag, "%s", bench_header(&now, "ETag"));
         bench_done(now);
-        bool slots = strstr(r->target, "geometry") != NULL; /* parts of its tag are random */
+        bool slots = strstr(r->target, "geometry") != NULL; /* its entity tag is partly random */
         if (tag[0] == '\0' || !present || slots) {
             continue;
         }

@@ -1,5 +1,6 @@
-/* Repairs of imported meshes: a refusal names the repairs with which the body would be accepted,
- * and with them it is; the report of the import lists what each repair did. */
+/* Repairs of imported meshes. A refusal must name the repairs with which the body would be
+ * accepted, the body must be accepted with them, and the report of the import must list what each
+ * of them did. */
 #include "tests/api/request.h"
 
 #include "unit/fixture.h"
@@ -32,7 +33,8 @@ static bench_reply post_json(api_bench *b, const char *query, const char *body)
     return post(b, query, "application/json", body, strlen(body));
 }
 
-/* Builds "?repair=a,b" from the repairs that the problem names; returns false if it names none. */
+/* Builds the query "?repair=a,b" from the repairs that the refusal names; returns false if it names
+ * none. */
 static bool named_repairs(const bench_reply *r, char query[120])
 {
     const cJSON *list = cJSON_GetObjectItem(r->json, "repair"), *one;
@@ -57,7 +59,7 @@ static void expect_valid(api_bench *b, const bench_reply *created)
 }
 
 /* Requires that the body is refused with this code, that the refusal names exactly `repairs`, and
- * that the body is accepted with these. */
+ * that the body is accepted when these repairs are requested. */
 static void expect_mended(api_bench *b, const char *type, const char *body, const char *code,
                           const char *repairs)
 {
@@ -78,12 +80,12 @@ static void expect_mended(api_bench *b, const char *type, const char *body, cons
     bench_reply_free(&r);
 }
 
-/* --- each refusal, in each format --- */
+/* --- each refusal, in each file format --- */
 
 typedef struct specimen {
     const char *code, *repairs;
     int vertices;
-    const char *faces; /* of one-character vertices, joined by commas */
+    const char *faces; /* faces joined by commas, one character for each vertex */
 } specimen;
 
 static const specimen specimens[] = {
@@ -268,7 +270,7 @@ static void every_file_of_the_corpus_that_is_refused(void **state)
     bench_free(b);
 }
 
-/* --- the report --- */
+/* --- the report of the import --- */
 
 static const cJSON *repair_at(const bench_reply *r, int i, const char *name)
 {
@@ -331,8 +333,8 @@ static void each_repair_accounts_for_itself(void **state)
     bench_free(b);
 }
 
-/* The file has a quadrilateral that is a triangle because it repeats a corner, a face that is a
- * line, and a ring of quadrilaterals written as one face. */
+/* The file has a quadrilateral that repeats a corner and so is a triangle, a face that is only a
+ * line, and a ring of quadrilaterals that is written as one face. */
 static void degenerate_faces_that_keep_an_area_are_named(void **state)
 {
     (void)state;
@@ -417,7 +419,7 @@ static void a_refusal_after_repairs_names_the_file(void **state)
     bench_free(b);
 }
 
-/* Returns a file with two faces that repeat a corner, among many that do not, and with one face so
+/* Returns a file with two faces that repeat a corner among many correct ones, and with one face so
  * large that checking it allocates memory. */
 static char *broken_file(size_t *length)
 {
@@ -440,7 +442,8 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* Asks to cancel in the n-th call, by returning false, and in all later ones; with n = 0 never. */
+/* Cancels the request in the n-th call and in all later ones, by returning false. The context
+ * points to n; 0 means never. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -448,8 +451,9 @@ static bool count_down(void *context, const char *phase, double done)
     return *(int *)context == 0 || --*(int *)context > 0;
 }
 
-/* Uploads the file, with `left` counted down at each message of progress; returns the status, and
- * for a 422 the number of defects. */
+/* Uploads the file. `*left` is counted down at each progress message; at 0 the request is
+ * cancelled. Returns the status of the answer; if it is 422, `*total` becomes the number of
+ * defects. */
 static int upload_broken(api_bench *b, const char *text, size_t length, int *left, int *total)
 {
     const api_request request = {
@@ -478,7 +482,8 @@ static int upload_broken(api_bench *b, const char *text, size_t length, int *lef
     assert_int_equal(step, API_READY);
     int status = api_answer_of(x)->status;
     if (status == 422) {
-        const char *said = strstr(api_answer_of(x)->bytes, "\"total\":"); /* parsed without cJSON */
+        /* without cJSON, whose allocations would fail, too */
+        const char *said = strstr(api_answer_of(x)->bytes, "\"total\":");
         assert_non_null(said);
         *total = (int)strtol(said + strlen("\"total\":"), NULL, 10);
     }
@@ -497,7 +502,7 @@ static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
         int left = n;
         status = upload_broken(b, text, length, &left, &total);
         if (left > 0) {
-            break; /* the work ended before the n-th call */
+            break; /* the request was finished before the n-th call */
         }
         assert_int_equal(status, 503);
         given_up++;
@@ -572,7 +577,7 @@ static void warnings_name_every_place(void **state)
     bench_free(b);
 }
 
-/* --- documents --- */
+/* --- mesh documents in JSON --- */
 
 #define DOCUMENT(attributes)                                                               \
     "{\"vertices\":[[0,0,0],[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2],[1,2,3],[0,2,3]]," \
@@ -610,8 +615,8 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
     bench_free(b);
 }
 
-/* Many programs write one vertex per corner with differing values, which separates the faces: the
- * report must say so and name the repair that joins them. */
+/* Many programs write one vertex per corner, with different values, which separates the faces. The
+ * report must say so and name the repair that joins the faces. */
 static void faces_apart_along_coinciding_edges_are_told(void **state)
 {
     (void)state;
@@ -648,7 +653,7 @@ static void values_of_edges_are_not_guessed(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "unsupported");
     expect_member(r.json, "pointer", "\"/attributes/0/values\"");
     bench_reply_free(&r);
-    /* If the requested repairs find nothing to repair, the attributes of the edges are kept. */
+    /* If the requested repairs find nothing to repair, the attributes of the edges must be kept. */
     r = expect(201, post_json(b, "?repair=split,orient",
                               "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]],"
                               "\"attributes\":[{\"domain\":\"edges\",\"name\":\"e\",\"type\":"

@@ -11,7 +11,8 @@
 
 static int snapshots;
 
-/* The linker redirects calls of these functions to the wrappers (Makefile). */
+/* The linker makes calls of the functions below go to the wrappers in this file (Makefile), which
+ * count them. */
 st_status __real_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __wrap_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __real_st_snapshot_held(st_mesh *mesh, st_snapshot **out);
@@ -65,7 +66,8 @@ static const struct {
     {"POST", "/v1/meshes/m/copy", NULL, 201},
 };
 
-/* Begins the request number `i` on a worker; `none` is its If-None-Match. */
+/* Begins request number `i` of the table on a worker; `none` is the value of its header
+ * If-None-Match. */
 static api_exchange *send(fixture *f, size_t i, const char *none, api_step *step)
 {
     api_request request = {
@@ -114,8 +116,9 @@ static void nobody_makes_one_for_whom_nothing_changed(void **state)
             if (cases[i].status != 200) {
                 continue;
             }
-            /* The first request computes everything from which the entity tag is made, such as the
-             * layout of the arrays, so that the second one can be answered by the tag alone. */
+            /* The first request computes everything that the entity tag is made from, such as the
+             * layout of the arrays, so that the second request can be answered from the tag
+             * alone. */
             api_exchange *x = send(&f, i, NULL, &step);
             if (step == API_WORK) {
                 api_work(x);

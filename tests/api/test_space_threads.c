@@ -1,6 +1,6 @@
-/* Many spatial queries at once: the tree of bounding boxes is built once per revision, requests
- * that come meanwhile wait for it, and each answer is of the revision that it names although
- * another thread writes. */
+/* Many spatial queries at once. The tree of bounding boxes is built once per revision, and requests
+ * that come meanwhile wait for it. Another thread writes, but each answer must be that of the
+ * revision that it names. */
 #include "tests/api/request.h"
 
 #include <math.h>
@@ -26,13 +26,13 @@ enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
 
 typedef struct reader {
     api_bench *b;
-    const char *question; /* its answer is the first member of its result */
+    const char *question; /* the first member of the result that answers the question */
     bool by_distance;
-    const char *strange; /* the first wrong answer */
+    const char *strange; /* the first answer that was wrong */
 } reader;
 
 /* Returns what is wrong with an answer, or NULL. Each edit raises the grid by 1, so at revision r
- * it lies at the height r - 1. */
+ * the grid lies at the height r - 1. */
 static const char *judge(const reader *r, const cJSON *answer, double *revision)
 {
     const cJSON *asked = cJSON_GetObjectItem(answer, "revision");
@@ -104,9 +104,9 @@ static void answers_are_of_the_revision_they_name_while_others_write(void **stat
     bench_free(b);
 }
 
-/* --- the first two requests --- */
+/* --- two requests that both need the tree first --- */
 
-/* The linker redirects calls of these functions to the wrappers (Makefile). */
+/* The linker makes calls of the functions below go to the wrappers in this file (Makefile). */
 st_derived *__real_st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 st_derived *__wrap_st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 void __real_st_derived_end(st_mesh *mesh, st_derived_kind kind);
@@ -114,21 +114,22 @@ void __wrap_st_derived_end(st_mesh *mesh, st_derived_kind kind);
 void __real_st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 void __wrap_st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 
-/* Delays the first of two requests, while `closed`, right before it builds the tree, until the
- * second request waits for the tree or has been answered. So each order of events can be produced
- * without sleeping. */
+/* If `closed` is set, the first of two requests stops right before it builds the tree of bounding
+ * boxes, until the second request waits for the tree or has been answered. So the test can produce
+ * each order of events without sleeping. */
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool closed;
     bool begun, met;
-    atomic_bool making; /* the first request is about to build the tree */
-    /* The following members are protected by the lock of `place`, where the tree will be. */
+    atomic_bool making; /* the first request is about to build the tree of bounding boxes */
+    /* The following members are protected by the lock of `place`, which will hold the tree. */
     st_derived *place;
     bool held;
     int waited;
-    bool *leaves;   /* set to cancel the first request when the second one comes; or NULL */
-    bool *gives_up; /* set to cancel the second request as soon as it waits; or NULL */
+    /* set to true when the second request comes, which cancels the first one; or NULL */
+    bool *leaves;
+    bool *gives_up; /* set to true as soon as the second request waits, which cancels it; or NULL */
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static void open_gate(bool *which)
@@ -185,7 +186,7 @@ void __wrap_st_derived_wait(st_mesh *mesh, st_derived_kind kind)
     __real_st_derived_wait(mesh, kind);
 }
 
-/* Lets a request be cancelled while it waits for the tree or builds it, but not before. */
+/* Cancels a request while it builds the tree of bounding boxes or waits for it, but not before. */
 static bool give_up(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -284,8 +285,8 @@ static void the_second_asker_makes_the_tree_that_the_first_gave_up(void **state)
     assert_true(gate.waited > 0);
 }
 
-/* The second request is cancelled while the first one still builds the tree; it must be answered at
- * once, because the first one continues only afterwards. */
+/* The second request is cancelled while it waits for the tree that the first one builds. It must be
+ * answered at once, because the first request continues only afterwards. */
 static void who_waits_for_a_tree_may_give_up(void **state)
 {
     (void)state;

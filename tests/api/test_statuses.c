@@ -1,4 +1,4 @@
-/* Every row of the route table answers with each status that it declares, and with no other. */
+/* Every route must answer with each status that it declares, and with no other one. */
 #include "tests/api/fan.h"
 
 #include "api/describe/routes.h"
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-/* A request of a sequence: each one sees the effects of those before it. */
+/* A request of a sequence, in which each request sees the effects of those before it. */
 typedef struct step {
     const char *method, *target;
     int status;
@@ -32,7 +32,7 @@ typedef struct step {
 #define ANY     "If-None-Match", "*"
 #define LARGE   "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"
 #define ASYNC   "Prefer", "respond-async"
-#define BIG     "too big" /* stands for a body above every limit of JSON requests */
+#define BIG     "too big" /* stands for a body that is longer than a JSON request may be */
 
 static const step steps[] = {
     {"PUT", "/v1/meshes/m", 201, CUBE, {ABSENT}},
@@ -305,7 +305,7 @@ static bool holds(const int *statuses, int status)
     return false;
 }
 
-/* Sends a request, whose answer must have this status. */
+/* Sends a request and requires this status of the answer. */
 static void take(api_bench *b, int status, const bench_request *request)
 {
     const char *method = request->method;
@@ -329,8 +329,8 @@ static void take(api_bench *b, int status, const bench_request *request)
     bench_reply_free(&r);
 }
 
-/* Takes a cursor, then deletes the mesh and creates another one with its id: the cursor must be
- * answered with 410. */
+/* Gets a cursor of a list, then deletes the mesh and creates another one with the same id. The
+ * cursor must then be answered with 410. */
 static void take_stale_cursor(api_bench *b, const char *collection)
 {
     char target[300];
@@ -349,8 +349,8 @@ static void take_stale_cursor(api_bench *b, const char *collection)
     take(b, 410, &(bench_request){"GET", target, NULL, NULL, 0});
 }
 
-/* The routes of elements differ only in kind and relation, so their statuses are produced in a
- * loop. To read an earlier revision of the mesh `r` is a 410, because the mesh was replaced. */
+/* Requests all routes of elements, which differ only in the kind of element and the relation.
+ * Revision 1 of the mesh "r" is a 410, because the mesh was replaced. */
 static void take_elements(api_bench *b)
 {
     static const char mesh[] = "/v1/meshes/{mesh}/", id[] = "/{id}";
@@ -376,9 +376,9 @@ static void take_elements(api_bench *b)
     }
 }
 
-/* Sends a request with its path as Idempotency-Key, and an equal one while the first still runs,
- * which is refused (409). Then sends an equal one, which gets the first answer, and one with
- * another body, which is refused (422). */
+/* Sends a request with its path as Idempotency-Key, and repeats it while the first one is running,
+ * which is refused (409). A later repetition gets the first answer, and a request with the same key
+ * and another body is refused (422). */
 static void take_keyed(api_bench *b, const char *method, const char *path, const char *json)
 {
     enum { LONG = 300 << 10 };
@@ -508,7 +508,7 @@ static void routes_answer_each_status_they_declare_and_no_other(void **state)
         const api_route *route = &api_routes().rows[i];
         if (strncmp(route->path, "/assets", 7) == 0 || strcmp(route->path, "/") == 0 ||
             strcmp(route->path, "/docs") == 0) {
-            continue; /* the page needs a server: tests/e2e and tests/web request it */
+            continue; /* web pages need the real server: tests/e2e and tests/web request them */
         }
         for (const int *status = route->statuses; *status != 0; status++) {
             if (!seen[i][*status]) {

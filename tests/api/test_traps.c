@@ -1,5 +1,5 @@
-/* Defects that are common in mesh files: each one is built here, with the refusal that it must get
- * and the repair with which it is accepted. */
+/* Defects that are common in mesh files. The test builds a file with each defect, which must get
+ * the right refusal and must be accepted with the right repair. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -148,7 +148,7 @@ static void isolated_thousands(file *f)
     put_many(f, "v 5 5 5\n", 5000);
 }
 
-/* Two tetrahedra share one vertex and nothing else: all edges are closed. */
+/* Two tetrahedra share one vertex and nothing else; no edge is on a boundary. */
 static void closed_with_a_bowtie(file *f)
 {
     put(f, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n"

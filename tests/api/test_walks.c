@@ -1,5 +1,5 @@
-/* Walks, and questions about the mesh as a whole: the answers are compared with those found by
- * searching lists of polygons. */
+/* Walks, and questions about the mesh as a whole: the answers are compared with those that a search
+ * through lists of polygons finds. */
 #include "tests/api/specimens.h"
 
 #include "format/text/number.h"
@@ -18,8 +18,9 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     page_expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* A walk from a half-edge along next, prev and twin, each of them given by its first letter.
- * `until` NULL: only the number of repetitions ends the walk. */
+/* A walk from a half-edge along its links. `letters` has the first letters of the links next, prev
+ * and twin, and is followed `repeat` times, or until the condition `until` holds unless that is
+ * NULL. */
 typedef struct step_walk {
     unsigned from;
     const char *letters;
@@ -27,7 +28,7 @@ typedef struct step_walk {
     const char *until;
 } step_walk;
 
-/* Requests a walk, and compares the answer with the walk along the polygons. */
+/* Requests a walk and requires that the answer equals the walk along the links of `pg`. */
 static void try_path(api_bench *b, const pg_mesh *pg, const step_walk *walk)
 {
     const unsigned from = walk->from, repeat = walk->repeat;
@@ -125,8 +126,8 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
     traverse(b, &wanted, "{\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u}", v, depth);
 }
 
-/* Compares a breadth-first walk; depth PG_NONE means no depth in the request, limit 0 means no
- * limit. */
+/* Compares a breadth-first walk with that through the polygons. A depth of PG_NONE means that the
+ * request has no depth, a limit of 0 that it has no limit. */
 static void try_flood(api_bench *b, const pg_mesh *pg, const pg_flood *flood)
 {
     pg_list ids, depths;
@@ -184,8 +185,8 @@ typedef struct distance {
     double value;
 } distance;
 
-/* There can be several shortest paths, and each of them is correct, so the test checks that the
- * answer is a path of the shortest length. */
+/* Several shortest paths may exist, and each of them is correct. So the test checks that the answer
+ * is a path, and that its length is the shortest one. */
 static void try_shortest(api_bench *b, const pg_mesh *pg, const distance *d)
 {
     const double wanted = d->value;

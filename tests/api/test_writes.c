@@ -1,5 +1,5 @@
-/* Writes are done completely or not at all whichever allocation fails, are refused before they cost
- * too much, and are answered according to their outcome. */
+/* Writes must be done completely or not at all, whichever allocation fails; they must be refused
+ * before they cost too much; and the answer must tell whether they were done. */
 #include "tests/api/request.h"
 #include "store/write.h"
 #include "tests/slow_journal.h"
@@ -23,7 +23,8 @@ typedef struct write {
     int status;
     const char *body;
     const char *headers[3];
-    enum { ONCE, BEFORE, DRY } how; /* BEFORE: an equal request with this key was done before */
+    /* BEFORE: a request with the same key and body was done before */
+    enum { ONCE, BEFORE, DRY } how;
 } write;
 
 #define BATCH                                                           \
@@ -109,8 +110,8 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
-/* This journal, unlike the one in memory, has bodies encoded and contents staged, so that the
- * allocations for these fail, too. */
+/* A journal for which, unlike for the journal in memory, the store encodes edits and writes meshes
+ * in advance, so that the test can let the allocations for that fail, too. */
 static slow_journal journal;
 
 /* Creates a mesh with steps to undo, steps to redo, and a deleted face. */
@@ -160,8 +161,8 @@ static char *state_of(api_bench *b)
     return state;
 }
 
-/* The client got no answer for lack of memory, and sends the request again with its key: the write
- * must not be done a second time. */
+/* The client got no complete answer because memory was out, and repeats the request with the same
+ * key. The write must not be done a second time. */
 static void expect_done_once(api_bench *b, const write *w, const char *const *headers,
                              const bench_reply *first)
 {
@@ -182,7 +183,8 @@ static void expect_done_once(api_bench *b, const write *w, const char *const *he
     free(after);
 }
 
-/* Tries a write in one turn of the loop over `f`. */
+/* Tries a write in one iteration of the loop over failing allocations; `f` is the state of that
+ * loop. */
 static void try_write(const write *w, failing *f)
 {
     failing_pause();
@@ -265,8 +267,8 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     }
     assert_string_equal(bench_text(&r, "code"), code);
     assert_string_equal(bench_header(&r, "Retry-After"), status == 503 ? "1" : "");
-    /* The refusal does not wait for the disk; otherwise, when a lost change is noticed, another
-     * refusal could replace it. */
+    /* The refusal does not wait for the disk. If it waited, it could be replaced by another refusal
+     * when the service notices a lost change. */
     assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
     assert_true(journal.groups == groups);
     assert_int_equal(journal.out, 0);
@@ -314,7 +316,8 @@ static void a_full_disk_takes_removals(void **state)
 
 /* --- preconditions --- */
 
-/* The linker redirects calls of these functions to the wrappers (Makefile). */
+/* Whether a write is in progress, and whether the mesh was removed during one. The linker makes
+ * calls of the store's functions go to the wrappers below (Makefile), which set these variables. */
 static bool writing, removed_under_lock;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -377,7 +380,8 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     } cases[] = {{"/v1/meshes/m", NULL, "*"},
                  {"/v1/meshes/m", "\"x\"", NULL},
                  {"/v1/meshes/absent", "*", NULL}};
-    const st_journal forgetful = st_journal_memory(); /* finds at once that an id is unknown */
+    /* this journal knows at once that an id is unknown */
+    const st_journal forgetful = st_journal_memory();
     api_bench *b = begin_over(&forgetful);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_step step;
@@ -401,8 +405,8 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     bench_free(b);
 }
 
-/* A refusal that names a revision must wait until this revision is durable, like any other
- * answer. */
+/* A refusal that names the present revision must, like any other answer, wait until that revision
+ * is durable. */
 static void a_stale_write_shows_a_state(void **state)
 {
     (void)state;
@@ -438,7 +442,7 @@ static void a_write_is_never_not_modified(void **state)
     bench_free(b);
 }
 
-/* --- costs --- */
+/* --- the cost of writes --- */
 
 /* Sends a request whose client waits, so that it does not become a job. */
 static bench_reply post_and_wait(api_bench *b, const char *target, const char *body)
@@ -492,7 +496,7 @@ static void lists_of_operations_have_a_price(void **state)
     api_text_clear(&body);
 }
 
-/* The mesh is a disk of this many triangles; the vertex SPOKES is the hub that they share. */
+/* The number of triangles of the mesh, a disk. They share the vertex SPOKES, the hub. */
 enum { SPOKES = 20000 };
 
 /* Writes a list of edits around the hub. The second operation names an element made by the first
@@ -535,8 +539,8 @@ static void a_list_about_one_hub_becomes_a_job(void **state)
     char job[100];
     (void)snprintf(job, sizeof job, "%s", bench_header(&r, "Location"));
     bench_reply_free(&r);
-    /* The job has undone what it did, because it was refused: other requests read the old mesh, but
-     * cannot write until the job has ended. */
+    /* The request had begun the edit, undid it when it was refused, and became a job. Other
+     * requests read the old mesh, but cannot write until the job has ended. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_reply_free(&r);
@@ -625,8 +629,8 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     assert_false(body.failed);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
     api_text_empty(&body);
-    /* Each operation of the next list welds two vertices on the rim, and visits all elements around
-     * the hub. */
+    /* Each operation of this list welds two vertices on the rim, for which it visits all elements
+     * around the hub. */
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 1000; i++) {
         api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",
@@ -671,7 +675,7 @@ static void huge_elements_are_no_work_for_a_worker(void **state)
     bench_free(b);
 }
 
-/* --- helpful refusals --- */
+/* --- refusals that help --- */
 
 static void has_supported(bench_reply r, const char *type)
 {

@@ -1,4 +1,4 @@
-// Where a body or an answer may be of several media types, kubb is told that JSON is meant.
+// A body or an answer can have several media types; kubb is to generate code for JSON.
 import { defineConfig } from '@kubb/core';
 import { pluginClient } from '@kubb/plugin-client';
 import { pluginOas } from '@kubb/plugin-oas';

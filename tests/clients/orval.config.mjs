@@ -1,4 +1,4 @@
-// Where a body or an answer may be of several media types, orval is told that JSON is meant.
+// A body or an answer can have several media types; orval is to generate code for JSON.
 export default {
     hedge: {
         input: './work/openapi.json',

@@ -10,7 +10,7 @@ export interface Summary {
     counts: { vertices: number; edges: number; faces: number };
 }
 
-// What was made, in the result of edge_split
+// The elements that edge_split made, from its result.
 export interface Split {
     revision: number | undefined;
     vertex: unknown;

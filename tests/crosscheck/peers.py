@@ -133,7 +133,7 @@ def check_theirs(tally, daemon, program, folder, path, summary):
         files.append(('assimp', ext, out))
     for who, ext, file in files:
         if ext in ('stl', 'glb') and not flat:
-            continue  # each triangulates in its own way
+            continue  # each program cuts polygons into triangles in its own way
         # assimp writes one vertex for each corner, so the vertices must be welded
         repair = ['weld'] if who == 'assimp' else None
         status, answer = daemon.read(ext, open(file, 'rb').read(), repair)

@@ -87,7 +87,7 @@ class Daemon:
              *flags],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
             env=environment)
-        atexit.register(self.process.kill)  # does nothing to one that was waited for
+        atexit.register(self.process.kill)  # no effect on one that was waited for
         if on_start:
             on_start(self.process)
         self.said = []

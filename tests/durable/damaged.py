@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import tempfile
 
-MEMORY = '/dev/shm'  # a million stores are opened
+MEMORY = '/dev/shm'  # in memory, because a million stores are opened
 
 
 def prove(run, how):

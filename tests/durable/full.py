@@ -20,7 +20,7 @@ from writers import Draw, Log
 MESHES = ['a', 'b', 'c']
 SIZE = '32m'
 FILL = {'shape': 'grid', 'columns': 90, 'rows': 90}
-PATIENCE = 60  # seconds until writes work again
+PATIENCE = 60  # seconds in which writes must work again
 
 
 def in_own_mounts():
@@ -42,7 +42,7 @@ class Stubborn(Patient):
 
 
 class Systemd:
-    """The other end of NOTIFY_SOCKET, as systemd is of a service of Type=notify."""
+    """The receiving end of NOTIFY_SOCKET, in the place of systemd."""
 
     def __init__(self):
         name = f'hedge-full-{os.getpid()}'
@@ -57,15 +57,15 @@ class Systemd:
             self.heard.append(self.socket.recv(4096).decode())
 
     def statuses(self):
-        """What `systemctl status` showed one after the other."""
+        """Returns the statuses that `systemctl status` would have shown, in order."""
         return [line[7:] for text in list(self.heard) for line in text.splitlines()
                 if line.startswith('STATUS=')]
 
 
 def shows_in_turn(statuses, port):
-    """Returns whether the daemon of the port was shown as listening, then as full, then without that
-    again, and so on, and at last something stopped. The daemon that repeats all changes in memory
-    has the same socket."""
+    """Returns whether the daemon of the port was shown as listening, then with a full disk, then
+    without, and so on, and whether the last status is that a daemon stops. The daemon in memory
+    that replays all changes sends its statuses to the same socket."""
     told = [more for what, _, more in (status.partition('; ') for status in statuses)
             if what == f'listening on http://127.0.0.1:{port}']
     return len(told) % 2 == 1 and len(told) > 2 and statuses[-1] == 'stopping' and all(

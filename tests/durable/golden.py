@@ -22,12 +22,12 @@ import time
 from daemon import Daemon, Refused
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'golden')
-MOST = 64 << 10  # bytes of a packed store
-SIDE = 200       # faces a side of a mesh that is too large to lie in its record
+MOST = 64 << 10  # maximum bytes of a compressed store
+SIDE = 200       # faces along a side of a mesh that is too large to be stored in its record
 
 
 def facts(client, mesh):
-    """Returns the facts about a mesh in words that every release has."""
+    """Returns the facts about a mesh that every release can tell."""
     base = f'/v1/meshes/{mesh}'
     one = client.get(base).json()
     document = client.get(base + '/content').json()
@@ -42,7 +42,7 @@ def facts(client, mesh):
 
 
 def told(client, mesh):
-    """Returns the mesh, and what it is after each possible undo and redo."""
+    """Returns the facts about the mesh now and after each possible undo and redo."""
     states = [facts(client, mesh)]
     for way in ('undo', 'redo'):
         while client.send('POST', f'/v1/meshes/{mesh}/{way}', {}).status == 200:

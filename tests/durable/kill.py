@@ -18,13 +18,13 @@ MESHES = ['a', 'b', 'c']
 LARGE = 'large'
 LARGE_SHAPE = {'shape': 'grid', 'columns': 170, 'rows': 170}
 MOST_TRIES = 10
-MOST_KEYS = 3  # of a mesh, whose requests are sent again after a kill
+MOST_KEYS = 3  # number of keys per mesh whose requests are sent again after a kill
 # The name under which a kill is counted if it came in time, for each moment at which it is aimed.
 AIM = {'writing': 'kills while writing', 'snapshot': 'kills in a snapshot',
        'loading': 'kills while loading', 'starting': 'kills while starting'}
 LARGE_KINDS = [('put', 2), ('whole_move', 6), ('splits', 4), ('column', 4)]
-SPLITS = 4500       # so many are done on a copy, and their record takes more than a mebibyte
-MANY_ROUNDS = 100   # from which on each of LARGE_KINDS is sure to be sent
+SPLITS = 4500       # so many edge splits are done on a copy, and their record is longer than a MiB
+MANY_ROUNDS = 100   # after so many rounds each of LARGE_KINDS is sure to have been sent
 
 
 class Mover(Draw):
@@ -59,12 +59,12 @@ class Kills:
         self.daemon = None
         self.start_seconds = 0.05
         self.load_seconds = 0.05
-        self.incarnations = {}  # that were ever seen, by mesh
+        self.incarnations = {}  # all incarnations that were ever seen, by mesh
 
     def wait(self, seconds):
         threading.Event().wait(seconds)
 
-    # --- moments ---
+    # --- moments at which the daemon is killed ---
 
     def kill_while_writing(self):
         log, writers = write_for(self.daemon.port, MESHES, random.Random(self.run.chance.random()),
@@ -92,7 +92,7 @@ class Kills:
         connection = sqlite3.connect(f'file:{path}?mode=ro', uri=True)
         try:
             return connection.execute('SELECT count(*) FROM snapshot WHERE mesh = 0').fetchone()[0]
-        except sqlite3.OperationalError:  # busy
+        except sqlite3.OperationalError:  # the database is busy
             return 0
         finally:
             connection.close()
@@ -124,7 +124,7 @@ class Kills:
 
     def kill_while_starting(self):
         self.restart_after(self.kill_while_writing, 'writing', again=False)
-        for _ in range(3):  # also the recovery that follows a recovery which was killed
+        for _ in range(3):  # a recovery may be killed, too, and be followed by another one
             def kill_soon(process):
                 threading.Timer(self.run.chance.uniform(0, self.start_seconds),
                                 process.kill).start()
@@ -144,7 +144,7 @@ class Kills:
     def kill_in_moving(self):
         self.restart_after(self.kill_in_snapshot, 'moving a large mesh')
 
-    # --- after them ---
+    # --- checks after a kill ---
 
     def start(self):
         begun = time.monotonic()
@@ -228,7 +228,7 @@ def prove(run):
                'loading': kills.kill_while_loading, 'starting': kills.kill_while_starting}
     for moment in plan:
         before = dict(run.counts)
-        for _ in range(MOST_TRIES):  # until the kill came in time
+        for _ in range(MOST_TRIES):  # repeated until the kill came in time
             moments[moment]()
             if run.counts[AIM[moment]] > before.get(AIM[moment], 0):
                 break

@@ -19,7 +19,7 @@ CLIENTS = 16
 MESHES, BUDGET = 100000, 256 << 20
 LEAST_BUDGET = 16 << 20
 PROGRAM = 64 << 20  # resident bytes that a smaller budget is not expected to keep the program in
-EDITS = 1           # a mesh, on average, in each life of the daemon
+EDITS = 1           # edits of each mesh, on average, from one start of the daemon to the next
 PAGES = (1000, 333, 10000)
 SHAPES = [({'shape': 'cube'}, (8, 12, 6)),
           ({'shape': 'icosphere', 'subdivisions': 1}, (42, 120, 80)),
@@ -27,7 +27,7 @@ SHAPES = [({'shape': 'cube'}, (8, 12, 6)),
 
 
 class Wrong(Exception):
-    """Raised if an answer is not what the model says."""
+    """Raised if an answer differs from the model."""
 
 
 class Mesh:
@@ -90,7 +90,7 @@ class Mesh:
 
     def rename(self, client, _):
         self.names += 1
-        self.name = f'{self.id} {self.names}'  # the name it has would be no change
+        self.name = f'{self.id} {self.names}'  # the present name would be no change
         self.expect(client.send('PATCH', self.path(), {'name': self.name},
                                 {'Content-Type': 'application/merge-patch+json'}), 200)
 
@@ -134,7 +134,7 @@ class Mesh:
 
 
 def walk(client, limit):
-    """Returns the pages of the list."""
+    """Returns the pages of the list of meshes."""
     cursor = ''
     while cursor is not None:
         answer = client.get(f'/v1/meshes?limit={limit}{cursor}')

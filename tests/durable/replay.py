@@ -14,11 +14,11 @@ from daemon import Daemon
 from writers import Change
 
 MOST_TRIES = 200
-LARGE = 5000  # vertices, above which a mesh is compared by octets
+LARGE = 5000  # a mesh with more vertices is compared by octets
 RINGS = {'queries': [{'relation': 'outgoing', 'of': {'vertices': 'all'}}]}
 OCTETS = {'Accept': 'application/octet-stream'}
 TIMES = re.compile(rb'"(created|modified|time)":"[^"]*",?')
-BYTES = re.compile(rb'"(memory_)?bytes":\d+,?')  # room to grow is counted too
+BYTES = re.compile(rb'"(memory_)?bytes":\d+,?')  # counts reserved memory, too, so it may differ
 INCARNATION = re.compile(r'"[0-9a-f]+-')
 
 
@@ -233,7 +233,7 @@ class Replay:
     def fit(self, mesh, place, ours, flying, end, theirs, fresh):
         """Finds which changes in flight were made, so that the replay comes to the same state."""
         known = self.known[mesh]
-        gaps, steps = [], []  # steps: changes, and gaps of so many names and revisions
+        gaps, steps = [], []  # a step is a change, or a gap of so many names and revisions
         names, revision = place
         for change in ours:
             start = (change.version[1] - change.names, change.version[2] - change.revisions)

@@ -8,10 +8,10 @@ from writers import write_for
 
 MESHES = ['a', 'b', 'c', 'd']
 WAL = 256 << 20
-GROWTH = 400 << 20  # bytes: the queue of 64 MiB, what is being committed of it, the history
-SIDE = 80           # of a grid that is moved as a whole again and again, 0.4 MB a record
+GROWTH = 400 << 20  # bytes, for the queue of 64 MiB, its part being committed, the history
+SIDE = 80           # faces along a side of a grid that is moved again and again, 0.4 MB a record
 MOVE = {'op': 'transform', 'matrix': [1, 0, 0, .1, 0, 1, 0, .1, 0, 0, 1, .1, 0, 0, 0, 1]}
-CLIENTS = 256       # each with one request under way: more than the queue holds
+CLIENTS = 256       # number of clients, each with one request under way: more than the queue holds
 SECONDS = 8
 
 

@@ -9,7 +9,7 @@ import time
 from daemon import Gone
 
 HANGS = 9000   # milliseconds that each sync takes: longer than a stop may
-SECONDS = 5.5  # that a stop takes at most
+SECONDS = 5.5  # seconds that a stop may take
 
 
 def ask(client, answers, *request):

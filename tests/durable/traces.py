@@ -36,7 +36,7 @@ def unhex(text):
 
 
 class Seen:
-    """A request, and what its answer shows: (incarnation, names, revision)."""
+    """A request, and the version in its answer: (incarnation, metadata counter, revision)."""
 
     def __init__(self, kind):
         self.kind, self.mark, self.shows, self.items, self.gone = kind, None, [], [], None
@@ -162,7 +162,7 @@ class Trace:
 
     def __init__(self, path):
         self.written, self.syncs, self.sent, self.came, self.events = [], [], {}, {}, []
-        self.received, self.answered = [], []  # on sockets, whatever it was
+        self.received, self.answered = [], []  # all bytes on sockets
         under_way = {}
         with open(path, encoding='latin-1') as file:
             for at, line in enumerate(file):
@@ -289,7 +289,7 @@ class Verdict:
 
 @contextlib.contextmanager
 def traced(daemon, path):
-    """What the daemon calls meanwhile is written to `path`."""
+    """Runs strace on the daemon during the block, which writes the daemon's calls to `path`."""
     strace = subprocess.Popen(['strace', '-f', '-y', '-xx', '-s', '70000', '-e', 'trace=' + CALLS,
                                '-e', 'signal=none', '-o', path, '-p', str(daemon.process.pid)],
                               stderr=subprocess.PIPE, text=True)
@@ -304,7 +304,7 @@ def traced(daemon, path):
 
 
 class SecureClient(Client):
-    """Over TLS; whose certificate it is makes no difference here."""
+    """A client that speaks TLS and accepts any certificate."""
 
     def __init__(self, port):
         super().__init__(port)
@@ -321,7 +321,7 @@ def make_certificate(run):
 
 
 def change_over_tls(client, chance):
-    """Sends changes; their marks, in order."""
+    """Sends changes and returns their marks, in order."""
     marks = []
     for i in range(30):
         x = chance.random()
@@ -339,7 +339,8 @@ def change_over_tls(client, chance):
 
 
 def early_over_tls(trace, marks, later):
-    """How many answers came before the sync that covers their change; how many were found."""
+    """Returns how many answers came before the sync that covers their change, and how many there
+    were."""
     early = found = 0
     for mark in marks:
         written = trace.find(mark)

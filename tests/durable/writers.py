@@ -36,7 +36,7 @@ class Change:
         self.mesh, self.method, self.path = mesh, method, path
         self.body, self.headers = body, dict(headers or {})
         self.revisions, self.names, self.entry, self.name = revisions, names, entry, name
-        self.key = None                  # of a request that may be sent again
+        self.key = None                  # Idempotency-Key if the request may be sent again
         self.sent = self.answered = None  # times
         self.answer = self.version = None
         self.job = None
@@ -63,7 +63,7 @@ class Draw:
 
     def __init__(self, chance, label):
         self.chance, self.label, self.count = chance, label, 0
-        self.steps = 3  # of an undo at most
+        self.steps = 3  # maximum steps of an undo
 
     def name(self):
         self.count += 1
@@ -239,7 +239,7 @@ class Writer(threading.Thread):
             if answer.status != 200:
                 return answer
             job = answer.json()
-            if job.get('problem'):  # of one that failed no result is kept
+            if job.get('problem'):  # a failed job has no result
                 return Answer(job['status'], answer.headers, json.dumps(job['problem']).encode())
             if job['state'] not in ('queued', 'running'):
                 return self.client.get(change.job + '/result')

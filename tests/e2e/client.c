@@ -21,8 +21,8 @@
 #include <cmocka.h>
 #include <curl/curl.h>
 
-/* If no answer comes for this long, a request fails the test instead of hanging. No test depends on
- * the exact length. */
+/* If no answer comes for this long, a request fails the test instead of waiting for ever. No test
+ * depends on the exact time. */
 enum { LONGEST_SECONDS = 600 };
 
 struct client {
@@ -110,7 +110,8 @@ static struct curl_slist *header_list(const char *const *headers, bool has_body)
     return list;
 }
 
-/* Writes a request, with the headers that were sent, and its answer to the recorded traffic. */
+/* Writes a request, with the headers that were sent, and its answer to the recorded traffic, which
+ * a later test compares with the OpenAPI document. */
 static void record(const client_request *sent, const struct curl_slist *list, const reply *r)
 {
     bytes head = {0};
@@ -288,7 +289,7 @@ int client_connect(const daemon_process *d, int buffer)
     return transport_get() == TRANSPORT_TLS ? transport_secure(fd, buffer) : fd;
 }
 
-/* Returns how many complete answers the data contains, going by Content-Length. */
+/* Returns how many complete answers the data contains, judged by their Content-Length. */
 static int count_answers(const char *data, size_t length)
 {
     int count = 0;
@@ -344,7 +345,7 @@ char *client_raw(const daemon_process *d, const char *data, size_t length, int a
     while (sent < length) {
         ssize_t n = send(fd, data + sent, length - sent, MSG_NOSIGNAL);
         if (n <= 0) {
-            break; /* the server closed its end, but its answer can still be read */
+            break; /* the server has closed the connection, but its answer can still be read */
         }
         sent += (size_t)n;
     }

@@ -1,4 +1,4 @@
-/* client.h - requests to a daemon: through libcurl, or byte for byte through a socket. */
+/* client.h - requests to a daemon, sent through libcurl or as given bytes through a socket. */
 #ifndef TESTS_E2E_CLIENT_H
 #define TESTS_E2E_CLIENT_H
 
@@ -9,18 +9,18 @@
 #include <stddef.h>
 
 typedef struct reply {
-    long status; /* 0: no answer */
+    long status; /* 0: there was no answer */
     char *body;  /* NUL-terminated */
     size_t length;
-    char *headers; /* as received, lines end in CR LF */
-    cJSON *json;   /* NULL if the body is no JSON */
+    char *headers; /* header lines as received, ended by CR LF */
+    cJSON *json;   /* the body, parsed; NULL if it is not JSON */
 } reply;
 
 void reply_free(reply *r);
 void reply_done(reply r);
-/* Returns `r`; if its status is another one, prints the answer and fails the test. */
+/* Returns `r` if its status is `status`; else prints the answer and fails the test. */
 reply reply_expect(long status, reply r);
-/* Copies a header of the answer into `value`, "" if the answer has no such header. */
+/* Copies a header of the answer into `value`; without that header `value` becomes "". */
 const char *reply_header(const reply *r, const char *name, char *value, size_t size);
 /* Returns a member of the JSON body by its path, such as "counts.vertices" or "items.0.id". Fails
  * the test if it is absent. */
@@ -33,8 +33,8 @@ typedef struct client client; /* a libcurl handle, which keeps its connection */
 
 client *client_new(const daemon_process *d);
 void client_free(client *c);
-/* Makes the client trust the certificate in this file, and no other, when the daemon speaks TLS.
- * The name is borrowed. */
+/* Makes the client trust the certificate in this file, and no other one, if the daemon speaks TLS.
+ * The file name must stay valid. */
 void client_trust(client *c, const char *certificate);
 /* Sends a request with a body of text. `headers` are lines "Name: value", ended by NULL; the
  * pointer may be NULL. `body` NULL: no body. A body without a Content-Type is sent as
@@ -46,25 +46,25 @@ typedef struct client_request {
     const char *method, *path;
     const char *const *headers;
     const void *body;
-    size_t length; /* bytes of the body; 0 if there is none */
+    size_t length; /* number of bytes in the body; 0 if there is no body */
 } client_request;
 reply client_send_bytes(client *c, const client_request *request);
 /* Send a GET, and a POST with a JSON body. */
 reply client_get(client *c, const char *path);
-/* Waits until the job at this path runs; it must not have ended before. Among jobs that wait, a
- * short one may be run before a long one that came first. */
+/* Waits until the job at this path runs; fails the test if it has ended before. Among jobs that
+ * wait, a short one may be run before a long one that came first. */
 void client_await_running(client *c, const char *job);
 reply client_post(client *c, const char *path, const char *json);
 
-/* Opens a connection outside of libcurl, which the caller must close; over TLS it is one end of a
- * socket pair whose other end a thread encrypts (transport.h). `buffer` is the size of the receive
- * buffer, 0 for the default: with a small one, a client that does not read soon makes the daemon
- * wait. */
+/* Opens a connection without libcurl, which the caller must close. Over TLS it is one end of a
+ * socket pair, and a thread encrypts between the other end and the daemon (transport.h). `buffer`
+ * is the size of the receive buffer, 0 for the default. If it is small, a client that does not read
+ * soon makes the daemon wait. */
 int client_connect(const daemon_process *d, int buffer);
 
 /* Sends bytes unchanged on a new connection and reads until the server closes it, or until
- * `answers` complete answers have come. Returns what was read; the caller must free it.
- * `half_close` closes our direction after sending. */
+ * `answers` complete answers have come. Returns what was read; the caller must free it. If
+ * `half_close` is set, the sending direction of the connection is closed after the bytes. */
 char *client_raw(const daemon_process *d, const char *bytes, size_t length, int answers,
                  bool half_close);
 /* Returns the status of the first answer in the bytes that client_raw has returned, 0 if there is

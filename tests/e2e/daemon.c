@@ -33,7 +33,7 @@ struct daemon_process {
     pthread_cond_t changed;
     char *log;
     size_t length, capacity;
-    bool ended; /* all writers have closed the pipe */
+    bool ended; /* the daemon has closed its end of the pipe */
     char url[URL_BYTES];
     int port;
 };
@@ -44,7 +44,7 @@ static const char *program(void)
     return path != NULL ? path : "build/hedged";
 }
 
-/* A pipe or terminal: the end into which the program writes, and the end from which the test
+/* A pipe or terminal: the descriptor to which the program writes, and the one from which the test
  * reads. */
 typedef struct outlet {
     int reads, writes;
@@ -57,7 +57,7 @@ static outlet open_pipe(void)
     return (outlet){ends[0], ends[1]};
 }
 
-/* Opens a pseudo-terminal that adds no carriage return to a line. */
+/* Opens a pseudo-terminal that does not add a carriage return to each line feed. */
 static outlet open_terminal(void)
 {
     outlet o;
@@ -69,8 +69,8 @@ static outlet open_terminal(void)
     return o;
 }
 
-/* Starts the program with its standard error, and its standard output if asked, connected to `to`;
- * returns the end from which the test reads. */
+/* Starts the program with its standard error connected to `to`, and also its standard output if
+ * `with_stdout` is set. Returns the descriptor from which the test reads both. */
 static int spawn(const char *const *head, const char *const *tail, outlet to, bool with_stdout,
                  pid_t *pid)
 {
@@ -87,7 +87,8 @@ static int spawn(const char *const *head, const char *const *tail, outlet to, bo
     *pid = fork();
     assert_true(*pid >= 0);
     if (*pid == 0) {
-        /* A test that fails stops no daemon: the kernel does when its program has ended. */
+        /* A test that fails does not stop its daemons: the kernel kills them when the test program
+         * ends. */
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         dup2(to.writes, STDERR_FILENO);
         if (with_stdout) {
@@ -117,7 +118,7 @@ static void append(daemon_process *d, const char *bytes, size_t length)
     d->log[d->length] = '\0';
 }
 
-/* Reads the daemon's log all the time, so that the pipe never fills up and makes the daemon
+/* Reads the daemon's log continuously, so that the pipe never fills up and makes the daemon
  * wait. */
 static void *read_log(void *context)
 {
@@ -142,7 +143,7 @@ static void *read_log(void *context)
     }
 }
 
-/* Finds the ready line, which ends in "listening on URL". */
+/* Finds the line that says that the daemon is ready, which ends in "listening on URL". */
 static bool find_url(daemon_process *d)
 {
     static const char words[] = "listening on ";
@@ -196,7 +197,8 @@ static int status_of(int waited)
     return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }
 
-/* Ends the daemon by a signal and waits for it; when this returns, its log is complete. */
+/* Sends a signal to the daemon and waits until it has ended; its log is complete when this
+ * returns. */
 static int end(daemon_process *d, int signal)
 {
     int waited = 0;

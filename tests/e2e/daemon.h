@@ -1,4 +1,4 @@
-/* daemon.h - a real hedged for a test, as a process of its own that listens on a free port and is
+/* daemon.h - a real hedged for a test, in a process of its own. It listens on a free port and is
  * stopped by a signal. */
 #ifndef TESTS_E2E_DAEMON_H
 #define TESTS_E2E_DAEMON_H
@@ -7,16 +7,19 @@
 
 typedef struct daemon_process daemon_process;
 
-/* Starts $HEDGED (build/hedged if unset) with --store memory and with a free port, or a path as
- * transport.h says, and waits until it says where it listens. Further arguments, ended by NULL,
- * override these; the pointer may be NULL. Fails the test if the daemon does not start. */
+/* Starts $HEDGED (build/hedged if unset) with --store memory and with the options of the present
+ * transport (transport.h), such as a free port. Waits until the daemon says where it listens.
+ * `arguments`, ended by NULL, are added and override these options; the pointer may be NULL. Fails
+ * the test if the daemon does not start. */
 daemon_process *daemon_start(const char *const *arguments);
-/* Starts a daemon whose standard error is a terminal, so that its log has the format for people. */
+/* Starts a daemon whose standard error is a terminal, so that it writes its log in the format for
+ * people. */
 daemon_process *daemon_start_on_terminal(const char *const *arguments);
-/* Sends SIGTERM, waits and frees. Returns the exit status, or 128 + the signal that ended the
- * process. */
+/* Sends SIGTERM, waits for the end of the daemon and frees `d`. Returns the exit status, or 128 +
+ * the number of the signal that ended the process. */
 int daemon_stop(daemon_process *d);
-/* Sends SIGKILL, waits and frees: as in a crash of the machine, only the disk is left. */
+/* Sends SIGKILL, waits for the end of the daemon and frees `d`. As in a crash of the machine, only
+ * what is on the disk is left. */
 void daemon_kill(daemon_process *d);
 /* Stops the daemon as daemon_stop does and requires status 0; returns all that it has written to
  * standard error, ended by NUL, which the caller must free. */
@@ -30,8 +33,8 @@ int daemon_pid(const daemon_process *d);
  * that it has used. */
 size_t daemon_peak(const daemon_process *d);
 double daemon_cpu(const daemon_process *d);
-/* Waits until the daemon has written `text` to standard error this many times; returns all it has
- * written so far, ended by NUL, which the caller must free. Fails the test if the daemon ends
+/* Waits until the daemon has written `text` to standard error this many times. Returns all that it
+ * has written so far, ended by NUL, which the caller must free. Fails the test if the daemon ends
  * before. */
 char *daemon_wait_log(daemon_process *d, const char *text, int times);
 

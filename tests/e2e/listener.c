@@ -14,8 +14,8 @@
 
 #include <cmocka.h>
 
-/* If nothing comes for this long, the test fails instead of hanging. No test depends on the exact
- * length. */
+/* If nothing comes for this long, the test fails instead of waiting for ever. No test depends on
+ * the exact time. */
 enum { LONGEST_SECONDS = 600 };
 
 static void wait_readable(const listener *l)
@@ -81,8 +81,8 @@ void listener_close(listener *l)
     free(l);
 }
 
-/* Handles the end of a line before or after a chunk of the answer: it is the size of the next
- * chunk, or the blank line after the previous one. */
+/* Handles the end of a line around a chunk of the answer: the line is the size of the next chunk,
+ * or the blank line after the previous chunk. */
 static void end_line(listener *l)
 {
     l->line[l->line_length] = '\0';
@@ -115,8 +115,8 @@ static void decode(listener *l, const char *bytes, size_t length)
     }
 }
 
-/* Reads what the socket has; returns false if it has nothing now and `patient` is false, or if the
- * stream has ended. */
+/* Reads what has arrived at the socket. Returns false at the end of the stream, and if nothing has
+ * arrived and `patient` is false. */
 static bool receive(listener *l, bool patient)
 {
     char buffer[16 * 1024];

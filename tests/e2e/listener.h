@@ -1,5 +1,5 @@
-/* listener.h - a client of an event stream with a socket of its own, which reads only when the test
- * asks it to. */
+/* listener.h - a client of an event stream, with a socket of its own. It reads from the socket only
+ * when the test asks for an event. */
 #ifndef TESTS_E2E_LISTENER_H
 #define TESTS_E2E_LISTENER_H
 
@@ -11,29 +11,29 @@
 
 typedef struct listener {
     int socket;
-    int status; /* of the answer */
+    int status; /* status of the answer */
     sse events;
-    cJSON *data;   /* of the last event */
-    bool ended;    /* the server closed the stream in order */
-    size_t left;   /* bytes still to come of the current chunk */
-    char line[32]; /* the part of a chunk's size that has come */
+    cJSON *data;   /* data of the latest event */
+    bool ended;    /* the answer's last chunk, of size 0, has come */
+    size_t left;   /* number of bytes still to come of the current chunk */
+    char line[32]; /* the part of the current chunk's size line that has come */
     size_t line_length;
 } listener;
 
 /* Requests `target` and reads the head of the answer. `last` is the Last-Event-ID, or NULL;
  * `buffer` is the size of the receive buffer, 0 for the system's default. */
 listener *listener_open(const daemon_process *d, const char *target, const char *last, int buffer);
-/* Opens a stream with this token. */
+/* Opens a stream whose request has this token. */
 listener *listener_open_as(const daemon_process *d, const char *target, const char *token);
 void listener_close(listener *l);
 
-/* Returns the name of the next event, whose data is then parsed. Returns "" at the end of the
- * stream and, if `patient` is false, also when no event has come. Fails the test if nothing comes
- * for long. */
+/* Waits for the next event, parses its data and returns its name. Returns "" at the end of the
+ * stream and, if `patient` is false, also if no event has come. Fails the test if nothing comes for
+ * ten minutes. */
 const char *listener_next(listener *l, bool patient);
-/* Waits until the stream has had this many comments, which the daemon sends as heartbeats. */
+/* Waits until this many comments have come in the stream; the daemon sends them as heartbeats. */
 void listener_wait_idle(listener *l, size_t comments);
-/* Return members of the last event's data; fail the test if they are absent. */
+/* Return a member of the latest event's data; fail the test if it is absent. */
 const char *listener_string(const listener *l, const char *name);
 double listener_number(const listener *l, const char *name);
 

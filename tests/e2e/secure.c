@@ -23,20 +23,20 @@
 
 enum { RECORD = 16 * 1024, LITTLE = 4096, LONGEST_MILLIS = 600 * 1000 };
 
-/* A TLS record on its way in one of the two directions. */
+/* Bytes on their way between the test and the daemon, in one direction; at most one TLS record. */
 typedef struct parcel {
     unsigned char bytes[RECORD];
     size_t at, end;
-    bool ended; /* nothing follows this record */
-    bool told;  /* the other side knows that it was the last */
+    bool ended; /* the sender has closed this direction */
+    bool told;  /* the receiver has been told that the sender has closed this direction */
 } parcel;
 
 typedef struct relay {
-    int inside, outside; /* the test's side of the relay, and the daemon's */
+    int inside, outside; /* the socket to the test, and the socket to the daemon */
     gnutls_session_t session;
     parcel out, in;
-    bool is_left; /* the test closed its socket */
-    bool is_cut;  /* the daemon takes no more bytes; what the test writes is dropped */
+    bool is_left; /* the test has closed its socket */
+    bool is_cut;  /* the daemon accepts no more bytes, so what the test writes is dropped */
 } relay;
 
 static bool comes_later(ssize_t code)
@@ -44,7 +44,7 @@ static bool comes_later(ssize_t code)
     return code == GNUTLS_E_AGAIN || code == GNUTLS_E_INTERRUPTED;
 }
 
-/* Reads from the test's side. Returns false if that connection is broken. */
+/* Reads what the test has written. Returns false if the connection to the test is broken. */
 static bool take_from_inside(relay *r)
 {
     parcel *p = &r->out;
@@ -71,7 +71,7 @@ static void give_outside(relay *r)
         ssize_t sent = gnutls_record_send(r->session, p->bytes + p->at, p->end - p->at);
         if (sent < 0) {
             /* The daemon may have answered before it reset the connection, so the relay goes on
-             * until that answer is passed on. */
+             * until it has passed on that answer. */
             r->is_cut = !comes_later(sent);
             return;
         }
@@ -93,8 +93,8 @@ static bool take_from_outside(relay *r)
     if (got < 0 && comes_later(got)) {
         return true;
     }
-    /* The daemon may have ended the connection in order or cut it off: in both cases the bytes that
-     * have come are passed on first. */
+    /* The daemon has closed the connection or reset it. In both cases the bytes that have arrived
+     * are passed on first. */
     p->at = 0;
     p->end = got > 0 ? (size_t)got : 0;
     p->ended = got <= 0;
@@ -115,9 +115,9 @@ static bool give_inside(relay *r)
     return p->at < p->end || !p->ended;
 }
 
-/* Waits until one of the sockets is ready for the next step. Returns false if nothing comes for
- * long, if the daemon reset the connection while the test does not read, or if the test closed its
- * socket and everything that it wrote is sent. */
+/* Waits until one of the two sockets is ready for the next step. Returns false if nothing comes for
+ * ten minutes, if the daemon has reset the connection while the test does not read, or if the test
+ * has closed its socket and all that it wrote is sent. */
 static bool wait_for_more(relay *r)
 {
     const bool is_out = r->out.at < r->out.end || (r->out.ended && !r->out.told);
@@ -177,7 +177,7 @@ static void *pass_on(void *context)
     return NULL;
 }
 
-/* Returns the credentials that all connections share, for as long as the program runs. */
+/* Returns the credentials that all connections share until the program ends. */
 static gnutls_certificate_credentials_t trust(void)
 {
     static gnutls_certificate_credentials_t all;

@@ -15,7 +15,7 @@ enum { CLIENTS = 4, REQUESTS = 300, MESHES = 3 };
 typedef struct visitor {
     const daemon_process *daemon;
     bool removes;
-    int strange; /* the first status that must not occur */
+    int strange; /* the first status that a client must not get */
 } visitor;
 
 static void *come_and_go(void *context)
@@ -39,7 +39,7 @@ static void *come_and_go(void *context)
     return NULL;
 }
 
-/* A PUT must replace or create the mesh even if other clients delete it meanwhile. */
+/* A PUT must replace or create the mesh even if other clients delete the mesh meanwhile. */
 static void put_succeeds_while_others_delete_the_mesh(void **state)
 {
     (void)state;

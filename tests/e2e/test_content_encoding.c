@@ -1,5 +1,5 @@
-/* Content codings of a real daemon: decompression bombs that take little memory, answers that are
- * compressed while they are sent, and clients that disconnect in the middle. */
+/* Content codings of a real daemon: decompression bombs, which must take little memory, answers
+ * that are compressed while they are sent, and clients that disconnect in the middle. */
 #include "tests/e2e/client.h"
 
 #include "tests/codings.h"
@@ -39,7 +39,7 @@ static void put_grid(client *c, const char *path, int side)
     done(expect(201, client_send(c, "PUT", path, NULL, body)));
 }
 
-/* A compressed body, and the type of what is compressed. */
+/* A compressed body, and the media type of its decompressed form. */
 typedef struct coded_body {
     const char *coding, *type;
     const char *bytes;
@@ -67,8 +67,8 @@ static void unfold(reply *r, const char *coding)
     r->length = length;
 }
 
-/* Sends a request all at once, without looking for an early answer, and requires this status even
- * if the daemon closes the connection before it has read the body. */
+/* Sends a whole request without reading meanwhile, and requires this status even if the daemon
+ * closes the connection before it has read the whole body. */
 static void refused(daemon_process *d, const char *target, const coded_body *body, int status)
 {
     char *request = malloc(body->length + 400);
@@ -86,8 +86,8 @@ static void refused(daemon_process *d, const char *target, const coded_body *bod
     free(request);
 }
 
-/* Requires that the memory of the daemon rose by at most `most` bytes. A sanitizer adds memory of
- * its own, so under one nothing is compared. */
+/* Requires that the peak memory of the daemon rose by at most `most` bytes since `before`. A
+ * sanitizer adds memory of its own, so nothing is compared in a build with a sanitizer. */
 static void expect_rise(const daemon_process *d, size_t before, size_t most, const char *what)
 {
     size_t rise = daemon_peak(d) - before;
@@ -101,8 +101,8 @@ static void expect_rise(const daemon_process *d, size_t before, size_t most, con
 #endif
 }
 
-/* Returns a bomb of 10 GiB in 10 MiB of gzip, or in less of zstd: members or frames of 10 MiB, one
- * after another. */
+/* Returns a bomb that decompresses to 10 GiB: 10 MiB of gzip, or less of zstd. It consists of gzip
+ * members or zstd frames of 10 MiB each. */
 static char *bomb_of(const char *coding, char fill, size_t *length)
 {
     enum { PART = 10 << 20, PARTS = 1024 };
@@ -132,7 +132,7 @@ static void bombs_stay_small(void **state)
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
         refused(d, "POST /v1/meshes", &(coded_body){both[i], "model/obj", zeros, length},
-                422); /* for its NULs */
+                422); /* because an OBJ file has no NUL bytes */
         refused(d, "POST /v1/meshes", &(coded_body){both[i], "application/json", zeros, length},
                 400);
         refused(d, "POST /v1/meshes/m/edits",
@@ -143,7 +143,8 @@ static void bombs_stay_small(void **state)
                 413);
         refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/obj", blanks, length}, 413);
         refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/x-off", blanks, length}, 413);
-        /* A bomb inside another bomb is decompressed once only, so its bytes are simply no mesh. */
+        /* A bomb inside another bomb is decompressed only once, so the result is refused as no
+         * mesh. */
         size_t folded;
         char *nested = coding_pack(both[1 - i], blanks, length, &folded);
         reply r = send_coded(c, "PUT", "/v1/meshes/b",
@@ -198,8 +199,9 @@ static const char *const targets[] = {
 
 enum { TARGETS = sizeof targets / sizeof *targets, SIDE = 400 };
 
-/* The body is so dense that what arrives at once decompresses to several turns of the only worker.
- * Nothing of it may be lost, and requests of other clients must be answered in between. */
+/* The body compresses so well that the bytes which arrive at once keep the only worker busy for
+ * longer than it may work on one request at a time. All of it must be read, and requests of other
+ * clients must be answered in between. */
 static void dense_bodies_take_turns_with_others(void **state)
 {
     (void)state;
@@ -296,8 +298,8 @@ static void large_answers_are_coded_as_they_are_sent(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Clients read the beginning of a long compressed answer slowly and then disconnect, while others
- * send requests all the time: the others must be answered. */
+/* Some clients read the beginning of a long compressed answer slowly and then disconnect. Other
+ * clients send requests all the time, which must be answered. */
 static void clients_go_away_while_it_is_coded(void **state)
 {
     (void)state;
@@ -324,7 +326,7 @@ static void clients_go_away_while_it_is_coded(void **state)
             close(fds[i]);
         }
     }
-    /* Some clients are still connected when the daemon is told to stop. */
+    /* This client is still connected when the daemon is told to stop. */
     int left = client_connect(d, 4096);
     static const char request[] = "GET /v1/meshes/m/content?format=obj HTTP/1.1\r\n"
                                   "Host: localhost\r\nAccept-Encoding: gzip\r\n\r\n";
@@ -373,10 +375,11 @@ static void an_upload_that_breaks_off_leaves_nothing(void **state)
             assert_true(n > 0);
             sent += (size_t)n;
         }
-        while (counted(c) < before + 1e6) { /* until the daemon has read some of the body */
+        while (counted(c) < before + 1e6) { /* waits until the daemon has read some of the body */
         }
         close(fd);
-        while (counted(c) > before + 1e5) { /* until the daemon has noticed the disconnection */
+        /* waits until the daemon has noticed the disconnection */
+        while (counted(c) > before + 1e5) {
         }
         free(body);
     }
@@ -386,8 +389,8 @@ static void an_upload_that_breaks_off_leaves_nothing(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* The jobs of compressed uploads wait behind a job that lasts until it is cancelled, so that each
- * state can be seen. */
+/* The jobs of compressed uploads wait behind a job that runs until it is cancelled, so that the
+ * test sees each of their states. */
 static void jobs_of_coded_uploads_end_and_are_cancelled(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* A corpus of real and hostile files, if it lies beside the project: the daemon must do with each
- * file what the manifest of the corpus expects, files that it exports must be readable, and a
- * refused file must leave no memory allocated. Without the corpus the test is skipped. */
+/* Imports a corpus of real and hostile files if it lies beside the project, else the test is
+ * skipped. The daemon must do with each file what the manifest of the corpus expects, must read the
+ * files that it exports, and must free all memory after a refused file. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 

@@ -1,5 +1,6 @@
-/* Event streams of a real daemon: a copy that stays equal to its mesh through ten thousand edits
- * and broken connections, slow and dead clients, a thousand listeners, and a stop of the daemon.
+/* Event streams of a real daemon. A copy of a mesh must stay equal to the mesh through ten thousand
+ * edits and broken connections; and there are slow and dead clients, a thousand listeners, and a
+ * stop of the daemon.
  *
  * The environment gives EDITS (default 2000; make proof takes 10000) and SEED (default: from the
  * clock). */
@@ -35,13 +36,13 @@ static void put_mesh(client *c, const char *body)
     reply_free(&r);
 }
 
-/* Sends an edit; returns the revision that it made, 0 if it was refused. */
+/* Sends an edit; returns the revision that the edit made, 0 if it was refused. */
 static uint64_t post(client *c, const char *path, const char *json)
 {
     reply r = client_post(c, path, json);
     uint64_t revision = r.status == 200 ? (uint64_t)reply_number(&r, "revision") : 0;
-    /* Random names of materials are drawn from five, so an edit often names one that is missing or
-     * exists already: that refusal is expected. */
+    /* Random names of materials are drawn from five names. So an edit often names a material that
+     * is missing or that exists already, and such a refusal is expected. */
     bool refused = r.status == 422 || r.status == 409 ||
                    (r.status == 400 && strstr(json, "\"material_") != NULL &&
                     strstr(r.body, "\"bad_value\"") != NULL);
@@ -52,7 +53,7 @@ static uint64_t post(client *c, const char *path, const char *json)
     return revision;
 }
 
-/* --- a dump --- */
+/* --- reading a whole mesh --- */
 
 static void dump_kind(client *c, mirror *m, he_kind kind)
 {
@@ -87,7 +88,7 @@ static cJSON *parsed(client *c, const char *target)
     return json;
 }
 
-/* Reads the attributes with their values, page by page, and the materials. */
+/* Reads all attributes with their values, page by page, and all materials. */
 static void dump_values(client *c, mirror *m)
 {
     cJSON *list = parsed(c, "/v1/meshes/m/attributes"), *attribute;
@@ -119,7 +120,7 @@ static void dump_values(client *c, mirror *m)
     cJSON_Delete(list);
 }
 
-/* Reads the whole mesh anew, while no client edits it. */
+/* Reads the whole mesh into a new copy, while no client edits the mesh. */
 static void dump(client *c, mirror *m)
 {
     mirror_clear(m);
@@ -145,7 +146,7 @@ static void require_equal(client *c, const mirror *copy)
     mirror_clear(&fresh);
 }
 
-/* --- a copy --- */
+/* --- a copy that follows the events --- */
 
 typedef struct copy {
     const daemon_process *daemon;
@@ -228,8 +229,8 @@ static void a_copy_stays_equal_through_random_edits(void **state)
     c.listener = listener_open(d, EVENTS, NULL, 0);
     dump(c.client, &c.mesh);
     for (; done < edits; asked++) {
-        /* Random arguments are drawn from the copy, so here it must have caught up with the server;
-         * at other times it may lag behind. */
+        /* Random arguments are drawn from the copy, so the copy must have all changes here; at
+         * other times it may be behind the server. */
         follow_to(&c, last);
         if (md_chance(&random, 1)) {
             cut(&c);
@@ -296,8 +297,8 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* The history has no budget and keeps nothing, so events that the server's queue has dropped cannot
- * be sent again. */
+/* The history has a budget of 0 and keeps nothing, so an event that was dropped from the listener's
+ * queue cannot be sent again. */
 static void a_gap_in_the_history_is_a_resync(void **state)
 {
     (void)state;
@@ -335,8 +336,9 @@ static long resident_kilobytes(const daemon_process *d)
     return kilobytes;
 }
 
-/* Events of some 50 kB are made while the client reads nothing, many more than the buffers between
- * daemon and client hold: the daemon must drop them and tell the client to fetch the mesh anew. */
+/* Edits make events of some 50 kB while the client reads nothing, far more than the buffers between
+ * daemon and client hold. The daemon must drop events and tell the client to fetch the mesh
+ * anew. */
 static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
 {
     (void)state;
@@ -360,13 +362,14 @@ static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
     follow_to(&c, last);
     require_equal(c.client, &c.mesh);
     assert_true(c.applied > 0);
-    assert_true(c.anew > 0); /* more than once if it falls behind again */
+    assert_true(c.anew > 0); /* more than 1 if the client falls behind again */
     last = post(c.client, "/v1/meshes/m/edits", POKE);
     follow_to(&c, last);
     require_equal(c.client, &c.mesh);
     printf("note: of %d large events %u were applied, taken anew %u times; %ld KiB more resident\n",
            EDITS, c.applied, c.anew, grown);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* they keep freed memory */
+/* A sanitizer keeps freed memory. */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     assert_true(grown < MOST_KILOBYTES);
 #endif
     listener_close(c.listener);
@@ -389,8 +392,8 @@ static void a_dead_client_makes_room(void **state)
     listener_close(second);
     free(daemon_wait_log(d, "\"status\":503", 1));
     listener_close(first);
-    /* The access log has a line about the stream only after the daemon has closed it; after this
-     * line a second listener must be allowed. */
+    /* The access log has a line about the stream only after the daemon has closed the stream. Then
+     * a second listener must be admitted. */
     free(daemon_wait_log(d, "/events\",\"status\":200", 1));
     second = listener_open(d, EVENTS, NULL, 0);
     assert_int_equal(second->status, 200);
@@ -399,7 +402,8 @@ static void a_dead_client_makes_room(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Sends a request until it succeeds: on a busy machine it may miss the deadline of one second. */
+/* Sends a request until it succeeds. On a busy machine an attempt may miss the daemon's deadline of
+ * one second. */
 static void send_until_done(const daemon_process *d, const char *method, const char *path,
                             const char *body)
 {
@@ -414,8 +418,8 @@ static void send_until_done(const daemon_process *d, const char *method, const c
     assert_true(status == 200 || status == 201);
 }
 
-/* The deadlines of ordinary requests must not end an event stream that is silent; it is kept alive
- * by comments. */
+/* An event stream without events must not be closed by the deadlines of ordinary requests; comments
+ * keep it alive. */
 static void silence_is_filled_with_comments(void **state)
 {
     (void)state;
@@ -480,8 +484,8 @@ static size_t open_descriptors(const daemon_process *d)
     return count;
 }
 
-/* With heartbeats an hour apart, the daemon can notice only by the closed connection that a
- * listener is gone. */
+/* Heartbeats are an hour apart, so only the closed connection tells the daemon that a listener is
+ * gone. */
 static void closed_listeners_free_their_descriptors(void **state)
 {
     (void)state;

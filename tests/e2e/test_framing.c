@@ -1,5 +1,5 @@
 /* Malformed requests, each sent at once, in pieces, and behind well-formed requests on one
- * connection: the well-formed ones must be answered in order, then the malformed one with its
+ * connection. The well-formed requests must be answered in order, then the malformed one with its
  * problem, and after a framing fault nothing more. */
 #include "tests/e2e/client.h"
 #include "tests/framing_cases.h"
@@ -22,8 +22,7 @@
 enum { DEEP = 100, MOST_ANSWERS = DEEP + 4, WHOLE = 1 << 30, WAIT_MILLIS = 60000 };
 
 #define GOOD "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n"
-/* A well-formed last request that closes the connection, if the daemon still reads requests
- * there. */
+/* A last, well-formed request, which closes the connection if the daemon still reads requests. */
 #define LAST "GET /readyz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
 
 static daemon_process *server;
@@ -48,13 +47,13 @@ typedef struct answer {
     size_t head_length, body_length;
 } answer;
 
-/* The answers on a connection, separated from each other. Interim ones (1xx) are left out. */
+/* The answers on a connection, one by one, without the interim ones (1xx). */
 typedef struct answers {
     char *bytes;
     size_t length;
     size_t count;
     answer items[MOST_ANSWERS];
-    bool whole; /* the last answer is complete and nothing follows it */
+    bool whole; /* the last answer is complete, and no bytes follow it */
 } answers;
 
 /* Returns the value of a header in the answer, up to the end of its line; NULL if absent. */
@@ -110,7 +109,7 @@ static answers exchange(const char *bytes, size_t length, size_t piece)
         if ((wait.revents & POLLOUT) != 0) {
             size_t now = length - sent < piece ? length - sent : piece;
             ssize_t n = send(fd, bytes + sent, now, MSG_NOSIGNAL | MSG_DONTWAIT);
-            sent = n > 0 ? sent + (size_t)n : length; /* on an error the answer is still read */
+            sent = n > 0 ? sent + (size_t)n : length; /* after an error the answer is still read */
         }
         if ((wait.revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
             char buffer[16384];
@@ -143,8 +142,8 @@ static bool is_problem(const answer *a, const char *code)
            strstr(text, member) != NULL;
 }
 
-/* Returns what is wrong with the answers to `good` well-formed requests, the malformed one and a
- * last one; NULL: nothing. */
+/* Returns what is wrong with the answers to `good` well-formed requests, the malformed request and
+ * the last request; NULL if nothing is wrong. */
 static const char *find_wrong(const framing_case *c, const answers *all, size_t good)
 {
     if (!all->whole) {
@@ -186,7 +185,7 @@ static size_t try_cases(size_t good, size_t piece)
         }
         memcpy(all + before, bytes, size);
         memcpy(all + before + size, LAST, sizeof LAST - 1);
-        /* A long case is cut into larger pieces than single bytes, to save time. */
+        /* Long cases are sent in larger pieces than single bytes, to save time. */
         size_t step = piece < 512 && size > 4096 ? 509 : piece;
         answers got = exchange(all, before + size + sizeof LAST - 1, step);
         const char *what = find_wrong(c, &got, good);
@@ -230,8 +229,8 @@ static void each_case_behind_a_hundred_requests_has_its_answer(void **state)
     assert_int_equal(try_cases(DEEP, WHOLE), 0);
 }
 
-/* If the head of a request has the maximum length in every respect, libmicrohttpd must still have
- * room in its buffer for the answer. */
+/* The head of a request has the maximum length in every respect. The buffer of libmicrohttpd must
+ * still have space for the answer. */
 static void the_largest_head_is_answered(void **state)
 {
     (void)state;
@@ -240,8 +239,8 @@ static void the_largest_head_is_answered(void **state)
     char *bytes = malloc(ROOM);
     assert_non_null(bytes);
     for (size_t fields = 0; fields <= 98; fields += 14) {
-        /* The target has its maximum length, and the headers grow beyond the limit for their number
-         * or their length. */
+        /* The target has its maximum length. Headers are added until their number or their length
+         * exceeds its limit. */
         for (size_t size = 6000; size <= 20000; size += 250) {
             size_t at = (size_t)snprintf(bytes, ROOM, "GET /");
             memset(bytes + at, 'a', 8191);

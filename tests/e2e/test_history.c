@@ -1,5 +1,5 @@
-/* The history of a mesh in a real daemon, as a client sees it: at every depth, the mesh of an
- * earlier revision is read back to the byte. */
+/* The history of a mesh in a real daemon, as a client sees it: each earlier revision is read back
+ * to the byte after any number of later edits. */
 #include "tests/e2e/client.h"
 
 #include "tests/model/random.h"
@@ -36,7 +36,7 @@ static int stop(void **state)
     return daemon_stop(server);
 }
 
-/* Returns all half-edges with their links and all positions at a revision; `revision` 0 is the
+/* Returns all half-edges with their links and all positions at this revision; revision 0 means the
  * present one. */
 static char *dump(uint64_t revision)
 {

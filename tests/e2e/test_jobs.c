@@ -19,7 +19,7 @@
 static const char *const async[] = {"Prefer: respond-async", "Content-Type: application/json",
                                     NULL};
 
-/* Submits a job; `path` becomes its path. */
+/* Submits a job; `path` becomes the path of the job in the API. */
 static void submit(client *c, const char *method, const char *target, const char *body,
                    char path[80])
 {
@@ -31,7 +31,7 @@ static void submit(client *c, const char *method, const char *target, const char
     reply_free(&r);
 }
 
-/* Requests the job until it has ended; the caller must free the reply. */
+/* Requests the job again and again until it has ended; the caller must free the reply. */
 static reply await(client *c, const char *path)
 {
     for (;;) {
@@ -46,7 +46,7 @@ static reply await(client *c, const char *path)
 }
 
 /* Returns how many different values of progress a listener gets while a file is imported. The
- * import waits behind another job, so that the listener connects before it begins. */
+ * import waits behind another job, so that the listener can connect before the import begins. */
 static int hear_an_import(client *c, const reply *file)
 {
     char first[80], second[80], events[100];
@@ -79,7 +79,7 @@ static int hear_an_import(client *c, const reply *file)
     return values;
 }
 
-/* On a busy machine the listener may connect late and miss the progress; then the import is
+/* On a busy machine the listener may connect too late for the progress; then the import is
  * repeated. */
 static void an_import_tells_how_far_it_is(void **state)
 {
@@ -140,7 +140,7 @@ static void a_full_queue_refuses(void **state)
     assert_true(taken >= 1);
     reply_free(&r);
     client_free(c);
-    assert_int_equal(daemon_stop(d), 0); /* while one job runs and one waits */
+    assert_int_equal(daemon_stop(d), 0); /* stops while one job runs and another one waits */
 }
 
 static void a_long_edit_is_busy_readable_and_undone(void **state)
@@ -155,7 +155,7 @@ static void a_long_edit_is_busy_readable_and_undone(void **state)
     reply_free(&r);
     reply before = client_get(c, "/v1/meshes/m/content?format=ply");
     submit(c, "POST", "/v1/meshes/m/edits", TRANSFORM, path);
-    /* Until the job has ended, the mesh must refuse edits and still answer reads. */
+    /* Until the job has ended, the mesh must refuse edits but answer reads. */
     int refused = 0;
     for (;;) {
         r = client_post(c, "/v1/meshes/m/edits", poke);

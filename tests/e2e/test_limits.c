@@ -1,4 +1,4 @@
-/* Limits per client in a real daemon: for requests, for connections, and for meshes even after a
+/* Limits per client in a real daemon: of requests, of connections, and of meshes, also after a
  * restart. */
 #include "tests/e2e/client.h"
 #include "tests/store_folder.h"
@@ -17,7 +17,7 @@
 /* The SHA-256 hash of the token "test". */
 #define HASH "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
 
-/* The limit is one request a second, so a client that sends a thousand without pause must be
+/* The limit is one request a second. A client that sends a thousand requests without pause must be
  * refused at some point, however slow the machine is. */
 static void an_address_that_asks_without_end_is_told_to_wait(void **state)
 {
@@ -53,14 +53,14 @@ static void one_connection_too_many_is_told_so_and_closed(void **state)
     client *first = client_new(d), *second = client_new(d);
     reply_done(reply_expect(200, client_get(first, "/v1/meshes")));
     reply_done(reply_expect(200, client_get(second, "/v1/meshes")));
-    char *answer = client_raw(d, ask, sizeof ask - 1, 2, false); /* until the daemon closes it */
+    char *answer = client_raw(d, ask, sizeof ask - 1, 2, false); /* reads until the daemon closes */
     assert_int_equal(client_raw_status(answer), 429);
     assert_non_null(strstr(answer, "too_many_connections"));
     assert_non_null(strstr(answer, "Connection: close"));
     free(answer);
     client_free(second);
     int status = 429;
-    while (status == 429) { /* until the daemon has noticed the closed connection */
+    while (status == 429) { /* waits until the daemon has noticed the closed connection */
         answer = client_raw(d, ask, sizeof ask - 1, 1, false);
         status = client_raw_status(answer);
         free(answer);

@@ -1,5 +1,5 @@
-/* The log of the daemon on standard error: each line in its format, the lines at start and stop,
- * trace ids, settings that are reloaded, and no secret anywhere. */
+/* The log that the daemon writes to standard error: each line must have its format, the start and
+ * the stop have their lines, trace ids appear, settings can be reloaded, and no secret appears. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -32,7 +32,7 @@ static const char *member(const cJSON *json, const char *name)
     return cJSON_IsString(item) ? item->valuestring : "";
 }
 
-/* The lines of a log, parsed as JSON; the only one that is no JSON must be the ready line. */
+/* The lines of a log, parsed as JSON, except the line that says that the daemon is ready. */
 typedef struct lines {
     cJSON *all[200];
     size_t count;
@@ -193,8 +193,8 @@ static void a_level_says_no_more_than_asked_beside_the_requests(void **state)
     free(log);
 }
 
-/* Sends a request with this header and, if `trace_id` is not NULL, requires that the answer belongs
- * to this trace. */
+/* Sends a request with this header. If `trace_id` is not NULL, the answer must belong to this
+ * trace. */
 static void ask_in_trace(client *c, const char *header, const char *trace_id, char flag, char *span)
 {
     char answered[128], expected[64];
@@ -301,8 +301,9 @@ static void a_reload_reads_the_settings_of_the_log_again(void **state)
     unlink(file);
 }
 
-/* Tokens reach the daemon in a header, by mistake in a URL, and as a hash in its file; a ticket is
- * in a query. None of these may appear in the log, at any level and in either format. */
+/* The daemon knows tokens from a header, from a URL in which they are by mistake, and as hashes in
+ * its file; and it knows a ticket from a query. None of these may appear in the log, at any level
+ * and in either format. */
 static void no_token_and_no_ticket_is_ever_said(void **state)
 {
     (void)state;

@@ -34,7 +34,7 @@ static int remove_folder(void **state)
     (void)state;
     (void)snprintf(command, sizeof command, "rm -rf '%s'", folder);
     (void)unlink(file);
-    return system(command); /* removes all: a restore leaves a folder in it */
+    return system(command); /* a restore leaves a folder in it, so rmdir would not do */
 }
 
 static void expect_run(const char *const *arguments, int status, const char *says)
@@ -162,13 +162,13 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
     assert_glb("cube.glb", false);
     assert_glb("cube.revision-2.glb", true);
     assert_glb("torus.glb", true);
-    /* A damaged row has an id that is no valid id: it must not be used as a file name, which could
-     * lead out of the folder. */
+    /* A damaged row has an id that is not a valid mesh id. It must not be used as a file name,
+     * because it could name a file outside the folder. */
     store_sql_run(folder, "UPDATE mesh SET id = '../torus' WHERE id = 'torus'");
     expect_run(ARGUMENTS("--store", store, "--dump", dump), 1, "its id cannot be read");
     assert_glb("../torus.glb", false);
-    /* The index of the mesh ids is damaged so that it lists none: the verification must still find
-     * the meshes in the table. */
+    /* The index of the mesh ids is damaged so that it lists no mesh. The verification must still
+     * find the meshes in the table. */
     store_sql_run(
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
                 "FROM sqlite_schema WHERE name = 'kept_by_time') "

@@ -1,5 +1,5 @@
-/* The memory that the daemon counts is what it really takes, and it refuses what exceeds its
- * budget. */
+/* The memory that the daemon counts must be the memory that it takes, and the daemon must refuse
+ * requests that would exceed its memory budget. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -14,7 +14,8 @@
 
 #include <cmocka.h>
 
-/* How long a read of a million quads takes on a busy machine is not what these tests are about. */
+/* On a busy machine a read of a million quads takes long, so these tests raise the time limit of
+ * reads. */
 #define PATIENT "--read-seconds", "600"
 
 static double counted(client *c, const char *member)
@@ -34,7 +35,8 @@ static void put_grid(client *c, const char *path, int side, long status)
 
 static const char lift[] = "{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]}";
 
-/* A sanitizer adds memory of its own, so under one resident memory is not compared. */
+/* A sanitizer adds memory of its own, so resident memory is not compared in a build with a
+ * sanitizer. */
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 
 static double resident(const daemon_process *d)
@@ -97,12 +99,13 @@ static void take_answer(int fd)
     assert_memory_equal(text, "HTTP/1.1 200", 12);
 }
 
-/* Besides the connection itself, a TLS session has keys and buffers of its own. */
+/* IDLE_BYTES and IDLE_TLS_BYTES are the limits on the resident memory of an idle connection; a TLS
+ * session has keys and buffers of its own. */
 enum { CONNECTIONS = 1000, LOOKS = 200000, IDLE_BYTES = 10 * 1024, IDLE_TLS_BYTES = 16 * 1024 };
 
-/* Each connection has sent one request, so that libmicrohttpd has used its buffer, and then stays
- * idle. Another client looks at the counted memory until it has fallen; the number of looks is
- * limited, not the time. */
+/* Each of many connections sends one request, for which libmicrohttpd uses its buffer, and then
+ * stays idle. Another client reads the counted memory until it has fallen. The number of these
+ * reads is limited, not the time. */
 static void a_connection_at_rest_holds_little(void **state)
 {
     (void)state;
@@ -142,7 +145,7 @@ static void a_connection_at_rest_holds_little(void **state)
 
 #endif
 
-/* Does it say so where those look who watch it? */
+/* Returns whether the daemon reports that its memory is full, both in /readyz and in /metrics. */
 static bool is_full(client *c)
 {
     reply r = reply_expect(200, client_get(c, "/readyz"));
@@ -156,8 +159,8 @@ static bool is_full(client *c)
 
 enum { MANY = 400, SIDE = 100, SMALLER_SIDE = 66 };
 
-/* Creates grids "<letter>0", "<letter>1", ... of side * side faces, until one does not fit the
- * budget. Returns how many were created. */
+/* Creates grids "<letter>0", "<letter>1", ... of side * side faces, until the budget has no space
+ * for another one. Returns how many were created. */
 static int fill_with_grids(client *c, char letter, int side)
 {
     char path[64], body[64];
@@ -196,8 +199,8 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
     int made = fill_with_grids(c, 'g', SIDE);
     assert_true(made > 2 && made < MANY);
 
-    /* When the budget is used up, edits that need more memory must be refused as a whole, and small
-     * requests still be answered. */
+    /* When the budget is used up, an edit that needs more memory must be refused as a whole, but
+     * small requests must still be answered. */
     int edits = 0;
     long status = 200;
     while (edits < MANY && status == 200) {
@@ -208,9 +211,9 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
     }
     assert_int_equal(status, 507);
     assert_true(counted(c, "memory_bytes") <= counted(c, "memory_budget"));
-    /* What is left is too little for the edit, but may be more than the 64th of the budget below
-     * which memory counts as full: smaller grids take it. The daemon looks at its memory once a
-     * second. */
+    /* The memory that is left is too little for the edit, but may be more than a 64th of the
+     * budget, below which the daemon reports that memory is full. Smaller grids use it up. The
+     * daemon looks at its memory once a second. */
     int smaller = fill_with_grids(c, 's', SMALLER_SIDE);
     while (!is_full(c)) {
     }
@@ -223,8 +226,8 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
     delete_grids(c, 'g', made);
     delete_grids(c, 's', smaller);
 
-    /* After meshes were deleted there is room again, and undo must show that no refused edit was
-     * done in part. */
+    /* After meshes were deleted there is memory again. Undo must then show that no part of a
+     * refused edit was done. */
     reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
     for (int i = 0; i < edits + 1; i++) {
         reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));

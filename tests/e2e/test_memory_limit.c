@@ -1,12 +1,12 @@
 /* In a control group with little memory, the daemon must refuse requests before the kernel kills
  * it.
  *
- * The test makes the group below its own, in the version of control groups that limits memory on
- * this machine. To try it by hand, as root: mkdir /sys/fs/cgroup/small; echo 300M
+ * The test creates a group below its own one, in the version of control groups that limits memory
+ * on this machine. To try it by hand, as root: mkdir /sys/fs/cgroup/small; echo 300M
  * >/sys/fs/cgroup/small/memory.max; echo $$ >/sys/fs/cgroup/small/cgroup.procs; build/hedged (in
  * version 1 the files are below /sys/fs/cgroup/memory and the limit is memory.limit_in_bytes). If
- * no group can be made, the test says so and gives the daemon the budget that it would derive from
- * 300 MiB. */
+ * no group can be created, the test says so and gives the daemon the memory budget that it would
+ * derive from 300 MiB. */
 #include "tests/e2e/client.h"
 
 #include "system/memory_limit.h"
@@ -24,7 +24,7 @@
 
 #define MIB (UINT64_C(1) << 20)
 
-/* A sanitizer needs memory of its own, more than the group allows. */
+/* A sanitizer needs memory of its own, more than the limit of the group. */
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 enum { IN_GROUP = 0 };
 #else
@@ -35,7 +35,7 @@ enum { LIMIT_MIB = 300, MANY = 400, PATH_BYTES = 512 };
 
 typedef struct group {
     char parent[PATH_BYTES], own[PATH_BYTES + 32];
-    const char *usage; /* the file with the most memory that the group ever held */
+    const char *usage; /* the file that tells the peak of the group's memory */
 } group;
 
 static bool write_text(const char *folder, const char *name, const char *text)
@@ -47,8 +47,8 @@ static bool write_text(const char *folder, const char *name, const char *text)
     return file != NULL && fclose(file) == 0 && good;
 }
 
-/* Finds the control group of this process in version 1 (`key` ":memory:") or 2 ("0::"), below
- * `mount`. */
+/* Finds the control group of this process: in version 1 with the `key` ":memory:", in version 2
+ * with "0::". The group is a folder below `mount`. */
 static bool find_parent(const char *key, const char *mount, char out[PATH_BYTES])
 {
     char line[PATH_BYTES];
@@ -96,7 +96,7 @@ static bool make_group(group *g)
     return false;
 }
 
-/* Moves this process back to the group where it was before; the daemon stays in the small one. */
+/* Moves this process back to its former group; the daemon stays in the small one. */
 static void leave_group(const group *g)
 {
     char pid[32];
@@ -119,7 +119,7 @@ static void end_group(const group *g)
     assert_int_equal(rmdir(g->own), 0);
 }
 
-/* Requires that the daemon says these words about its budget at start. */
+/* Requires that the daemon's first log lines contain these words about its memory budget. */
 static void expect_budget(daemon_process *d, client *c, const char *words)
 {
     char *log = daemon_wait_log(d, "listening on", 1);

@@ -1,5 +1,5 @@
-/* GET /metrics of a real daemon: each event is counted under its name, promtool finds no fault in
- * the page, and the alerting rules name only metrics that exist. */
+/* GET /metrics of a real daemon: each event must be counted under its name, promtool must find no
+ * fault in the page, and the alerting rules may name only metrics that exist. */
 #include "api/metric/metric_page.h"
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
@@ -25,7 +25,7 @@ static reply read_page(client *c)
     return reply_expect(200, client_get(c, "/metrics"));
 }
 
-/* Returns the value of a sample, 0 if the page has none. */
+/* Returns the value of a sample on the page of metrics, 0 if the page does not have it. */
 static double value_of(const reply *page, const char *sample)
 {
     const size_t length = strlen(sample);
@@ -39,7 +39,7 @@ static double value_of(const reply *page, const char *sample)
     return 0;
 }
 
-/* Sends requests that cause everything that the rows of `moved` count. */
+/* Sends requests that change the value of each metric in the list `moved`. */
 static void let_things_happen(client *c)
 {
     const char *const async[] = {"Prefer: respond-async", NULL};
@@ -63,7 +63,7 @@ static void let_things_happen(client *c)
     reply_header(&job, "Location", target, sizeof target);
     snprintf(stream, sizeof stream, "%s/events", target);
     reply_done(job);
-    /* The event stream of a job ends when the job has ended, so this waits for the job. */
+    /* The event stream of a job ends with the job, so reading it waits for the job. */
     reply_done(reply_expect(200, client_get(c, stream)));
 }
 
@@ -120,9 +120,9 @@ static void what_happens_is_counted(void **state)
     client *c = client_new(d);
     reply before = read_page(c);
     let_things_happen(c);
-    /* Once a second the daemon opens a file of /proc to read its use of memory. The first page may
-     * count it as an open file and the second page not, so one stream would not surely move that
-     * count. */
+    /* Once a second the daemon opens a file of /proc to read its use of memory. Either page may
+     * count that as an open file, so a single new stream would not always raise the number of open
+     * files; two do. */
     listener *streams[2];
     for (size_t i = 0; i < 2; i++) {
         streams[i] = listener_open(d, "/v1/meshes/m/events", NULL, 0);
@@ -148,7 +148,7 @@ static void what_happens_is_counted(void **state)
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);
 
-    /* After the restart the mesh is only on the disk, and the first request for it loads it. */
+    /* After the restart the mesh is only on the disk; the first request for the mesh loads it. */
     d = daemon_start(ARGUMENTS("--store", store));
     c = client_new(d);
     reply_done(reply_expect(200, client_get(c, "/v1/meshes/m")));
@@ -161,7 +161,7 @@ static void what_happens_is_counted(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* --- what is refused and closed --- */
+/* --- metrics of refusals, and of settings --- */
 
 static const char *const refused[] = {
     "hedge_connections_refused_total{reason=\"limit\"}",
@@ -169,7 +169,7 @@ static const char *const refused[] = {
     "hedge_limited_total{client=\"address\",limit=\"requests\"}",
 };
 
-/* Metrics that do not move, and the option that sets each. */
+/* Metrics with constant values, and the option that sets each value. */
 static const struct {
     const char *sample, *option, *value;
     double expected;
@@ -182,7 +182,8 @@ static const struct {
 
 enum { SETTLED = sizeof settled / sizeof *settled };
 
-/* Three connections, the first of which asks for nothing, and a fourth that is refused. */
+/* Opens three connections, of which the first never completes its request, and a fourth one, which
+ * is refused. */
 static void exceed_connections(const daemon_process *d)
 {
     static const char head[] = "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n";
@@ -197,7 +198,8 @@ static void exceed_connections(const daemon_process *d)
     assert_int_equal(client_raw_status(answer), 503);
     free(answer);
     close(fds[1]);
-    while (read(fds[0], &byte, 1) > 0) { /* the head does not come in time */
+    /* waits until the daemon closes it because of its incomplete request */
+    while (read(fds[0], &byte, 1) > 0) {
     }
     close(fds[0]);
 }
@@ -230,7 +232,7 @@ static void what_is_refused_and_what_is_set_is_on_the_page(void **state)
     assert_int_equal(status, 429);
     exceed_connections(d);
     reply r = client_get(c, "/metrics");
-    while (r.status == 503) { /* until those connections have left */
+    while (r.status == 503) { /* waits until those connections are closed */
         reply_free(&r);
         r = client_get(c, "/metrics");
     }
@@ -244,7 +246,7 @@ static void what_is_refused_and_what_is_set_is_on_the_page(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* More meshes than the memory budget holds. */
+/* Creates more meshes than the memory budget holds, so that some are evicted from memory. */
 static void meshes_that_leave_memory_are_counted(void **state)
 {
     (void)state;
@@ -266,9 +268,9 @@ static void meshes_that_leave_memory_are_counted(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* --- every row of the table --- */
+/* --- every metric of the table --- */
 
-/* Metrics that tests of other programs move, since they need a disk that fails, threads that stop
+/* Metrics whose changes other programs test, since they need a disk that fails, threads that stop
  * or a listener that does not read. */
 static const struct {
     const char *metric, *file;
@@ -289,7 +291,7 @@ static const struct {
     {"hedge_pool_tasks_refused_total", "tests/unit/test_srv_pool.c"},
 };
 
-/* Metrics that no test moves, each with the reason. */
+/* Metrics whose changes no test checks, each with the reason. */
 static const struct {
     const char *metric, *reason;
 } unmoved[] = {
@@ -303,7 +305,8 @@ static const struct {
     {"process_start_time_seconds", "it never changes; test_srv_counters reads it"},
 };
 
-/* Is it a sample of the metric: its name, the suffix of a histogram, labels? */
+/* Returns whether the sample belongs to the metric: it has the metric's name, perhaps a suffix of
+ * histograms, and perhaps labels. */
 static bool is_sample_of(const char *sample, const char *metric)
 {
     static const char *const suffixes[] = {"", "_sum", "_count"};
@@ -326,7 +329,8 @@ static int count_in(const char *const *samples, size_t count, const char *metric
     return found;
 }
 
-/* Does the source hold the name, and not only as the beginning of another one? */
+/* Returns whether the source file names the metric, and not only a longer name that begins with
+ * it. */
 static bool names(const char *path, const char *metric)
 {
     static char text[1 << 18];
@@ -349,7 +353,7 @@ static void every_metric_is_moved_by_a_test_or_has_its_reason(void **state)
     (void)state;
     static const char *const evicted[] = {"hedge_mesh_evictions_total",
                                           "hedge_mesh_load_duration_seconds_count"};
-    size_t listed = 0; /* of the two lists above, which must not name what is no metric */
+    size_t listed = 0; /* number of rows of the two lists above that name a metric */
     for (api_metric_id id = 0; id < API_METRIC_COUNT; id++) {
         const char *metric = api_metric_at(id)->name;
         int found = count_in(moved, sizeof moved / sizeof *moved, metric) > 0;

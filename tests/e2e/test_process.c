@@ -1,4 +1,4 @@
-/* The daemon as a process: its options, its log, its signals, and its behaviour at its limits. */
+/* The daemon as a process: its options, its log, its signals, and what it does at its limits. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -41,8 +41,8 @@ static void options_are_obeyed_or_refused_with_a_reason(void **state)
     expect_run(ARGUMENTS("--listen", "0.0.0.0:0"), 2, "other machines");
 }
 
-/* Reads what the build wrote beside the daemon: the commit, or nothing where the sources are no
- * clone. */
+/* Reads the commit from the file that the build wrote beside the daemon. The file is empty if the
+ * sources are no clone of the repository. */
 static void read_commit(char out[64])
 {
     const char *given = getenv("HEDGED"), *path = given == NULL ? "build/hedged" : given;
@@ -55,7 +55,7 @@ static void read_commit(char out[64])
     out[strcspn(out, "\n")] = '\0';
 }
 
-/* The short spellings give what the long ones do. */
+/* The short names of the options must give the same output as the long ones. */
 static void help_and_version_have_short_spellings(void **state)
 {
     (void)state;
@@ -81,7 +81,8 @@ static void help_and_version_have_short_spellings(void **state)
     assert_true(commit[0] == '\0' || strstr(outputs[0], told) != NULL);
 }
 
-/* Every description begins in one column, also where an option is too long to stand before it. */
+/* All descriptions begin in one column, even if an option is too long to stand before its
+ * description. */
 static void help_is_in_two_columns(void **state)
 {
     (void)state;
@@ -111,7 +112,7 @@ static void an_address_in_use_is_named_and_healthcheck_finds_its_daemon(void **s
     (void)state;
     daemon_process *d = daemon_start(NULL);
     const char *address = strstr(daemon_url(d), "127");
-    address = address == NULL ? daemon_url(d) : address; /* of a Unix socket: its path */
+    address = address == NULL ? daemon_url(d) : address; /* the path if it is a Unix socket */
     char output[4096];
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", address, "--store", "memory"), output, sizeof output), 1);
@@ -141,7 +142,7 @@ static void it_offers_samples_keeps_request_ids_and_outlives_sighup(void **state
     assert_string_not_equal(reply_header(&r, "X-Request-Id", id, sizeof id), "bad\"id");
     reply_free(&r);
     client_free(c);
-    kill(daemon_pid(d), SIGHUP); /* must not stop the daemon, with or without tokens */
+    kill(daemon_pid(d), SIGHUP); /* SIGHUP must not stop the daemon, with or without tokens */
     c = client_new(d);
     r = client_get(c, "/livez");
     assert_int_equal(r.status, 200);
@@ -189,7 +190,7 @@ static void a_terminal_is_told_what_to_open_and_spared_the_log(void **state)
     daemon_process *d = daemon_start_on_terminal(NULL);
     char hint[400];
     const char *url = daemon_url(d);
-    if (transport_get() == TRANSPORT_UNIX) { /* a browser cannot open it */
+    if (transport_get() == TRANSPORT_UNIX) { /* a browser cannot open the socket */
         snprintf(hint, sizeof hint,
                  ": listening on %s\ncurl --unix-socket %s http://localhost/v1/meshes asks hedge; "
                  "Ctrl-C stops it\n",
@@ -257,11 +258,11 @@ static void sigterm_ends_the_daemon_while_clients_write(void **state)
         workers[i] = (worker){d, i, 0};
         assert_int_equal(pthread_create(&threads[i], NULL, edit_on, &workers[i]), 0);
     }
-    reply r = client_get(c, "/v1/meshes/m0"); /* by its answer the writers have begun */
+    reply r = client_get(c, "/v1/meshes/m0"); /* the writers have begun when this is answered */
     assert_int_equal(r.status, 200);
     reply_free(&r);
     client_free(c);
-    /* `d` stays allocated until all writers have seen the daemon end, because they use it. */
+    /* `d` is freed only after all writers have seen the daemon end, because they use it. */
     kill(daemon_pid(d), SIGTERM);
     for (int i = 0; i < WORKERS; i++) {
         pthread_join(threads[i], NULL);

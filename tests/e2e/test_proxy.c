@@ -1,5 +1,5 @@
-/* A daemon behind a reverse proxy: which address it takes for the client's, and which scheme it
- * uses in answers. */
+/* A daemon behind a reverse proxy: the client address that it assumes, and the scheme of the URLs
+ * in its answers. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Returns the line of the access log about the request with this id. */
+/* Returns the line of the access log about the request with this request id. */
 static const char *line_of(const char *log, const char *id)
 {
     const char *at = strstr(log, id);
@@ -87,8 +87,8 @@ static void nobody_else_is_believed(void **state)
     free(log);
 }
 
-/* Checks the headers that a browser gets over https, and the origins whose pages may write, which
- * both depend on the scheme that the proxy reports. */
+/* Two things depend on the scheme that the proxy reports: the headers that a browser gets over
+ * https, and the origins whose web pages may write. */
 static void the_scheme_is_the_one_that_the_proxy_tells(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* A large broken file is sent to a real daemon: its job is refused and names the repairs that would
- * help, and with these it is accepted and reports its progress. */
+/* A large broken file is sent to a real daemon. Its job must be refused and name the repairs that
+ * would help; with these repairs the file must be accepted, and the job must report its
+ * progress. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -43,7 +44,8 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* Uploads the file as a job and reads its events, which end with the job; returns the ended job. */
+/* Uploads the file as a job and reads the job's events until it has ended; returns the ended
+ * job. */
 static reply run(client *c, const char *target, const char *body, size_t length, reply *events)
 {
     static const char *const headers[] = {"Prefer: respond-async", "Content-Type: model/obj", NULL};

@@ -1,5 +1,5 @@
-/* A daemon that is killed or stopped and started again on its folder: everything that it had
- * answered is there, including the history, and can be edited further. */
+/* A daemon is killed or stopped, and started again on its folder. Everything that it had
+ * acknowledged must be there, including the history, and must be editable. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
@@ -60,8 +60,8 @@ static void send(const char *method, const char *path, const char *body, long st
     reply_done(reply_expect(status, client_send(http, method, path, NULL, body)));
 }
 
-/* Replaces values that differ between two processes although the content is equal, such as the
- * bytes that a mesh takes in memory. */
+/* Replaces the values in an answer that differ between two processes although the content is equal,
+ * such as the bytes that a mesh takes in memory. */
 static void blank(char *text)
 {
     for (char *at = strstr(text, "\"memory_"); at != NULL; at = strstr(at + 1, "\"memory_")) {
@@ -69,7 +69,7 @@ static void blank(char *text)
     }
 }
 
-/* Returns everything that clients can see, including entity tags and histories. */
+/* Returns everything that clients can see of the meshes, including entity tags and histories. */
 static char *state_of(void)
 {
     static const char *const targets[] = {"/v1/meshes",
@@ -145,8 +145,8 @@ static void what_was_answered_is_there_after_a_kill(void **state)
     kill_and_start();
     reply_done(reply_expect(404, client_get(http, "/v1/meshes/gone")));
     expect_state(before);
-    /* The state must also survive a stop by signal and another start; the list of meshes is
-     * requested first, before any mesh is loaded from the disk. */
+    /* The state must also survive a stop by a signal and another start. The list of meshes is
+     * requested before any mesh is loaded from the disk. */
     stop_and_start();
     expect_state(before);
     free(before);
@@ -160,9 +160,9 @@ static void undo_and_redo_lead_where_they_would_have_led(void **state)
     char *would[STEPS], path[64];
     make_history();
     send("PUT", "/v1/meshes/again", "{\"shape\":\"cube\"}", 201);
-    /* The folder is copied after a stop, so that two daemons can start from the same state: one
-     * undoes and redoes without interruption, the other is killed after each step. Both must show
-     * the same meshes. */
+    /* The folder is copied after a stop, so that two daemons can start from the same state. One of
+     * them undoes and redoes without interruption, the other one is killed after each step. Both
+     * must show the same meshes. */
     char other[FOLDER_PATH];
     folder_make(other);
     client_free(http);
@@ -191,7 +191,7 @@ static void undo_and_redo_lead_where_they_would_have_led(void **state)
     snprintf(folder, sizeof folder, "%s", other);
 }
 
-/* The entity tags of a state that was replaced or removed must never be given to another state. */
+/* The entity tags of a state that was replaced or removed must never name another state. */
 static void a_tag_names_one_state_for_ever(void **state)
 {
     (void)state;
@@ -255,9 +255,9 @@ static void a_key_is_good_after_a_restart(void **state)
     reply_free(&r);
 }
 
-/* A listener whose Last-Event-ID is from before the restart must get the events after it from the
- * history on the disk; one that listened to an earlier mesh of the same id must be told to fetch
- * the mesh anew. */
+/* The Last-Event-ID of a listener is from before the restart: the listener must get the later
+ * events from the history on the disk. If the mesh of that time was replaced by another one with
+ * its id, the listener must be told to fetch the mesh anew. */
 static void listeners_go_on_where_they_were(void **state)
 {
     (void)state;
@@ -303,8 +303,9 @@ static double meshes_there(void)
     return count;
 }
 
-/* The first start of a daemon adds sample meshes. If it is killed between two of them, the next
- * start must add the rest; a sample that was deleted since must not come back. */
+/* The first start of a daemon on a folder adds sample meshes. If the daemon is killed before all of
+ * them are there, the next start must add the rest. A sample that was deleted must not come
+ * back. */
 static void samples_come_to_a_store_until_they_were_all_there(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The daemon as a service of an operator: it tells systemd its state, and a file holds its
- * settings. */
+/* The daemon as a service of the operating system: it tells systemd its state, and it reads its
+ * settings from a file. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -18,8 +18,8 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Opens systemd's end of NOTIFY_SOCKET; the name is that of a file or, with '@', one in the
- * kernel's abstract namespace. */
+/* Opens the socket on which systemd would receive messages. `name`, the value of NOTIFY_SOCKET, is
+ * a file or, with '@', a name in the kernel's abstract namespace. */
 static int be_systemd(const char *name)
 {
     struct sockaddr_un own = {.sun_family = AF_UNIX};
@@ -38,7 +38,7 @@ static int be_systemd(const char *name)
     return fd;
 }
 
-/* Receives the next message that is not a watchdog heartbeat; `text` has room for 512 bytes. */
+/* Receives the next message that is not a watchdog heartbeat; `text` must hold 512 bytes. */
 static void hear(int fd, char *text)
 {
     do {
@@ -57,7 +57,7 @@ static void expect_message(int fd, const char *expected)
     assert_string_equal(text, expected);
 }
 
-/* Requires the message READY with a STATUS, of which systemd shows the last one. */
+/* Requires the message READY, with the STATUS that systemd then shows. */
 static void expect_ready(int fd, const daemon_process *d)
 {
     char expected[256], text[512];
@@ -153,8 +153,8 @@ static void a_file_holds_the_settings(void **state)
 #define TOKEN_LINE \
     "me read sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08\n"
 
-/* systemd must be told when a reload begins, by the monotonic clock, when it has ended, and whether
- * it succeeded. */
+/* A reload of the settings must be reported to systemd: when it begins, by the monotonic clock,
+ * when it has ended, and whether it succeeded. */
 static void systemd_hears_of_a_reload(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Clients that read a large mesh slowly delay no other client, neither one that edits the mesh nor
- * one that reads it. */
+/* Clients that read a large mesh slowly must not delay other clients that edit or read the same
+ * mesh. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -32,7 +32,7 @@ typedef struct slow_client {
     char first[FIRST];
 } slow_client;
 
-/* Sends a request, reads the first KiB of the answer, and then nothing more. */
+/* Sends a request and reads only the first KiB of the answer. */
 static void begin_slowly(slow_client *s, const daemon_process *d, const char *path)
 {
     char request[256];
@@ -44,10 +44,11 @@ static void begin_slowly(slow_client *s, const daemon_process *d, const char *pa
     assert_memory_equal(s->first, "HTTP/1.1 200", 12);
 }
 
-/* A buffer between a socket and a reader of single bytes. */
+/* A buffer from which single bytes of a socket are read. */
 typedef struct incoming {
     int fd;
-    size_t at, got; /* bytes that were read from the buffer, and received into it */
+    /* number of bytes that were taken from the buffer, and number that were received into it */
+    size_t at, got;
     char bytes[1 << 16];
 } incoming;
 
@@ -67,7 +68,7 @@ static bool next_byte(incoming *in, char *out)
     return true;
 }
 
-/* Reads the rest of a chunked answer, which must equal `whole` to its last byte. */
+/* Reads the rest of a chunked answer, which must equal `whole`. */
 static void end_quickly(slow_client *s, const char *whole, size_t length)
 {
     char line[64], c;
@@ -102,9 +103,8 @@ static void end_quickly(slow_client *s, const char *whole, size_t length)
     free(in);
 }
 
-/* There are more slow clients than workers. The requests between begin_slowly and end_quickly
- * are sent while the slow clients read nothing: if these delayed the others, the test would
- * never end. */
+/* The slow clients are more than the workers. They read nothing between begin_slowly and
+ * end_quickly; if they delayed the requests that are sent meanwhile, the test would never end. */
 static void slow_downloads_delay_nobody(void **state)
 {
     (void)state;
@@ -136,7 +136,7 @@ static void slow_downloads_delay_nobody(void **state)
                 memcmp(after.body, before.body, after.length) != 0);
     reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, NULL)));
 
-    /* Each of the slow clients must get the mesh as it was when its request came. */
+    /* Each slow client must get the mesh as it was when the client sent its request. */
     for (int i = 0; i < SLOW; i++) {
         end_quickly(&slow[i], before.body, before.length);
     }
@@ -148,7 +148,8 @@ static void slow_downloads_delay_nobody(void **state)
 
 /* --- clients that do not read at all --- */
 
-/* The daemon keeps some buffers of closed connections for the next connections. */
+/* The memory of closed connections that the daemon may keep, since it keeps some buffers for the
+ * next connections. */
 enum { KEPT_BYTES = 8 << 20 };
 
 enum {
@@ -189,8 +190,8 @@ static void expect_all_closed(int sockets[IDLERS])
     }
 }
 
-/* An idle connection is closed only after an hour, so it must be the rule about the minimum rate of
- * reading that closes these. */
+/* Connections may be idle for an hour, so only the rule about the minimum rate of reading can close
+ * these. */
 static const char *const impatient[] = {
     "--log", "off", "--body-grace", "1", "--min-rate", "4K", "--idle-timeout", "3600", NULL};
 
@@ -208,8 +209,8 @@ static void a_reader_who_stops_is_closed_though_all_of_the_answer_was_sent(void 
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Returns the bytes that wait in the daemon's sockets to be read by clients, without the kernel's
- * own records. */
+/* Returns the number of bytes that wait in the daemon's sockets for clients to read them, without
+ * the kernel's own records. */
 static size_t waiting_bytes(const daemon_process *d)
 {
     char line[512];
@@ -235,8 +236,8 @@ static double counted(client *c)
     return bytes;
 }
 
-/* The test waits by sending requests for the counters, so that the waiting is bounded by a number
- * of requests and not by time. */
+/* Instead of sleeping, the test waits by requesting the metrics again and again, so that the wait
+ * is bounded by a number of requests and not by time. */
 static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
 {
     (void)state;
@@ -262,8 +263,8 @@ static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
     print_message("note: %d clients who read nothing: %.1f MB in sockets, counted %.1f MB more\n",
                   IDLERS, (double)waiting / 1e6, (counted(c) - before) / 1e6);
     assert_true(counted(c) >= before + (double)waiting);
-    /* The daemon enlarges the send buffer of a client that reads well; these clients read nothing,
-     * so their buffers must be small. */
+    /* The daemon enlarges the send buffer only of clients that read well. These clients read
+     * nothing, so their buffers must be small. */
     assert_true(waiting_bytes(d) <= (size_t)IDLERS * SRV_SEND_BUFFER / 2);
     for (int i = 0; i < IDLERS; i++) {
         close(sockets[i]);

@@ -1,5 +1,5 @@
-/* What clients hold of a daemon stays valid after it was stopped or killed and started again: jobs,
- * idempotency keys, cursors, event ids and entity tags. */
+/* What a client has from a daemon must stay valid after the daemon was stopped or killed and
+ * started again: jobs, idempotency keys, cursors, event ids and entity tags. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
@@ -21,7 +21,7 @@
 static char folder[FOLDER_PATH], store[FOLDER_PATH + 16];
 static daemon_process *server;
 static client *http;
-static bool kills; /* whether the daemon is killed or stopped */
+static bool kills; /* true: the daemon is killed; false: it is stopped */
 
 static void begin(void)
 {
@@ -91,7 +91,7 @@ static void submit(const char *method, const char *path, const char *body, const
     reply_free(&r);
 }
 
-/* Returns the job as the daemon shows it when it has ended; the caller must free it. */
+/* Waits until the job has ended and returns it; the caller must free it. */
 static char *await(const char *job)
 {
     for (;;) {
@@ -154,8 +154,8 @@ static void jobs_that_had_ended_are_told_as_before(void **state)
     r = reply_expect(200, client_get(http, path));
     char *file = strdup(r.body);
     reply_free(&r);
-    /* The cursor of a page of the list of jobs, taken before the restart, must lead to the next
-     * page after it. */
+    /* A cursor of the list of jobs, taken before the restart, must lead to the next page
+     * afterwards. */
     r = reply_expect(200, client_get(http, "/v1/jobs?limit=2"));
     char *next = strdup(reply_string(&r, "next")), list[200];
     reply_free(&r);
@@ -216,7 +216,7 @@ static void jobs_that_had_not_ended_were_interrupted(void **state)
     end_and_begin();
     expect_job(waiting, told);
     free(told);
-    /* The job with this key was interrupted, so the repeated request must be executed. */
+    /* The job of this key was interrupted, so the repeated request must be executed. */
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", "Idempotency-Key: k",
            again);
     told = await(again);
@@ -337,7 +337,7 @@ static void cursors_tags_and_event_ids_go_on(void **state)
         listener_close(l);
         for (size_t i = 0; i < LISTS; i++) {
             char *again = page(lists[i][1], cursors[i]);
-            if (i > 0) { /* the list of meshes contains their memory, which differs */
+            if (i > 0) { /* the list of meshes says how much memory they take, which differs */
                 assert_string_equal(again, pages[i]);
             }
             free(again);

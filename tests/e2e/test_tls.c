@@ -1,5 +1,5 @@
-/* A daemon that speaks TLS, and one on a Unix socket: which clients get through, and what a new
- * certificate changes. */
+/* A daemon that speaks TLS, and a daemon on a Unix socket: which clients can connect, and what a
+ * new certificate changes. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 #include "tests/store_folder.h"
@@ -64,7 +64,7 @@ static void versions_before_1_2_are_refused(void **state)
     static const char *const old[] = {"-tls1", "-tls1_1"};
     for (size_t i = 0; i < 2; i++) {
         s_client(d, old[i], said, sizeof said);
-        /* The client must have begun a handshake, and the daemon must have ended it. */
+        /* The output must show that the client began a handshake and that the daemon ended it. */
         if (strstr(said, "Cipher is (NONE)") == NULL || strstr(said, "unexpected eof") == NULL) {
             fail_msg("%s: %s", old[i], said);
         }
@@ -76,8 +76,8 @@ static void versions_before_1_2_are_refused(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* In TLS 1.2 a client may ask for another handshake, and openssl does so at a line "R". Its input
- * stays open, so it ends only if the daemon closes the connection. */
+/* In TLS 1.2 a client may ask for another handshake, which openssl does at an input line "R". The
+ * input of openssl stays open, so openssl ends only if the daemon closes the connection. */
 static void a_client_that_renegotiates_is_closed(void **state)
 {
     (void)state;
@@ -126,8 +126,8 @@ static void a_new_certificate_is_for_new_connections(void **state)
     free(daemon_wait_log(d, "new connections get the certificate", 1));
     s_client(d, "", said, sizeof said);
     assert_non_null(strstr(said, "subject=CN = after"));
-    /* The client of the old certificate keeps its connection; on a new one it would not trust the
-     * new certificate. */
+    /* This client trusts only the old certificate. It keeps its old connection, on which the new
+     * certificate does not matter. */
     reply_done(reply_expect(200, client_get(c, "/livez")));
     client *other = client_new(d);
     client_trust(other, certificate);
@@ -234,7 +234,8 @@ static void a_handshake_that_is_not_finished_is_closed(void **state)
     int fd = client_connect(d, 0);
     assert_true(read(fd, &byte, 1) <= 0);
     close(fd);
-    /* It is counted when its connection has been closed, which may be a moment later. */
+    /* The failed handshake is counted when its connection is closed, which may be a moment
+     * later. */
     client *c = client_new(d);
     client_trust(c, certificate);
     bool failed;
@@ -298,7 +299,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     d = daemon_start(ARGUMENTS("--listen", listen));
     assert_int_equal(daemon_stop(d), 0);
     assert_int_not_equal(stat(listen + 5, &found), 0);
-    /* A file that is no socket must not be removed, even if it has the name. */
+    /* A file that is no socket must not be removed, even if it has the name of the socket. */
     assert_int_equal(shell(said, sizeof said, "echo x >%s", listen + 5), 0);
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", listen, "--store", "memory"), said, sizeof said), 1);
@@ -309,7 +310,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     assert_int_equal(daemon_run(ARGUMENTS("--listen", longest), said, sizeof said), 2);
 }
 
-/* A client of a Unix socket that reads nothing of a long answer must be closed, as it is over
+/* A client of a Unix socket that reads nothing of a long answer must be disconnected, as over
  * TCP. */
 static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 {
@@ -325,7 +326,8 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
     static const char request[] =
         "GET /v1/meshes/large/content?format=obj HTTP/1.1\r\nHost: localhost\r\n\r\n";
     assert_int_equal(write(fd, request, sizeof request - 1), (int)sizeof request - 1);
-    /* The request is logged when its connection is closed; until then the client reads nothing. */
+    /* The request is logged when the daemon closes the connection; the client reads nothing
+     * before. */
     free(daemon_wait_log(d, "/v1/meshes/large/content", 1));
     close(fd);
     client_free(c);
@@ -335,7 +337,7 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 static int make_folder(void **state)
 {
     (void)state;
-    transport_choose(TRANSPORT_TCP); /* each test chooses options itself */
+    transport_choose(TRANSPORT_TCP); /* each test sets the options of its transport itself */
     folder_make(folder);
     snprintf(certificate, sizeof certificate, "%s/certificate.pem", folder);
     snprintf(key, sizeof key, "%s/key.pem", folder);

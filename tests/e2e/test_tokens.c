@@ -1,5 +1,5 @@
-/* A daemon with --tokens: which requests are admitted, and what changes when the file of tokens is
- * reloaded. */
+/* A daemon with --tokens: the requests that it admits, and what changes when it reloads the file of
+ * tokens. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
@@ -16,7 +16,7 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* A token made by the daemon's own command, and its line for the file of tokens. */
+/* A token that the daemon's own command has made, and the line of the file of tokens about it. */
 typedef struct made {
     char token[64], line[256], header[100];
 } made;

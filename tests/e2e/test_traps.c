@@ -1,7 +1,7 @@
-/* Files made to hurt: numbers that promise more data than follows, elements that need no bytes,
- * nesting, and 16 MB of what readers do slowly. They are sent to a real daemon plain and in gzip.
- * Each must get its answer, within 256 MB of memory beyond its own size, and within ten times the
- * processor time that the same daemon takes for an ordinary file of 16 MB. */
+/* Files made to do harm: they promise more data than follows, have elements that need no bytes,
+ * nest deeply, or consist of 16 MB of what a reader reads slowly. They are sent to a real daemon
+ * plain and in gzip. Each must get its answer, within 256 MB of memory beyond its own size, and
+ * within ten times the processor time that the same daemon takes for an ordinary file of 16 MB. */
 #include "tests/e2e/client.h"
 
 #include "tests/codings.h"
@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-/* A sanitizer adds memory of its own, so under one memory is not compared. */
+/* A sanitizer adds memory of its own, so memory is not compared in a build with a sanitizer. */
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 static const bool counts_memory = false;
 #else
@@ -27,12 +27,12 @@ enum { ONE = 16 << 20, OVER = 256 << 20, ROOM = 600, TIMES_ORDINARY = 10 };
 
 typedef struct trap {
     const char *what, *type;
-    /* The file consists of `before`, `part` repeated up to `size` bytes in all, and `after`; a NUL
-     * in it is written as $. */
+    /* The file is `before`, then `part` repeated until the file has `size` bytes, then `after`. A $
+     * in these texts stands for a NUL. */
     const char *before, *part, *after;
     size_t size;
     long status;
-    const char *words; /* expected in the problem */
+    const char *words; /* words that the answer must contain */
 } trap;
 
 #define ASCII  "ply\nformat ascii 1.0\n"
@@ -121,8 +121,8 @@ static const trap traps[] = {
      "endsolid\n", ONE, 422, ""},
 };
 
-/* Returns a glTF with a tree of nodes, each level of which refers to the next one twice: 2^40
- * meshes. */
+/* Returns a glTF with a tree of nodes, in which each level refers to the next one twice, so that
+ * 2^40 meshes would have to be drawn. */
 static char *double_nodes(size_t *length)
 {
     size_t room = 8192, at;
@@ -159,18 +159,18 @@ static char *bytes_of(const trap *t, size_t *length)
     return bytes;
 }
 
-/* The last result of time_ordinary(). */
+/* The latest result of time_ordinary(). */
 static double ordinary;
 
-/* A body to send: `what` names it in messages, `coding` NULL means that it is not compressed, and
- * `size` is its length when it is decompressed. */
+/* A body to send. `what` describes it in messages, `coding` NULL means that it is not compressed,
+ * and `size` is its length after decompression. */
 typedef struct upload {
     const char *what, *type, *coding;
     const char *bytes;
     size_t length, size;
 } upload;
 
-/* Sends a body; `took` becomes the processor time of the daemon for it. */
+/* Sends a body; `took` becomes the processor time that the daemon used for it. */
 static reply put_body(client *c, const daemon_process *d, const upload *u, double *took)
 {
     char content[60], encoding[60];
@@ -180,8 +180,9 @@ static reply put_body(client *c, const daemon_process *d, const upload *u, doubl
     const client_request request = {"PUT", "/v1/meshes/trap", headers, u->bytes, u->length};
     double start = daemon_cpu(d);
     reply r = client_send_bytes(c, &request);
-    /* If the answer comes in the middle of a long body, the daemon waits a while for the rest and
-     * then closes; a client that still sends may lose the answer, and sends the request again. */
+    /* If the daemon answers before it has the whole of a long body, it waits a while for the rest
+     * and then closes the connection. A client that is still sending may then lose the answer, so
+     * the request is sent again. */
     for (int tries = 0; tries < 10 && r.status < 200; tries++) {
         reply_free(&r);
         start = daemon_cpu(d);
@@ -191,7 +192,7 @@ static reply put_body(client *c, const daemon_process *d, const upload *u, doubl
     return r;
 }
 
-/* Returns the processor time that the daemon takes now for 16 MB of triangles. */
+/* Returns the processor time that the daemon now takes to import 16 MB of triangles. */
 static double time_ordinary(client *c, const daemon_process *d)
 {
     static const trap triangles = {
@@ -206,8 +207,8 @@ static double time_ordinary(client *c, const daemon_process *d)
     return took;
 }
 
-/* Sends a body, and fails the test if it takes more processor time or memory than a body of its
- * decompressed size may. */
+/* Sends a body, and fails the test if the daemon takes more processor time or memory than a body of
+ * this size may take after decompression. */
 static reply send(client *c, const daemon_process *d, const upload *u)
 {
     const char *what = u->what, *type = u->type;
@@ -246,8 +247,8 @@ static void try_trap(client *c, const daemon_process *d, const trap *t, const ch
                  t->status, t->words, r.body);
     }
     reply_free(&r);
-    /* In gzip, a body that decompresses to more than a hundred times its size may be refused for
-     * that reason instead. */
+    /* In gzip, a body that decompresses to more than a hundred times its length may also be refused
+     * for that reason (413). */
     size_t packed;
     char *coded = coding_pack("gzip", bytes, length, &packed);
     r = send(c, d, &(upload){t->what, t->type, "gzip", coded, packed, length});

@@ -1,5 +1,5 @@
-/* The main work from end to end, as a client does it: create a mesh, edit it, walk along it, query
- * it, undo edits, save it. Every route answers at least once over a real connection. */
+/* The main uses of the API over a real connection: create a mesh, edit it, walk along it, query it,
+ * undo edits, save it. Every route answers at least once. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -36,7 +36,7 @@ static void expect_counts(const reply *r, int vertices, int edges, int faces)
     assert_int_equal((int)reply_number(r, "counts.faces"), faces);
 }
 
-/* Creates a mesh; `path` becomes its path. */
+/* Creates a mesh; `path` becomes the path of the mesh in the API. */
 static void create(const char *json, char path[128])
 {
     reply r = reply_expect(201, client_post(http, "/v1/meshes", json));
@@ -207,7 +207,7 @@ static void edits_without_effect_make_no_revision(void **state)
     (void)state;
     char mesh[128];
     create("{\"shape\":\"tetrahedron\"}", mesh);
-    /* These edits find nothing to do: the plane misses the mesh, and no edge has to be flipped. */
+    /* Edits that have nothing to do: the plane misses the mesh, and no edge has to be flipped. */
     expect_no_effect(mesh, "{\"op\":\"plane_split\",\"point\":[0,0,9],\"normal\":[0,0,1]}");
     expect_no_effect(mesh, "{\"op\":\"delaunay\"}");
     expect_no_effect(mesh, "{\"ops\":[{\"op\":\"delaunay\"},{\"op\":\"plane_split\","

@@ -1,5 +1,5 @@
-/* The bytes that a hostile or broken client may send: each case gets its documented answer, and the
- * mesh is unchanged in every bit afterwards. */
+/* Bytes that a hostile or broken client may send. Each case must get its documented answer, and the
+ * mesh must be unchanged in every bit afterwards. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -55,8 +55,8 @@ static void expect_unchanged(void)
     reply_free(&r);
 }
 
-/* Returns the request for this transport: over TLS, the daemon's own pages have an https origin.
- * The caller must free it. */
+/* Returns the request as it is for the present transport, because over TLS the daemon's own pages
+ * have an https origin. The caller must free it. */
 static char *with_own_origin(const char *request)
 {
     static const char wanted[] = "Origin: http://localhost";
@@ -145,8 +145,8 @@ static void hostile_requests_get_their_status_and_change_no_mesh(void **state)
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n"
          "Content-Type: application/json\r\nContent-Length: 16\r\n\r\n{\"shape\":\"cube\"}",
          403},
-        /* A form on any web page can send this type without asking the server first, so the origin
-         * is checked. */
+        /* A form on any web page can send this media type without a preflight request, so the
+         * daemon checks the origin. */
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://evil.example\r\n" FILES, 403},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n" FILES, 403},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Sec-Fetch-Site: cross-site\r\n" FILES, 403},

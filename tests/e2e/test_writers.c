@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-/* Two writers that send the same edits wait for each other before every TOGETHER edits, so that the
- * keys of the slower one are not forgotten before it uses them. */
+/* TOGETHER is the number of edits after which two writers that send the same edits wait for each
+ * other. So the daemon does not forget the keys of the slower writer before it uses them. */
 enum { WRITERS = 8, MESHES = 3, DEFAULT_EDITS = 400, TOGETHER = 500 };
 
 typedef enum condition { NONE, EXPECTED, IF_MATCH, KEYED } condition;
@@ -30,10 +30,10 @@ typedef struct writer {
     const daemon_process *daemon;
     condition condition;
     int index, meshes, edits;
-    int *revisions[MESHES]; /* the revisions that its edits made */
+    int *revisions[MESHES]; /* the revisions that this writer's edits made */
     int made[MESHES];
     long stale;
-    char strange[200]; /* the first unexpected answer */
+    char strange[200]; /* the first answer that was not expected */
     pthread_barrier_t *pair;
 } writer;
 
@@ -44,7 +44,7 @@ static void note_strange(writer *w, const reply *r)
     }
 }
 
-/* What a writer knows about a mesh. */
+/* The newest state of a mesh that a writer knows. */
 typedef struct known {
     int revision;
     char etag[128];
@@ -65,8 +65,8 @@ static int revision_of(const reply *r)
     return cJSON_IsNumber(revision) ? revision->valueint : -1;
 }
 
-/* Tries to move vertex 0 by one, under the writer's condition; returns true if the edit was
- * done. */
+/* Tries to move vertex 0 by one, with the writer's kind of precondition; returns true if the edit
+ * was done. */
 static bool try_edit(writer *w, client *c, int mesh, int number, known *k)
 {
     char path[64], body[160], header[200];
@@ -138,8 +138,9 @@ static double position_of(client *c, int mesh)
     return x;
 }
 
-/* Each revision must have been acknowledged to one writer, or to the two with keys, which send the
- * same edits; and vertex 0 must be where the sum of all edits puts it. */
+/* Each revision must have been acknowledged to exactly one writer, or to both writers of a pair,
+ * which send the same edits with the same keys. Vertex 0 must be where the sum of all edits puts
+ * it. */
 static void check_mesh(client *c, const writer *writers, int mesh, double start, int share)
 {
     char path[64];

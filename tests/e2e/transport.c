@@ -19,8 +19,9 @@
 static struct {
     transport way;
     int is_known;
-    char folder[FOLDER_PATH]; /* "": not created yet */
-    pid_t owner;              /* it removes the folder, and children of fork() do not */
+    char folder[FOLDER_PATH]; /* "": the folder does not exist yet */
+    /* the process that removes the folder, which children of fork() must not do */
+    pid_t owner;
     char certificate[FOLDER_PATH + 20], key[FOLDER_PATH + 20], listen[FOLDER_PATH + 20];
     unsigned sockets;
 } chosen;

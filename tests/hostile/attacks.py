@@ -317,7 +317,7 @@ ROWS = [
 # --- the rows of the table of operations ---
 
 REPEATED = 3000
-STRIDE = 16  # of ids, so that what one operation changes is not named by the next
+STRIDE = 16  # distance of ids, so that an operation does not name what the previous one changed
 
 
 def argument(parameter, count):

@@ -34,7 +34,7 @@ class Connection:
     def __init__(self, port):
         self.socket = socket.create_connection(('127.0.0.1', port), timeout=PATIENCE)
         self.impatient = None
-        self.most_kept = 1 << 12  # bytes of an answer, about as many; the rest is only read
+        self.most_kept = 1 << 12  # bytes of an answer, roughly; the rest is dropped
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.rest = b''
 
@@ -46,7 +46,7 @@ class Connection:
         try:
             self.socket.sendall(('\r\n'.join(head) + '\r\n\r\n').encode() + body)
         except (BrokenPipeError, ConnectionResetError):
-            pass  # answered before all of it was read
+            pass  # the daemon answered before it had read the whole request
         if self.impatient is not None:
             self.socket.settimeout(0.25)
 
@@ -76,7 +76,7 @@ class Connection:
         return line.decode('latin-1')
 
     def skip(self, count, kept):
-        """Reads `count` bytes; `kept` gets the first ones."""
+        """Reads `count` bytes; the first of them are appended to `kept`."""
         while count > 0:
             if not self.rest and not self.more():
                 raise ConnectionError('cut off')
@@ -103,7 +103,7 @@ class Connection:
         try:
             self.socket.shutdown(socket.SHUT_WR)
         except OSError:
-            pass  # answered and closed meanwhile
+            pass  # the daemon answered and closed the connection meanwhile
 
     def reset(self):
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
@@ -113,7 +113,7 @@ class Connection:
         self.socket.close()
 
 
-PROBE = 0.002  # seconds between two questions
+PROBE = 0.002  # seconds between two requests of /livez
 
 
 class Prober(threading.Thread):
@@ -218,7 +218,7 @@ class Daemon:
 
     def spent(self, names):
         """Returns the nanoseconds of processor time of each thread that has one of these names;
-        None: of all threads."""
+        None means all threads."""
         out = {}
         for thread, name in self.threads:
             if names is None or name in names:

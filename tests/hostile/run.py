@@ -31,7 +31,7 @@ MESH = '/v1/meshes/hostile'
 MILLION = 1000 * 1000  # nanoseconds of a millisecond
 
 WORKER, THREAD, CANCELLED = 50, 1000, 100  # milliseconds
-CLOSED = 1000                              # milliseconds that a client who closed its side has
+CLOSED = 1000                              # more of them if the client only closed its side
 PLENTY = 5         # times the limit, after which a request is cut off so that the rest gets its turn
 REFERENCE = 6.0    # milliseconds that `calibrate` takes with a release build on an idle EPYC
 PARTS = ('rows', 'operations', 'corpus', 'cancelling', 'starving')
@@ -66,7 +66,7 @@ class Field:
         self.options, self.tally = options, Tally()
         self.daemon = Daemon(options.hedged)
         self.scale = 1.0
-        self.slow = []  # what is worth to be cancelled: (row, ask)
+        self.slow = []  # slow requests, which `cancelling` abandons: (row, ask)
 
     def is_wanted(self, name):
         return not self.options.only or self.options.only in name

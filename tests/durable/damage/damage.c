@@ -1,13 +1,13 @@
-/* damage.c - damages the files of a small store at every byte or bit, one copy for each place, and
- * looks at what the store makes of each copy. `cut` ends a file at a byte (D6 of the promises in
- * core/store), `flip` inverts a bit (D7).
+/* damage.c - damages the files of a small store at every byte or bit, one copy of the store for
+ * each place, and checks what the store does with each damaged copy. `cut` ends a file at a byte
+ * (promise D6 in core/store), `flip` inverts a bit (promise D7).
  *
  *     damage cut|flip FOLDER [EVERY [SEED [WORKERS]]]
  *
- * The program works below FOLDER, which is best in memory. Of all places it tries every EVERY-th,
+ * The program works below FOLDER, which should be in memory. It tries every EVERY-th place,
  * beginning with one drawn from SEED. WORKERS processes share the places. The last lines of the
- * output count the verdicts, as in `3 refused`; the exit status is 0 if no copy was judged wrong.
- */
+ * output count the verdicts, as in `3 refused`; the exit status is 0 if no copy was judged
+ * wrong. */
 #include "durable/damage/specimen.h"
 
 #include "model/random.h"
@@ -29,22 +29,22 @@ enum { FILES = 3, WORKERS = 16, PATIENCE = 120, BALLAST = 8 << 20 };
 static const char *const names[FILES] = {"hedge.db", "hedge.db-wal", "hedge.mark"};
 
 static struct {
-    unsigned char *bytes[FILES]; /* contents of the store's files, undamaged */
+    unsigned char *bytes[FILES]; /* the undamaged contents of the store's files */
     size_t sizes[FILES];
-    size_t total, every, first; /* which places are tried */
+    size_t total, every, first; /* number of places; every `every`-th from `first` on is tried */
     bool cuts;
 } plan;
 
-/* The memory that the workers share. */
+/* Shared memory of all workers. */
 typedef struct shared {
     atomic_size_t next;
-    atomic_size_t at[WORKERS]; /* the place that each worker tries now */
+    atomic_size_t at[WORKERS]; /* the place that each worker is trying */
     atomic_uint verdicts[SPECIMEN_WRONG + 1], crashes;
 } shared;
 
 static shared *common;
 
-/* --- places --- */
+/* --- places: where a file is cut or a bit is inverted --- */
 
 static size_t places_of(size_t file)
 {
@@ -72,8 +72,8 @@ static void describe(size_t place, char out[80])
 
 /* --- one place after the other --- */
 
-/* Writes the undamaged files of the store into a folder. The ballast, a file that only reserves
- * space, is made empty because nobody reads it. */
+/* Writes the undamaged files of the store into a folder. The file "ballast" only reserves disk
+ * space, so its contents do not matter. */
 static void lay_out(const char *folder)
 {
     char path[2 * FOLDER_PATH];
@@ -140,7 +140,7 @@ static pid_t start(const char *base, unsigned worker)
     return pid;
 }
 
-/* Runs the workers. If damage at some place crashes a worker, that is counted, and another worker
+/* Runs the workers. If a damaged place crashes a worker, the crash is counted, and a new worker
  * goes on with the next place. */
 static void run(const char *base, unsigned count)
 {
@@ -168,10 +168,10 @@ static void run(const char *base, unsigned count)
     }
 }
 
-/* --- would it be seen? --- */
+/* --- would the test notice a loss? --- */
 
-/* Checks that the test would notice a loss: the undamaged store must be judged whole, and the store
- * without its write-ahead log and mark, which is an older state of itself, must be judged wrong. */
+/* Checks that the test would notice a loss. The undamaged store must be judged whole. Without its
+ * write-ahead log and mark the store is in an older state, which must be judged wrong. */
 static bool sees(const char *base)
 {
     char folder[FOLDER_PATH], why[SPECIMEN_WHY], path[2 * FOLDER_PATH];

@@ -14,19 +14,19 @@
 
 enum { MESHES = 5, ID = 4, STATES = 2 };
 
-/* What the store may show for a mesh id. */
+/* What the store may show for a mesh id after it was opened again. */
 typedef struct expected {
     char id[ID];
     bool absent;
-    unsigned states; /* number of states in `digests`, any of which the mesh may have */
+    unsigned states; /* number of states in `digests`; the mesh may be in any of them */
     uint64_t digests[STATES][2];
 } expected;
 
-static uint64_t key_revision; /* the revision in the answer stored with the key */
+static uint64_t key_revision; /* revision in the answer that is stored with the idempotency key */
 static expected acknowledged[MESHES] = {
     {.id = "a"}, {.id = "b"}, {.id = "c"}, {.id = "d"}, {.id = "e"}};
 
-/* --- all that can be seen of a mesh --- */
+/* --- a hash of all that can be seen of a mesh --- */
 
 static void add(he_siphash *hash, const void *bytes, size_t size)
 {
@@ -57,8 +57,8 @@ static void add_info(he_siphash *hash, const st_mesh_info *info)
     add(hash, times, sizeof times);
 }
 
-/* Adds the entries of the mesh's history to a hash. A mesh that was loaded lists none from before
- * the oldest revision that can be reached, so those are left out. */
+/* Adds the mesh's history to a hash and returns the oldest revision that can be reached. Older
+ * entries are left out, because a mesh that was loaded does not list them. */
 static uint64_t add_history(he_siphash *hash, st_mesh *mesh)
 {
     st_history reach;
@@ -100,7 +100,8 @@ static void digest(st_mesh *mesh, uint64_t out[2])
 
 /* --- the store --- */
 
-/* Opens a store; returns NULL, with a sentence in `why`, if it cannot be opened. */
+/* Opens a store. Returns NULL if it cannot be opened; `why` then becomes a sentence with the
+ * reason. */
 static st_store *open_with(const char *folder, uint64_t budget, st_pool *pool,
                            char why[SPECIMEN_WHY])
 {
@@ -129,7 +130,7 @@ static void resume(st_wait *wait)
     sem_post(ended);
 }
 
-/* Waits until the newest change is durable or lost; returns false if it was lost. */
+/* Waits until the newest change is durable or lost; returns true if it is durable. */
 static bool is_kept(st_store *store)
 {
     struct {
@@ -144,7 +145,7 @@ static bool is_kept(st_store *store)
     return w.wait.end == ST_WAIT_DURABLE;
 }
 
-/* --- making it --- */
+/* --- making the store --- */
 
 static st_mesh *make(st_store *store, const char *id)
 {
@@ -177,7 +178,7 @@ static st_status edit(st_mesh *mesh, const char *operations)
 
 static const st_key key = {.text = "a key", .digest = {1, 2}};
 
-/* Makes an edit with an idempotency key, so that the store keeps the key and its answer. */
+/* Makes an edit with an idempotency key, so that the store keeps the key with the answer. */
 static void edit_once(st_store *store, st_mesh *mesh)
 {
     st_keyed *keyed;
@@ -205,7 +206,7 @@ static void post(void *context)
     sem_post(context);
 }
 
-/* Waits until the pool has done all earlier tasks for this mesh. */
+/* Waits until the thread pool has finished all earlier tasks about this mesh. */
 static void await_base(st_pool *pool, const char *id)
 {
     sem_t done;
@@ -234,8 +235,8 @@ static int snapshots_in(const char *folder)
     return count;
 }
 
-/* Makes the mesh that is later loaded from a snapshot; edits from before the snapshot can then no
- * longer be undone. */
+/* Makes the mesh "b", which is later loaded from a snapshot, so that edits from before the snapshot
+ * can no longer be undone. */
 static void make_based(const char *folder)
 {
     char why[SPECIMEN_WHY];
@@ -311,7 +312,7 @@ void specimen_make(const char *made, const char *killed)
     st_store_free(store);
 }
 
-/* --- looking at it --- */
+/* --- comparing what the store shows --- */
 
 __attribute__((format(printf, 2, 3))) static specimen_verdict wrong(char why[SPECIMEN_WHY],
                                                                     const char *format, ...)
@@ -337,8 +338,8 @@ static specimen_verdict judge_content(const expected *e, st_mesh *mesh, const ch
                  e->states == 0 ? "there, and was removed" : "another one than it was");
 }
 
-/* True if the store reported a damaged key at one of its starts. A damaged key may be forgotten,
- * but the store must never give another answer for it. */
+/* Set if the store reported a damaged idempotency key when it was opened. The store may forget a
+ * damaged key, but must never give another answer for it. */
 static bool key_was_told;
 
 static specimen_verdict judge_key(st_store *store, st_mesh *mesh, char why[SPECIMEN_WHY])
@@ -429,10 +430,10 @@ static specimen_verdict judge_all(st_store *store, const expected *all, const ch
     return worst;
 }
 
-/* --- going on with it --- */
+/* --- changing the store that was opened --- */
 
-/* Notes that a mesh was changed; returns whether the change became durable. If it did not, the mesh
- * may later show it or not. */
+/* Records that a mesh was changed, and returns whether the change became durable. If it did not,
+ * the mesh may later have the old state or the new one. */
 static bool is_changed(st_store *store, expected *e, st_mesh *mesh)
 {
     uint64_t after[2];
@@ -457,8 +458,8 @@ static bool is_removed(st_store *store, expected *e, st_mesh *mesh)
     return kept;
 }
 
-/* Changes, creates and removes meshes; returns whether the store accepted all of it. A damaged mesh
- * is only removed. */
+/* Changes, creates and removes meshes; returns whether the store accepted all these writes. A
+ * damaged mesh is only removed. */
 static bool go_on(st_store *store, expected all[MESHES])
 {
     bool taken = true;

@@ -34,7 +34,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-/* Declares `real` as the C library's function that this file replaces. */
+/* Declares `real`, a pointer to the C library's function of this name, which this file replaces. */
 #define REAL(result, name, ...)                         \
     static result (*real)(__VA_ARGS__);                 \
     do {                                                \
@@ -74,8 +74,8 @@ __attribute__((constructor)) static void begin(void)
     want.folder = getenv("FAULT_FOLDER");
 }
 
-/* Writes a line to the report with the C library's own functions, so that it is neither counted nor
- * fails. */
+/* Writes a line to the report. It uses the C library's own functions, so that this write is not
+ * counted and does not fail. */
 static void tell(const char *line)
 {
     REAL(ssize_t, "write", int, const void *, size_t);
@@ -134,8 +134,8 @@ static void die(const char *what, long n)
     kill(getpid(), SIGKILL);
 }
 
-/* Counts a call that is about to change the folder, and kills the process if it is the chosen
- * one. */
+/* Counts a call that is about to change the folder, and kills the process if the call is the one
+ * that FAULT_CALL names. */
 static void count_call(void)
 {
     long n = ++seen.calls;
@@ -153,8 +153,8 @@ static void copy_to_platter(int fd, const char *name)
     char copy[PATH_MAX + NAME_MAX], made[PATH_MAX + NAME_MAX + 4];
     snprintf(copy, sizeof copy, "%s/%s", want.platter, name);
     snprintf(made, sizeof made, "%s.new", copy);
-    /* The file is read by the descriptor that the caller has. Opening and closing another one would
-     * release all POSIX locks that the process holds on the file. */
+    /* The file is read through the caller's descriptor. Opening and closing another descriptor
+     * would release all POSIX locks that the process holds on the file. */
     int out = openat(AT_FDCWD, made, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     off_t at = 0;
     ssize_t got = 0;
@@ -168,8 +168,8 @@ static void copy_to_platter(int fd, const char *name)
     }
 }
 
-/* Removes from the copy of the disk each file that is gone from the folder. This happens when the
- * folder itself is synced, since a removal is durable only then. */
+/* Removes from the copy of the disk (FAULT_PLATTER) each file that is no longer in the folder. This
+ * happens when the folder itself is synced, because a removal is durable only then. */
 static void clean_platter(const char *folder)
 {
     DIR *platter = opendir(want.platter);
@@ -243,7 +243,7 @@ int fdatasync(int fd)
 
 /* --- writes --- */
 
-/* Returns how many of `size` bytes the write may have; -1, with errno set, if it must fail. */
+/* Returns how many of the `size` bytes the write may write; -1, with errno set, if it must fail. */
 static ssize_t admit(int fd, size_t size)
 {
     if (!is_watched(fd)) {
@@ -292,7 +292,7 @@ ssize_t writev(int fd, const struct iovec *parts, int count)
     return may < 0 ? -1 : real(fd, parts, count);
 }
 
-/* --- other changes of the folder --- */
+/* --- other calls that change the folder --- */
 
 int rename(const char *from, const char *to)
 {
