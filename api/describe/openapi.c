@@ -303,14 +303,15 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
         /* A dry run makes no state, and the short answer of a published write may not know its
          * state, so neither always has a tag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
-        write_header(out, "ETag", "Names the state that the answer shows.", always);
+        write_header(out, "ETag", "Identifies the state that the answer shows.", always);
     }
     if (status == 201) {
         write_header(out, "Location", "The path of the new mesh.", true);
     }
     if (route->flags & (API_IDEMPOTENCY_KEY | API_IDEMPOTENCY_KEY_NEW)) {
         write_header(out, "Idempotency-Replayed",
-                     "true: this is the answer of the first request with this key.", false);
+                     "true: the answer to the first request with this Idempotency-Key is repeated.",
+                     false);
     }
     for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
         write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
@@ -367,11 +368,12 @@ typedef struct refusal {
 static const refusal headed_problems[] = {
     {401, "unauthorized", "WWW-Authenticate", "Bearer, and what is wrong with the token.", true},
     {403, "forbidden", "WWW-Authenticate",
-     "Bearer with the role that is missing, if that is the reason.", false},
+     "Bearer with the role that the request needs, if the token lacks it.", false},
     {405, "not_allowed", "Allow", "The methods that the path supports.", true},
-    {409, "conflict", "Retry-After", "Seconds to wait, if waiting helps.", false},
-    {415, "unsupported", "Accept-Encoding", "The supported content codings, if that is the reason.",
-     false},
+    {409, "conflict", "Retry-After",
+     "Seconds after which the request may be sent again, if waiting helps.", false},
+    {415, "unsupported", "Accept-Encoding",
+     "The supported content codings, if the one of the body is not supported.", false},
     {429, "limited", "Retry-After", "Seconds.", true},
     {503, "unavailable", "Retry-After", "Seconds.", true},
 };
@@ -454,10 +456,11 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(
             out, "Prefer",
             minimal
-                ? "respond-async: do it as a job and answer 202. wait=N: answer 200 if it takes at "
-                  "most N seconds. return=minimal: answer 204 without a body."
-                : "respond-async: do it as a job and answer 202, unless the answer is an error or "
-                  "304, which comes at once. wait=N: answer 200 if it takes at most N seconds.");
+                ? "respond-async: run the request as a job and answer 202. wait=N: answer 200 if "
+                  "the job takes at most N seconds. return=minimal: answer 204 without a body."
+                : "respond-async: run the request as a job and answer 202, unless the answer is an "
+                  "error or 304, which is sent at once. wait=N: answer 200 if the job takes at "
+                  "most N seconds.");
     } else if (minimal) {
         write_header_parameter(out, "Prefer", "return=minimal: answer 204 without a body.");
     }
@@ -477,7 +480,7 @@ enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
 {
-    static const char expensive[] = "Expensive: pages of other sites may not ask for it.";
+    static const char expensive[] = "Expensive: pages of other sites may not send this request.";
     const char *doc = route->doc == NULL ? "" : route->doc;
     char text[MOST_DOC];
     bool is_expensive = (route->flags & API_EXPENSIVE) != 0;
