@@ -108,9 +108,8 @@ static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
         "{\"type\":\"object\",\"properties\":{\"end\":{\"type\":\"boolean\",\"const\":true},"
-        "\"count\":{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":0,\"description\":\"Of "
-        "the lines before.\"}},"
-        "\"required\":[\"end\",\"count\"]}";
+        "\"count\":{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":0,\"description\":\"The "
+        "number of lines before this one.\"}},\"required\":[\"end\",\"count\"]}";
     api_out_key(out, "x-item-schema");
     api_out_object_begin(out);
     api_out_key(out, "oneOf");
@@ -126,9 +125,10 @@ static void write_line_schema(api_out *out, const char *line)
 static void write_files_schema(api_out *out)
 {
     static const char schema[] =
-        "{\"type\":\"object\",\"description\":\"The mesh's file and those it refers to, by the "
-        "names it has for them: of 1 to 64 parts one is of a format that is read.\","
-        "\"properties\":{\"files\":{\"type\":\"array\",\"items\":{\"type\":\"string\","
+        "{\"type\":\"object\",\"description\":\"1 to 64 files: one in a mesh format that the "
+        "server reads, and the files that it refers to, each with the file name by which it is "
+        "referred "
+        "to.\",\"properties\":{\"files\":{\"type\":\"array\",\"items\":{\"type\":\"string\","
         "\"format\":\"binary\",\"contentMediaType\":\"application/octet-stream\"}}}}";
     api_out_key(out, "schema");
     api_out_raw(out, schema, sizeof schema - 1);

@@ -26,7 +26,7 @@
     X(MISSING_MEMBER, "missing_member", 400, "A member is missing",                                \
       "The object at the pointer needs a member that it does not have.")                           \
     X(WRONG_TYPE, "wrong_type", 400, "A value has the wrong type",                                 \
-      "The value at the pointer has another JSON type than is expected there.")                    \
+      "The value at the pointer does not have the JSON type that is expected there.")              \
     X(UNEXPECTED_BODY, "unexpected_body", 400, "This request must not have a body",                \
       "The path and method use no body. A body is refused rather than ignored.")                   \
     X(MISSING_BODY, "missing_body", 400, "A body is missing",                                      \
