@@ -305,8 +305,9 @@ bool api_refuse_size(api_exchange *x)
     if (x->route->body_kind == API_BODY_NONE) {
         return api_fail(x, API_UNEXPECTED_BODY, "%s must not have a body here", x->request.method);
     }
-    return api_fail(x, API_BODY_TOO_LARGE, "the body %s %llu bytes",
-                    x->decompressor == NULL ? "exceeds" : "decompresses to more than",
+    return api_fail(x, API_BODY_TOO_LARGE,
+                    x->decompressor == NULL ? "the body exceeds %llu bytes"
+                                            : "the body decompresses to more than %llu bytes",
                     (unsigned long long)api_body_cap(x));
 }
 

@@ -181,7 +181,8 @@ static uint64_t rows_of(const he_sizes *s)
 
 /* Computes the sizes after each step; fails if they are too large. A step multiplies sizes by at
  * most seven, so 64 bits are enough, and numbers of rows within the limit fit into ids. */
-_Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS, "a limit within the ids");
+_Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS,
+               "HE_SUBDIVIDE_ROWS must be below the number of ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
                           he_error *err)
 {

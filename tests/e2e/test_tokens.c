@@ -113,7 +113,7 @@ static void a_wrong_file_is_no_start(void **state)
                      1);
     assert_non_null(strstr(said, "No such file"));
     assert_int_equal(daemon_run(ARGUMENTS("--listen", "0.0.0.0:0"), said, sizeof said), 2);
-    assert_non_null(strstr(said, "name a file of --tokens, or set --insecure"));
+    assert_non_null(strstr(said, "give a file with --tokens, or set --insecure"));
     assert_int_equal(daemon_run(ARGUMENTS("--new-token", "a b"), said, sizeof said), 2);
     assert_int_equal(daemon_run(ARGUMENTS("--new-token", "a", "root"), said, sizeof said), 2);
 }
