@@ -172,7 +172,7 @@ bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool change
 {
     if (wait->end != ST_WAIT_LOST) {
         return api_problem_set(problem, API_NOT_READY,
-                               "the server stopped before the change was safe on the disk");
+                               "the server stopped before the change was on the disk");
     }
     if (!changed) {
         return api_problem_set(problem, API_STORE_LOST,

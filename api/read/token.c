@@ -96,7 +96,8 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
     }
     for (const char *c = target; *c != '\0'; c++) {
         if (*c <= ' ' || *c > '~' || *c == '#') {
-            return api_in_fail(in, API_BAD_PATH, "a path cannot contain byte %zu of this one",
+            return api_in_fail(in, API_BAD_PATH,
+                               "byte %zu of the path is a character that a path cannot contain",
                                (size_t)(c - target));
         }
     }

@@ -117,25 +117,25 @@ const he_op he_edge_rows[] = {
     {
         .name = "edge_bisect",
         .doc = "Insert a vertex into an edge.",
-        .params =
-            {[EDGE_BISECT_EDGE] =
-                 {.name = "edge",
-                  .type = HE_PARAM_ELEMENT,
-                  .kind = HE_EDGE,
-                  .flags = HE_REQUIRED,
-                  .doc = "The edge to divide. The part at the origin of its first half-edge "
-                         "keeps the id."},
-             [EDGE_BISECT_T] = {.name = "t",
-                                .type = HE_PARAM_NUMBER,
-                                .flags = HE_RANGE | HE_EXCLUSIVE,
-                                .min = 0,
-                                .max = 1,
-                                .fallback = 0.5,
-                                .doc = "Where on the edge: 0 = that origin, 1 = the other end."}},
+        .params = {[EDGE_BISECT_EDGE] =
+                       {.name = "edge",
+                        .type = HE_PARAM_ELEMENT,
+                        .kind = HE_EDGE,
+                        .flags = HE_REQUIRED,
+                        .doc = "The edge to divide. The part at the origin of its first half-edge "
+                               "keeps the id."},
+                   [EDGE_BISECT_T] = {.name = "t",
+                                      .type = HE_PARAM_NUMBER,
+                                      .flags = HE_RANGE | HE_EXCLUSIVE,
+                                      .min = 0,
+                                      .max = 1,
+                                      .fallback = 0.5,
+                                      .doc = "Where on the edge: 0 = the origin of its first "
+                                             "half-edge, 1 = the other end."}},
         .results = {[EDGE_BISECT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                                 "The new vertex."},
                     [EDGE_BISECT_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
-                                              "The new edge, at the other end."}},
+                                              "The new edge, at the end of the divided edge."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
         .change = {1, 1, 0},
         .run = run_edge_bisect,
@@ -170,8 +170,8 @@ const he_op he_edge_rows[] = {
                                      .min = 0,
                                      .max = 1,
                                      .fallback = 0.5,
-                                     .doc =
-                                         "Where on the edge: 0 = that origin, 1 = the other end."}},
+                                     .doc = "Where on the edge: 0 = the origin of its first "
+                                            "half-edge, 1 = the other end."}},
         .results = {[EDGE_SPLIT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                                "The new vertex."},
                     [EDGE_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
@@ -257,7 +257,7 @@ const he_op he_edge_rows[] = {
                     [EDGE_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                                  "The new vertices, in the order of the new face."},
                     [EDGE_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                              "Its sides, in the same order."}},
+                                              "The sides of the new face, in the same order."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
                      HE_LOW_DEGREE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 1},

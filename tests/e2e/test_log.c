@@ -342,7 +342,7 @@ static void no_token_and_no_ticket_is_ever_said(void **state)
         assert_null(strstr(r.body == NULL ? "" : r.body, token));
         reply_free(&r);
         kill(daemon_pid(d), SIGHUP);
-        free(daemon_wait_log(d, "tokens are in force", 1));
+        free(daemon_wait_log(d, "tokens are accepted", 1));
         client_free(c);
         char *log = daemon_stop_and_tell(d);
         assert_non_null(strstr(log, "/v1/tickets"));

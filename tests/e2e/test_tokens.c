@@ -81,7 +81,7 @@ static void a_daemon_asks_for_tokens_and_reads_its_file_again(void **state)
 
     write_file("#", boss.line);
     assert_int_equal(kill(daemon_pid(d), SIGHUP), 0);
-    free(daemon_wait_log(d, "1 tokens are in force", 1));
+    free(daemon_wait_log(d, "1 tokens are accepted", 1));
     assert_string_equal(listener_next(l, true), "bye");
     assert_string_equal(listener_string(l, "reason"), "token");
     assert_string_equal(listener_next(l, true), "");

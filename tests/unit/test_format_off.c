@@ -186,9 +186,9 @@ static void vertices_without_what_is_announced(void **state)
     /* A missing value can look like numbers on the next line: the refusal must then say what
      * to do. */
     expect_refused("off", "NOFF\n2 0 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n", HE_SYNTAX, 5,
-                   "needs it in its own line");
+                   "must be on the same line");
     expect_refused("off", "COFF\n2 1 0\n0 0 0\n7 8 9\n1 0 0\n7 8 9\n3 0 1 2\n", HE_SYNTAX, 6,
-                   "vertices from line 3 on");
+                   "from line 3 on, vertices");
 }
 
 static void face_colors(void **state)

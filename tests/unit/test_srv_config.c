@@ -305,7 +305,7 @@ static void a_line_that_is_wrong_is_named(void **state)
         ROW("backup = x", ":1: a file cannot set \"backup\""),
         ROW("help", ":1: a file cannot set \"help\""),
         ROW("= 1", ":1: there is no setting \"\""),
-        ROW("samples\nwork\0ers = 1\n", ":2: a zero byte"),
+        ROW("samples\nwork\0ers = 1\n", ":2: the line has a zero byte"),
 #undef ROW
     };
     srv_config config;
