@@ -75,7 +75,7 @@
         ADJACENCY(HE_EDGE, "edge", "edges", "vertices", "Ends of an edge",                        \
                   "The origin and the target of half-edge 2 * id."),                              \
         ADJACENCY(HE_EDGE, "edge", "edges", "halfedges", "Half-edges of an edge",                 \
-                  "2 * id and 2 * id + 1."),                                                      \
+                  "The half-edges 2 * id and 2 * id + 1."),                                       \
         ADJACENCY(HE_EDGE, "edge", "edges", "faces", "Faces beside an edge",                      \
                   "The one or two faces that the edge belongs to; holes are left out."),          \
         ADJACENCY(HE_FACE, "face", "faces", "vertices", "Corners of a face",                      \

@@ -126,7 +126,7 @@ const api_member api_answer_members[] = {
      "Values by the name of the attribute, if the mesh has any."},
 
     {"edge", "id", "id", REQUIRED, NULL},
-    {"edge", "halfedges", "#pair", REQUIRED, "2 * id and 2 * id + 1."},
+    {"edge", "halfedges", "#pair", REQUIRED, "The half-edges 2 * id and 2 * id + 1."},
     {"edge", "vertices", "#pair", REQUIRED, "The origins of the two half-edges."},
     {"edge", "faces", "#sides", REQUIRED, "The faces of the two half-edges; null on the boundary."},
     {"edge", "length", "number", REQUIRED, NULL},
@@ -170,7 +170,7 @@ const api_member api_answer_members[] = {
     {"material_row", "two_sided", "flag", REQUIRED, NULL},
 
     {"material_list", "revision", "count", REQUIRED, NULL},
-    {"material_list", "materials", "*#material_row", REQUIRED, "Oldest first."},
+    {"material_list", "materials", "*#material_row", REQUIRED, "The materials, the oldest first."},
 
     {"attribute_values", "revision", "count", REQUIRED, NULL},
     {"attribute_values", "domain", "#domain", REQUIRED, NULL},
@@ -189,12 +189,12 @@ const api_member api_answer_members[] = {
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was changed."},
     {"attribute_written", "attribute", "#attribute_info", OPTIONAL,
      "The attribute; missing if it was deleted."},
-    {"attribute_written", "created", "#sets", REQUIRED, "Empty."},
-    {"attribute_written", "deleted", "#sets", REQUIRED, "Empty."},
+    {"attribute_written", "created", "#sets", REQUIRED, "Always empty."},
+    {"attribute_written", "deleted", "#sets", REQUIRED, "Always empty."},
     {"attribute_written", "modified", "#sets", REQUIRED,
      "Empty if the whole attribute was created or deleted."},
-    {"attribute_written", "parents", "#parents", REQUIRED, "Empty."},
-    {"attribute_written", "merged", "#merged", REQUIRED, "Empty."},
+    {"attribute_written", "parents", "#parents", REQUIRED, "Always empty."},
+    {"attribute_written", "merged", "#merged", REQUIRED, "Always empty."},
     {"attribute_written", "undoable", "flag", OPTIONAL,
      "Present only if false: the change is larger than the undo budget, so that neither this "
      "change nor an earlier one can be undone."},
@@ -278,7 +278,8 @@ const api_member api_answer_members[] = {
     {"sets", "edges", "*id", REQUIRED, "Edges; the half-edges of edge e are 2e and 2e + 1."},
     {"sets", "faces", "*id", REQUIRED, NULL},
 
-    {"parents", "vertices", "*#pair", OPTIONAL, "Pairs: child, parent."},
+    {"parents", "vertices", "*#pair", OPTIONAL,
+     "Pairs: the new element, and the element that it comes from."},
     {"parents", "edges", "*#pair", OPTIONAL, NULL},
     {"parents", "faces", "*#pair", OPTIONAL, NULL},
 
@@ -313,7 +314,7 @@ const api_member api_answer_members[] = {
     {"entry", NULL, NULL, REQUIRED, NULL},
 
     {"history", "revision", "count", REQUIRED, NULL},
-    {"history", "entries", "*#entry", REQUIRED, "Newest first."},
+    {"history", "entries", "*#entry", REQUIRED, "The entries, the newest first."},
     {"history", "undo", "count", REQUIRED, "How many steps can be undone."},
     {"history", "redo", "count", REQUIRED, "How many steps can be redone."},
     {"history", "oldest", "count", REQUIRED, "The oldest revision that can still be read."},
@@ -394,7 +395,7 @@ const api_member api_answer_members[] = {
      "The largest distance that the request gave."},
     {"walked_breadth_first", "limit", "count", OPTIONAL,
      "The number of elements that the request gave."},
-    {"walked_breadth_first", "ids", "*id", REQUIRED, "The nearest first."},
+    {"walked_breadth_first", "ids", "*id", REQUIRED, "The ids of the elements, the nearest first."},
     {"walked_breadth_first", "depths", "*count", REQUIRED,
      "The distance of each element from the first, in steps."},
 
@@ -421,7 +422,7 @@ const api_member api_answer_members[] = {
     {"walked_edge_ring", "closed", "flag", REQUIRED,
      "True if the last edge leads back to the first."},
 
-    {"delta", "base", "count", REQUIRED, "The revision before."},
+    {"delta", "base", "count", REQUIRED, "The revision before the change."},
     {"delta", "revision", "count", REQUIRED, NULL},
     {"delta", "stale", "flag", OPTIONAL,
      "True if the change is longer than 64 KiB: the event then has only `base` and `revision` "
@@ -465,7 +466,8 @@ const api_member api_answer_members[] = {
     {"job_state_told", NULL, NULL, REQUIRED, NULL},
 
     {"mesh_event_edit", "event", "=edit", REQUIRED, NULL},
-    {"mesh_event_edit", "id", "text", REQUIRED, "For Last-Event-ID."},
+    {"mesh_event_edit", "id", "text", REQUIRED,
+     "The id to send in Last-Event-ID when the client connects again."},
     {"mesh_event_edit", "data", "#delta", REQUIRED, "A new revision."},
 
     {"mesh_event_metadata", "event", "=metadata", REQUIRED, NULL},
@@ -475,7 +477,8 @@ const api_member api_answer_members[] = {
     {"mesh_event_job", "data", "#job_state_told", REQUIRED, "A job on this mesh started or ended."},
 
     {"mesh_event_resync", "event", "=resync", REQUIRED, NULL},
-    {"mesh_event_resync", "id", "text", REQUIRED, "For Last-Event-ID."},
+    {"mesh_event_resync", "id", "text", REQUIRED,
+     "The id to send in Last-Event-ID when the client connects again."},
     {"mesh_event_resync", "data", "#resync", REQUIRED, "Events were left out."},
 
     {"mesh_event_bye", "event", "=bye", REQUIRED, NULL},
@@ -567,7 +570,7 @@ const api_member api_request_members[] = {
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL,
      "For each face the indices of its vertices, counter-clockwise; the first vertex is 0."},
-    {"document", "attributes", "*#document_attribute", OPTIONAL, "Of any domain."},
+    {"document", "attributes", "*#document_attribute", OPTIONAL, "Attributes of any domain."},
     {"document", "materials", "*#material", OPTIONAL,
      "A face names its material in the attribute `material`."},
 
@@ -582,7 +585,8 @@ const api_member api_request_members[] = {
     {"document_attribute", "domain", "#domain", REQUIRED, NULL},
     {"document_attribute", "name", "#attribute_name", REQUIRED, NULL},
     {"document_attribute", "type", "#type_name", REQUIRED, NULL},
-    {"document_attribute", "components", "count", OPTIONAL, "1 to 16. Default: 1."},
+    {"document_attribute", "components", "count", OPTIONAL,
+     "How many numbers one value has, from 1 to 16. Default: 1."},
     {"document_attribute", "rule", "#rule_name", OPTIONAL, NULL},
     {"document_attribute", "default", "#value", OPTIONAL, NULL},
     {"document_attribute", "labels", "+#label", OPTIONAL, NULL},
@@ -592,7 +596,8 @@ const api_member api_request_members[] = {
      "the earlier face comes first."},
 
     {"attribute", "type", "#type_name", REQUIRED, NULL},
-    {"attribute", "components", "count", OPTIONAL, "1 to 16. Default: 1."},
+    {"attribute", "components", "count", OPTIONAL,
+     "How many numbers one value has, from 1 to 16. Default: 1."},
     {"attribute", "rule", "#rule_name", OPTIONAL,
      "Default: interpolate for float and double, copy for others."},
     {"attribute", "default", "#value", OPTIONAL, "Default: 0 or false."},
@@ -612,7 +617,7 @@ const api_member api_request_members[] = {
     {"attribute_patch", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
-    {"mesh_patch", "name", "text?", OPTIONAL, "null removes it."},
+    {"mesh_patch", "name", "text?", OPTIONAL, "The new name; null removes the name."},
 
     {"ticket_asked", "path", "text", REQUIRED, "Path and query of the GET, exactly as in its URL."},
 
@@ -631,7 +636,7 @@ const api_member api_request_members[] = {
     {"find_query", "find", "#find_name", REQUIRED,
      "halfedge: the half-edge from the first vertex to the second. edge: the edge between the two. "
      "faces: the faces that have both vertices as corners."},
-    {"find_query", "vertices", "*id", REQUIRED, "The two vertices: from, to."},
+    {"find_query", "vertices", "*id", REQUIRED, "The two vertices, first and second."},
 
     {"get_query", "get", "#of", REQUIRED, NULL},
 

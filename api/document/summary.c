@@ -152,8 +152,9 @@ static const api_field summary_fields[] = {
     API_FIELD_MADE("bbox", "#box?", write_box, .required = true,
                    .known = API_KNOWN(whole, has_box)),
     API_FIELD("area", "number", whole, area, .required = true),
-    API_FIELD("volume", "number?", whole, volume, .required = true,
-              .known = API_KNOWN(whole, has_volume), .doc = "Null unless closed."),
+    API_FIELD(
+        "volume", "number?", whole, volume, .required = true, .known = API_KNOWN(whole, has_volume),
+        .doc = "The volume, negative if the mesh is inside out; null unless the mesh is closed."),
     API_FIELD("memory_bytes", "count", whole, memory_bytes, .required = true),
     API_FIELD("created", "time", whole, created, .required = true),
     API_FIELD("modified", "time", whole, modified, .required = true),

@@ -57,7 +57,7 @@ static const api_field job_fields[] = {
     API_FIELD("phase", "text?", shown, job.phase, .required = true, .zero_is_none = true,
               .doc = "What the job does now, or did last if it has ended."),
     API_FIELD("progress", "number", shown, progress, .required = true,
-              .doc = "From 0 to 1; it never decreases."),
+              .doc = "How much of the work is done, from 0 to 1; it never decreases."),
     API_FIELD("mesh", "text?", shown, job.mesh, .required = true, .zero_is_none = true,
               .doc = "The id of the mesh that the job works on; null while that mesh has no id."),
     API_FIELD("created", "time", shown, job.created, .required = true),
@@ -83,7 +83,8 @@ const api_record api_job_record = {"job", job_fields, sizeof job_fields / sizeof
 static const api_field state_fields[] = {
     API_FIELD("id", "text", shown, job.id, .required = true),
     API_FIELD("state", "#job_state", shown, state, .required = true),
-    API_FIELD("progress", "number", shown, progress, .required = true, .doc = "From 0 to 1."),
+    API_FIELD("progress", "number", shown, progress, .required = true,
+              .doc = "How much of the work is done, from 0 to 1."),
 };
 const api_record api_job_state_record = {"job_state_told", state_fields,
                                          sizeof state_fields / sizeof *state_fields};

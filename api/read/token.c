@@ -36,7 +36,8 @@ static const api_field token_fields[] = {
                    .doc = "The token can use only meshes whose ids begin with one of these "
                           "prefixes; if the list is empty, it can use all meshes."),
     API_FIELD("expires", "time?", rights, expires, .required = true,
-              .known = API_KNOWN(rights, ends), .doc = "Null: never."),
+              .known = API_KNOWN(rights, ends),
+              .doc = "When the token expires; null if it never does."),
 };
 const api_record api_token_record = {"token", token_fields,
                                      sizeof token_fields / sizeof *token_fields};

@@ -42,7 +42,7 @@ static bool read_request(api_exchange *x, steps *s)
 
 static const char *name_of(const steps *s)
 {
-    return s->which == ST_UNDO ? "undo" : "do again";
+    return s->which == ST_UNDO ? "undo" : "redo";
 }
 
 static void refuse(api_exchange *x, const steps *s, st_status status)

@@ -372,7 +372,7 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement
         status = he_subdivide_place(s, s->from->position, s->to->position, err);
     }
     if (status == HE_OK && s->from->column_count > 0) {
-        status = he_progress_phase(s->progress, "carrying attributes", to, err);
+        status = he_progress_phase(s->progress, "interpolating attributes", to, err);
     }
     return status == HE_OK ? he_subdivide_attributes(s, err) : status;
 }

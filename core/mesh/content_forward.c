@@ -78,7 +78,7 @@ static he_status ready_column(he_content *c, const he_delta *delta, size_t i, vo
     he_column *column = objects[r->before];
     he_status status = HE_OK;
     if (column == NULL) {
-        return refuse(i, refused, "adds no attribute", err);
+        return refuse(i, refused, "does not add an attribute", err);
     }
     if (r->row > c->column_count) {
         return refuse(i, refused, "does not use the first free slot", err);

@@ -527,8 +527,8 @@ static he_status explain(const off *o, he_status status, he_error *err)
     if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
         size_t length = strlen(err->text);
         snprintf(err->text + length, sizeof err->text - length,
-                 "; from line %llu on, vertices lack values that the header announces: a vertex "
-                 "and its values must be on the same line",
+                 "; from line %llu on, vertices lack values that the header announces, which must "
+                 "be on the same line",
                  (unsigned long long)o->lacking);
     }
     return status;
