@@ -92,7 +92,7 @@ static bool visit_in(st_store *store, const st_card *card, visit *each, void *co
         good = each(context, &info, content, true);
         st_read_end(mesh);
     } else if (status == ST_NEWER) {
-        printf("%s: OF A NEWER RELEASE: %s\n", card->id, damage);
+        printf("%s: WRITTEN BY A NEWER RELEASE: %s\n", card->id, damage);
     } else if (status != ST_ABSENT) {
         printf("%s: NOT READ: %s\n", card->id,
                status == ST_FAILED ? "the disk reported an error" : "there is no memory for it");

@@ -198,9 +198,9 @@ void api_problem_set_repairs(api_problem *problem, unsigned repairs)
     problem->repairs = repairs;
     for (unsigned r = 0, named = 0; r < HE_REPAIR_COUNT; r++) {
         if ((repairs >> r & 1) != 0) {
-            int length =
-                snprintf(problem->detail + used, sizeof problem->detail - used, "%s%s",
-                         named++ == 0 ? "; it passes with repair=" : ",", he_repair_names[r]);
+            int length = snprintf(problem->detail + used, sizeof problem->detail - used, "%s%s",
+                                  named++ == 0 ? "; the body is accepted with repair=" : ",",
+                                  he_repair_names[r]);
             used += length > 0 ? (size_t)length : 0;
             used = used < sizeof problem->detail ? used : sizeof problem->detail - 1;
         }

@@ -55,7 +55,7 @@
     X(BAD_PARAMETER, "bad_parameter", 400, "A query parameter has a bad value",                    \
       "The value does not have the parameter's type, or is out of its range.")                     \
     X(BAD_CURSOR, "bad_cursor", 400, "The cursor does not belong to this collection",              \
-      "Use a cursor exactly as `next` gave it, and with the same collection.")                     \
+      "Use a cursor exactly as `next` gave it, and with the same list.")                           \
     X(BAD_HEADER, "bad_header", 400, "A header is not well formed",                                \
       "The value of a request header does not follow its syntax.")                                 \
     X(BAD_ID, "bad_id", 400, "This cannot be the id of a mesh",                                    \
