@@ -308,8 +308,7 @@ static he_status prepare(he_subdivide_step *s, he_error *err)
         failed |= s->degree == NULL || (s->sharp == NULL && !smooth);
     }
     if (failed) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look at %u vertices",
-                             c->vertices.live);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to check %u vertices", c->vertices.live);
     }
     if (s->scheme != HE_LINEAR) {
         count_edges(s);
