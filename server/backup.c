@@ -67,7 +67,7 @@ st_status srv_backup_make(void *context, api_blob *out, char *message, size_t si
     backup *b = he_mem_zero(1, sizeof *b);
     int file = b == NULL ? -1 : make_file(backups->folder, message, size);
     if (b == NULL) {
-        (void)snprintf(message, size, "no memory for it");
+        (void)snprintf(message, size, "no memory for the backup");
     }
     if (file < 0 || fstat(file, &facts) != 0) {
         if (file >= 0) {

@@ -17,14 +17,14 @@
 
 const srv_option srv_options[] = {
     {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
-     "file of settings, one in a line, as --print-config shows them"},
+     "file of settings, one on each line, as --print-config shows them"},
     {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT|unix:PATH", 0, 0,
      "address to listen on; port 0 chooses a free port. unix:PATH is a Unix socket, which the "
      "daemon creates (mode 0660) and removes"},
     {"insecure", SRV_FLAG, MEMBER(insecure), "0", NULL, 0, 0,
      "allow an address that other machines can reach without --tokens"},
     {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
-     "file of tokens and their roles, one in a line, as --new-token prints it. Without a file "
+     "file of tokens and their roles, one on each line, as --new-token prints it. Without a file "
      "every client may do everything. SIGHUP and POST /v1/admin/reload read it again"},
     {"token-requests", SRV_COUNT, LIMIT(token_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
      "requests a second for each token, 0: no limit; more are answered 429. A line of the token "
@@ -32,7 +32,7 @@ const srv_option srv_options[] = {
     {"token-bytes", SRV_BYTES, LIMIT(token_limits, BYTES), "0", "BYTES", 0, API_LIMIT_MOST_BYTES,
      "bytes a second for each token, of requests and answers together, 0: no limit"},
     {"token-jobs", SRV_COUNT, LIMIT(token_limits, JOBS), "0", "N", 0, API_LIMIT_MOST,
-     "jobs that wait or run for each token, 0: no limit; more are answered 429"},
+     "jobs of each token that may wait or run, 0: no limit; more are answered 429"},
     {"token-meshes", SRV_COUNT, LIMIT(token_limits, MESHES), "0", "N", 0, API_LIMIT_MOST,
      "meshes that each token may create, 0: no limit; more are answered 507"},
     {"token-mesh-bytes", SRV_BYTES, LIMIT(token_limits, MESH_BYTES), "0", "BYTES", 0,
@@ -45,9 +45,9 @@ const srv_option srv_options[] = {
     {"address-bytes", SRV_BYTES, LIMIT(address_limits, BYTES), "0", "BYTES", 0,
      API_LIMIT_MOST_BYTES, "bytes a second of these requests and their answers, 0: no limit"},
     {"address-connections", SRV_COUNT, LIMIT(address_limits, CONNECTIONS), "0", "N", 0, 1000000,
-     "connections at once for each address, 0: no limit; more are answered 429 and closed"},
+     "simultaneous connections of each address, 0: no limit; more are answered 429 and closed"},
     {"limit-burst", SRV_COUNT, MEMBER(limit_burst), "10", "SECONDS", 1, API_BURST_MOST,
-     "the limits a second can be used up for this many seconds at once, after a client was idle"},
+     "a client that was idle may use up the limits of this many seconds at once"},
     {"tls-cert", SRV_TEXT, MEMBER(tls_cert), "", "FILE", 0, 0,
      "serve HTTPS only, with the certificate in this file (PEM, followed by its chain). SIGHUP and "
      "POST /v1/admin/reload read it again"},
@@ -82,30 +82,30 @@ const srv_option srv_options[] = {
     {"max-upload", SRV_BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
      "largest mesh document or file that can be uploaded"},
     {"memory-budget", SRV_BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
-     "memory for everything; 0: three quarters of the machine's memory, or of the smallest limit "
-     "of its control groups"},
+     "memory that the daemon may use; 0: three quarters of the machine's memory, or of the "
+     "smallest limit of its control groups"},
     {"undo-budget", SRV_BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
      "memory for the undo history of one mesh; the oldest edits are dropped first"},
     {"no-compression", SRV_FLAG, MEMBER(no_compression), "0", NULL, 0, 0, "never compress answers"},
     {"max-meshes", SRV_COUNT, MEMBER(max_meshes), "10000000", "N", 1, 10000000,
-     "most meshes in the store"},
+     "largest number of meshes in the store"},
     {"workers", SRV_COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0: one for each core"},
     {"jobs", SRV_COUNT, MEMBER(jobs), "0", "N", 0, 64,
      "threads for long reads, and as many for jobs; one thread is kept free for imports and edits; "
      "0: one for each core, but at least two. Parts of one job run on all cores"},
     {"job-queue", SRV_COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
-     "how many jobs may wait for a thread, and likewise how many long reads, and imports or edits; "
-     "more are answered 503"},
+     "how many jobs may wait for a thread; the same number of long reads, and of imports and "
+     "edits, may wait; more are answered 503"},
     {"read-seconds", SRV_COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
      "longest time that a check, a query, a walk or an export may compute; longer ones are "
      "answered 503 (a job has no limit)"},
     {"max-connections", SRV_COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
-     "connections at once; more are answered 503"},
+     "simultaneous connections; more are answered 503"},
     {"max-listeners", SRV_COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,
-     "event streams at once; more are answered 503"},
+     "simultaneous event streams; more are answered 503"},
     {"max-mesh-listeners", SRV_COUNT, MEMBER(max_mesh_listeners), "2000", "N", 0, 1000000,
-     "event streams of one mesh at once"},
+     "simultaneous event streams of one mesh"},
     {"heartbeat", SRV_COUNT, MEMBER(heartbeat), "15", "SECONDS", 1, 3600,
      "a comment is sent in an event stream after this long without an event"},
     {"idle-timeout", SRV_COUNT, MEMBER(idle_timeout), "30", "SECONDS", 1, 86400,
@@ -113,9 +113,9 @@ const srv_option srv_options[] = {
     {"header-timeout", SRV_COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
      "time for the headers to arrive after the request line"},
     {"body-grace", SRV_COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
-     "time before a body, or the reading of an answer, must keep to --min-rate"},
+     "time after which a client must send a body, or read an answer, as fast as --min-rate"},
     {"min-rate", SRV_BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
-     "bytes a second that a client must send or read on average"},
+     "bytes a second at which a client must send or read on average"},
     {"request-timeout", SRV_COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
      "longest time for a whole body to arrive"},
     {"backup", SRV_COMMAND, MEMBER(backup), "", "FILE", 0, 0,
@@ -136,11 +136,12 @@ const srv_option srv_options[] = {
      "show the options in effect and exit"},
     {"version", SRV_ACTION, MEMBER(version), "0", NULL, 0, 0,
      "show the version and the commit it was built from, and exit; -V"},
-    {"help", SRV_ACTION, MEMBER(help), "0", NULL, 0, 0, "show this and exit; -h"},
+    {"help", SRV_ACTION, MEMBER(help), "0", NULL, 0, 0, "show this help and exit; -h"},
 };
 
 enum { OPTIONS = sizeof srv_options / sizeof *srv_options };
-_Static_assert((int)OPTIONS <= (int)SRV_MOST_OPTIONS, "SRV_MOST_OPTIONS holds all");
+_Static_assert((int)OPTIONS <= (int)SRV_MOST_OPTIONS,
+               "SRV_MOST_OPTIONS must be at least the number of options");
 const size_t srv_option_count = OPTIONS;
 
 static void *member_of(srv_config *config, const srv_option *row)
@@ -434,7 +435,9 @@ static bool check_listen(const srv_config *config, srv_address *address, char *m
         return false;
     }
     if (tls && srv_address_path(address) != NULL) {
-        snprintf(message, size, "--tls-cert is for an address: a Unix socket is not encrypted");
+        snprintf(message, size,
+                 "--tls-cert needs a network address in --listen: connections over a Unix socket "
+                 "are not encrypted");
         return false;
     }
     return true;
@@ -457,8 +460,8 @@ static bool check(const srv_config *config, char *message, size_t size)
     if (serves && !srv_address_is_local(&address) && config->tokens[0] == '\0' &&
         !config->insecure) {
         snprintf(message, size,
-                 "%s can be reached from other machines and requests need no token: name a file of "
-                 "--tokens, or set --insecure to listen there all the same",
+                 "%s can be reached from other machines and requests need no token: give a file "
+                 "with --tokens, or set --insecure to listen on this address anyway",
                  config->listen);
         return false;
     }

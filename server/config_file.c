@@ -74,9 +74,12 @@ static bool read_line(srv_config *config, const line *at, bool *seen, char *mess
     const char *name = trim(text), *value = equals == NULL ? NULL : trim(equals + 1);
     const srv_option *row = srv_option_find(name, strlen(name));
     if (row == NULL || !srv_option_is_setting(row)) {
-        snprintf(message, size, "%s:%zu: %s \"%.40s\"; hedged --print-config lists the settings",
-                 at->path, at->number, row == NULL ? "there is no setting" : "a file cannot say",
-                 name);
+        snprintf(
+            message, size,
+            row == NULL
+                ? "%s:%zu: there is no setting \"%.40s\"; hedged --print-config lists the settings"
+                : "%s:%zu: a file cannot set \"%.40s\"; hedged --print-config lists the settings",
+            at->path, at->number, name);
         return false;
     }
     snprintf(source, sizeof source, "%s:%zu: %s", at->path, at->number, row->name);
@@ -104,7 +107,9 @@ bool srv_config_read_file(srv_config *config, const char *path, char *message, s
         stop = stop == NULL ? end : stop;
         *stop = '\0';
         if (strlen(at.text) != (size_t)(stop - at.text)) {
-            snprintf(message, size, "%s:%zu: a zero byte: this is no text", path, at.number);
+            snprintf(message, size,
+                     "%s:%zu: the line has a zero byte, which a text file cannot have", path,
+                     at.number);
             return false;
         }
         if (!read_line(config, &at, seen, message, size)) {

@@ -45,7 +45,7 @@ static int restore(const char *folder, const char *file)
     if (!st_sqlite_restore(folder, file, before, message)) {
         return fail(message);
     }
-    printf("%s is restored from %s; what was there before is in %s\n", folder, file, before);
+    printf("%s is restored from %s; the previous store is in %s\n", folder, file, before);
     return 0;
 }
 
@@ -92,10 +92,10 @@ static bool visit_in(st_store *store, const st_card *card, visit *each, void *co
         good = each(context, &info, content, true);
         st_read_end(mesh);
     } else if (status == ST_NEWER) {
-        printf("%s: OF A NEWER RELEASE: %s\n", card->id, damage);
+        printf("%s: WRITTEN BY A NEWER RELEASE: %s\n", card->id, damage);
     } else if (status != ST_ABSENT) {
         printf("%s: NOT READ: %s\n", card->id,
-               status == ST_FAILED ? "the disk refused to" : "memory is out");
+               status == ST_FAILED ? "the disk reported an error" : "there is no memory for it");
     }
     st_release(mesh);
     return good;
@@ -178,7 +178,7 @@ static int look(const char *path, visit *each, void *context, const char *done)
     }
     printf(faults > 0 ? "; the file itself is damaged\n" : "\n");
     if (!all) {
-        return fail("the list of meshes cannot be read to its end");
+        return fail("not all meshes could be listed, because the list cannot be read to its end");
     }
     return counts[1] == 0 && faults == 0 ? 0 : 1;
 }
@@ -189,7 +189,7 @@ static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *co
 {
     (void)context;
     printf("%s: %s, revision %" PRIu64 ", %u vertices, %u faces\n", info->id,
-           whole ? "whole" : "whole up to then", info->revision,
+           whole ? "whole" : "undamaged only up to here", info->revision,
            (unsigned)he_mesh_vertices(content), (unsigned)he_mesh_faces(content));
     return true;
 }
@@ -277,7 +277,8 @@ int srv_maintenance_run(const srv_config *config)
         return look(config->verified, say_whole, NULL, "whole");
     }
     if (folder == NULL) {
-        return fail("a store in memory has nothing to work on: name one by --store sqlite:DIR");
+        return fail(
+            "a store in memory keeps nothing on the disk: name a store with --store sqlite:DIR");
     }
     return config->backup != NULL    ? backup(folder, config->backup)
            : config->restore != NULL ? restore(folder, config->restore)

@@ -18,7 +18,8 @@ bool srv_tokens_read(api_tokens *tokens, const char *path, char *message, size_t
     size_t length = file == NULL ? 0 : fread(bytes, 1, MOST, file);
     bool good = file != NULL && ferror(file) == 0;
     if (!good) {
-        snprintf(why, sizeof why, "%s", bytes == NULL ? "no memory for it" : strerror(errno));
+        snprintf(why, sizeof why, "%s",
+                 bytes == NULL ? "no memory to read the file" : strerror(errno));
     } else {
         good = api_tokens_load(tokens, bytes, length, why);
     }
@@ -36,12 +37,13 @@ int srv_tokens_new(const char *name, const char *role)
 {
     api_role has;
     if (!api_token_is_name(name, strlen(name))) {
-        fprintf(stderr, "hedged: the name of a token is 1 to %d of A-Z a-z 0-9 . _ -\n",
+        fprintf(stderr,
+                "hedged: the name of a token must be 1 to %d of the characters A-Z a-z 0-9 . _ -\n",
                 API_TOKEN_NAME);
         return 2;
     }
     if (!api_role_find(role, strlen(role), &has)) {
-        fputs("hedged: the role of a token is read, write, admin or metrics\n", stderr);
+        fputs("hedged: the role of a token must be read, write, admin or metrics\n", stderr);
         return 2;
     }
     char token[API_TOKEN_TEXT + 1], line[API_TOKEN_SHORT_LINE];

@@ -15,7 +15,7 @@
 /* How many broken invariants, and how many defects of each code, the report lists; all are
  * counted. */
 enum { NAMED = API_PROBLEM_ELEMENTS };
-static_assert((int)NAMED == HE_DEFECTS_LISTED, "as the document says of both");
+static_assert((int)NAMED == HE_DEFECTS_LISTED, "the OpenAPI document names one limit for both");
 
 /* If self-intersections are searched for: the progress that is reached when all other defects are
  * found. */
@@ -102,10 +102,10 @@ static bool describe(const he_mesh *m, he_defect_code code, const he_defect_foun
         snprintf(text, size, "vertex %u has no edge", d->id);
         return false;
     case HE_DEFECT_DUPLICATE:
-        snprintf(text, size, "vertex %u is where vertex %u is", d->id, d->other);
+        snprintf(text, size, "vertex %u is in the same place as vertex %u", d->id, d->other);
         return true;
     case HE_DEFECT_SHORT:
-        snprintf(text, size, "edge %u joins vertices %u and %u, which are in one place", d->id,
+        snprintf(text, size, "edge %u joins vertices %u and %u, which are in the same place", d->id,
                  he_origin(m, he_edge_halfedge((he_edge){d->id}, 0)).i,
                  he_origin(m, he_edge_halfedge((he_edge){d->id}, 1)).i);
         return true;

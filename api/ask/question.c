@@ -82,12 +82,11 @@ bool api_asker_exceed(api_asker *a, const api_in *in)
         a->x->is_job = is_job;
         return false;
     }
-    const char *limit = "\"%s\" takes more than is left of the %llu steps that a %s may take on "
-                        "this mesh%s";
+    const char *limit = "\"%s\" needs more than what is left of the %llu computing steps that a %s "
+                        "may take on this mesh%s";
     const char *what = a->x->phase == API_PHASE_JOB ? "job" : "request";
-    const char *hint = may_be_job ? "; a job may take more, for which the header is Prefer: "
-                                    "respond-async"
-                                  : "";
+    const char *hint =
+        may_be_job ? "; a job may take more: send the header Prefer: respond-async" : "";
     unsigned long long most = allowance(a);
     return in == NULL ? api_fail(a->x, HE_LIMIT, limit, a->asked, most, what, hint)
                       : api_in_fail(in, HE_LIMIT, limit, a->asked, most, what, hint);

@@ -19,9 +19,9 @@
         .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
         .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",       \
         .item = (one), .summary = "List the " words,                                              \
-        .doc = "A page in the order of ids, or all of them as lines of JSON with "                \
+        .doc = "A page of elements in the order of ids, or all elements as lines of JSON with "   \
                "{\"end\":true,\"count\":n} as the last line. Later pages show the same revision " \
-               "as the first, while the history holds it."                                        \
+               "as the first, as long as the history holds that revision."                        \
     }
 
 #define ELEMENT(of, one, many, text)                                                            \
@@ -30,7 +30,7 @@
         .kind = (of), .run = api_element_get, .role = API_ROLE_READ, .reads = API_READS_LOCKED, \
         .produces = json, .parameters = {&api_parameter_revision}, .statuses = {200, 304, 410}, \
         .response = (one), .summary = "One " one " with all its links",                         \
-        .doc = text " A deleted one is answered 410, one that never existed 404."               \
+        .doc = text " The answer is 410 if the element was deleted, 404 if it never existed."   \
     }
 
 #define ADJACENCY(of, one, many, what, title, text)                                              \
@@ -42,7 +42,7 @@
         .statuses = {200, 304, 410}, .response = one "_" what, .summary = (title), .doc = (text) \
     }
 
-#define AROUND "Counter-clockwise from the stored half-edge, each once."
+#define AROUND "They are listed counter-clockwise from the stored half-edge, each once."
 
 /* All rows about elements, in the order that they have in the table of routes. */
 #define ELEMENT_ROWS                                                                              \
@@ -57,33 +57,35 @@
         ELEMENT(HE_FACE, "face", "faces",                                                         \
                 "One face: its corners, half-edges, area, normal and centroid."),                 \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "vertices", "Neighbours of a vertex",          \
-                  "The vertices at the other ends of its edges. " AROUND),                        \
+                  "The vertices at the other ends of the edges of the vertex. " AROUND),          \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "outgoing", "Half-edges that leave a vertex",  \
                   "The half-edges whose origin is the vertex. " AROUND),                          \
-        ADJACENCY(HE_VERTEX, "vertex", "vertices", "incoming",                                    \
-                  "Half-edges that arrive at a vertex",                                           \
-                  "The twins of the half-edges that leave it, in the same order. " AROUND),       \
+        ADJACENCY(                                                                                \
+            HE_VERTEX, "vertex", "vertices", "incoming", "Half-edges that arrive at a vertex",    \
+            "The half-edges whose target is the vertex, in the order of their twins. " AROUND),   \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "edges", "Edges of a vertex",                  \
                   "The edges that end at the vertex. " AROUND),                                   \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "faces", "Faces around a vertex",              \
-                  "The faces left of the half-edges that leave it; holes are left out. " AROUND), \
+                  "The faces that have the vertex as a corner; holes are left out. " AROUND),     \
         ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "loop", "The loop of a half-edge",        \
-                  "The half-edges around its face or hole, from itself by next."),                \
+                  "The half-edges around its face or hole, beginning with the half-edge itself, " \
+                  "each the next of the one before."),                                            \
         ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "ring", "The ring of a half-edge",        \
-                  "The half-edges that leave its origin, counter-clockwise from itself."),        \
+                  "The half-edges with the same origin, counter-clockwise, beginning with the "   \
+                  "half-edge itself."),                                                           \
         ADJACENCY(HE_EDGE, "edge", "edges", "vertices", "Ends of an edge",                        \
-                  "Origin and target of its half-edge 2 * id."),                                  \
+                  "The origin and the target of half-edge 2 * id."),                              \
         ADJACENCY(HE_EDGE, "edge", "edges", "halfedges", "Half-edges of an edge",                 \
-                  "2 * id and 2 * id + 1."),                                                      \
+                  "The half-edges 2 * id and 2 * id + 1."),                                       \
         ADJACENCY(HE_EDGE, "edge", "edges", "faces", "Faces beside an edge",                      \
-                  "The faces left of its half-edges, each once; holes are left out."),            \
+                  "The one or two faces that the edge belongs to; holes are left out."),          \
         ADJACENCY(HE_FACE, "face", "faces", "vertices", "Corners of a face",                      \
-                  "The origins of its half-edges. " AROUND),                                      \
+                  "The vertices of the face. " AROUND),                                           \
         ADJACENCY(HE_FACE, "face", "faces", "halfedges", "Half-edges of a face",                  \
                   "The half-edges that have the face on their left. " AROUND),                    \
         ADJACENCY(HE_FACE, "face", "faces", "edges", "Edges of a face",                           \
-                  "The edges of its half-edges. " AROUND),                                        \
+                  "The edges of the face. " AROUND),                                              \
         ADJACENCY(HE_FACE, "face", "faces", "faces", "Faces beside a face",                       \
-                  "The faces across its edges; holes are left out. " AROUND)
+                  "The faces that share an edge with the face; holes are left out. " AROUND)
 
 #endif

@@ -107,9 +107,8 @@ static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
         "{\"type\":\"object\",\"properties\":{\"end\":{\"type\":\"boolean\",\"const\":true},"
-        "\"count\":{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":0,\"description\":\"Of "
-        "the lines before.\"}},"
-        "\"required\":[\"end\",\"count\"]}";
+        "\"count\":{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":0,\"description\":\"The "
+        "number of lines before this one.\"}},\"required\":[\"end\",\"count\"]}";
     api_out_key(out, "x-item-schema");
     api_out_object_begin(out);
     api_out_key(out, "oneOf");
@@ -125,9 +124,10 @@ static void write_line_schema(api_out *out, const char *line)
 static void write_files_schema(api_out *out)
 {
     static const char schema[] =
-        "{\"type\":\"object\",\"description\":\"The mesh's file and those it refers to, by the "
-        "names it has for them: of 1 to 64 parts one is of a format that is read.\","
-        "\"properties\":{\"files\":{\"type\":\"array\",\"items\":{\"type\":\"string\","
+        "{\"type\":\"object\",\"description\":\"1 to 64 files: one in a mesh format that the "
+        "server reads, and the files that it refers to, each with the file name by which it is "
+        "referred "
+        "to.\",\"properties\":{\"files\":{\"type\":\"array\",\"items\":{\"type\":\"string\","
         "\"format\":\"binary\",\"contentMediaType\":\"application/octet-stream\"}}}}";
     api_out_key(out, "schema");
     api_out_raw(out, schema, sizeof schema - 1);
@@ -305,14 +305,15 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
         /* A dry run makes no state that a tag could name, and the bare answer of api_publish (204)
          * may not know the state. So such answers do not always have a tag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
-        write_header(out, "ETag", "Names the state that the answer shows.", always);
+        write_header(out, "ETag", "Identifies the state that the answer shows.", always);
     }
     if (status == 201) {
         write_header(out, "Location", "The path of the new mesh.", true);
     }
     if (route->flags & (API_IDEMPOTENCY_KEY | API_IDEMPOTENCY_KEY_NEW)) {
         write_header(out, "Idempotency-Replayed",
-                     "true: this is the answer of the first request with this key.", false);
+                     "true: the answer to the first request with this Idempotency-Key is repeated.",
+                     false);
     }
     for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
         write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
@@ -370,11 +371,12 @@ typedef struct refusal {
 static const refusal headed_problems[] = {
     {401, "unauthorized", "WWW-Authenticate", "Bearer, and what is wrong with the token.", true},
     {403, "forbidden", "WWW-Authenticate",
-     "Bearer with the role that is missing, if that is the reason.", false},
+     "Bearer with the role that the request needs, if the token lacks it.", false},
     {405, "not_allowed", "Allow", "The methods that the path supports.", true},
-    {409, "conflict", "Retry-After", "Seconds to wait, if waiting helps.", false},
-    {415, "unsupported", "Accept-Encoding", "The supported content codings, if that is the reason.",
-     false},
+    {409, "conflict", "Retry-After",
+     "Seconds after which the request may be sent again, if waiting helps.", false},
+    {415, "unsupported", "Accept-Encoding",
+     "The supported content codings, if the one of the body is not supported.", false},
     {429, "limited", "Retry-After", "Seconds.", true},
     {503, "unavailable", "Retry-After", "Seconds.", true},
 };
@@ -458,10 +460,11 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(
             out, "Prefer",
             minimal
-                ? "respond-async: do it as a job and answer 202. wait=N: answer 200 if it takes at "
-                  "most N seconds. return=minimal: answer 204 without a body."
-                : "respond-async: do it as a job and answer 202, unless the answer is an error or "
-                  "304, which comes at once. wait=N: answer 200 if it takes at most N seconds.");
+                ? "respond-async: run the request as a job and answer 202. wait=N: answer 200 if "
+                  "the job takes at most N seconds. return=minimal: answer 204 without a body."
+                : "respond-async: run the request as a job and answer 202, unless the answer is an "
+                  "error or 304, which is sent at once. wait=N: answer 200 if the job takes at "
+                  "most N seconds.");
     } else if (minimal) {
         write_header_parameter(out, "Prefer", "return=minimal: answer 204 without a body.");
     }
@@ -482,7 +485,7 @@ enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
 {
-    static const char expensive[] = "Expensive: pages of other sites may not ask for it.";
+    static const char expensive[] = "Expensive: pages of other sites may not send this request.";
     const char *doc = route->doc == NULL ? "" : route->doc;
     char text[MOST_DOC];
     bool is_expensive = (route->flags & API_EXPENSIVE) != 0;

@@ -176,14 +176,14 @@ void api_operations_write(api_out *out)
 static const struct {
     const char *name, *json;
 } beside[] = {
-    {"as",
-     "{\"type\":\"string\",\"maxLength\":64,\"pattern\":\"^[A-Za-z_][A-Za-z0-9_]*$\","
-     "\"description\":\"In a list: a name for what it makes, for the operations after it.\"}"},
+    {"as", "{\"type\":\"string\",\"maxLength\":64,\"pattern\":\"^[A-Za-z_][A-Za-z0-9_]*$\","
+           "\"description\":\"Only in a list of operations: a name by which later operations refer "
+           "to the results of this one.\"}"},
     {"expected_revision",
-     "{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":1,\"description\":"
-     "\"Alone: the revision that the edit is meant for.\"}"},
-    {"dry_run",
-     "{\"type\":\"boolean\",\"description\":\"Alone: answer without changing anything.\"}"},
+     "{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":1,\"description\":\"Only outside a "
+     "list of operations: the revision that the edit is meant for.\"}"},
+    {"dry_run", "{\"type\":\"boolean\",\"description\":\"Only outside a list of operations: true: "
+                "answer without changing anything.\"}"},
 };
 
 /* The functions from write_list_schema to write_value_schema write the members of a schema into an

@@ -113,8 +113,9 @@ const api_parameter api_parameter_identity = {
     "id",        API_PARAM_TEXT, 0,
     API_MAX_URI, NULL,           "The id for the new mesh. Default: the server chooses one."};
 const api_parameter api_parameter_by = {
-    "by", API_PARAM_CHOICE, 0,
-    0,    connections,      "What connects two faces: a shared edge, or already a shared vertex."};
+    "by",        API_PARAM_CHOICE,
+    0,           0,
+    connections, "What connects two faces: only a shared edge, or also a shared vertex."};
 
 const api_parameter api_parameter_ids = {"ids",       API_PARAM_TEXT, 1,
                                          API_MAX_URI, NULL,           "Ids separated by commas."};
@@ -161,11 +162,12 @@ const api_parameter api_parameter_dry_run = {
     0,
     0,
     NULL,
-    "true: change nothing, and answer as if it had been done. In JSON it is a member of the body."};
+    "true: change nothing, and answer as if the change had been made. If the body is JSON, dry_run "
+    "is a member of it."};
 const api_parameter api_parameter_rule = {
     "rule",
     API_PARAM_CHOICE,
     0,
     0,
     api_rule_names,
-    "What value edits give to new elements, if the body is application/octet-stream."};
+    "How edits choose the value of a new element, if the body is application/octet-stream."};

@@ -13,7 +13,8 @@ static const api_told_header next_page = {"Link", "A link to the next page, if t
 static const api_told_header disposition = {"Content-Disposition", "A name for the file."};
 static const api_told_header ranges = {
     "Accept-Ranges", "`none`: Range is ignored, because a file is generated while it is sent."};
-static const api_told_header warnings = {"Export-Warnings", "What the format has no place for."};
+static const api_told_header warnings = {"Export-Warnings",
+                                         "What the file lacks, because its format cannot hold it."};
 
 /* --- the table of routes --- */
 
@@ -49,11 +50,11 @@ static const api_route routes[] = {
      .request = "create",
      .response = "created",
      .summary = "Create a mesh",
-     .doc = "From a mesh document, a shape, or a file. A file that refers to others (a .gltf to "
-            "its .bin, an OBJ file to its .mtl) is sent together with them as multipart/form-data, "
-            "each with the file name by which it is referred to. A surface that is not a valid "
-            "mesh is answered with a problem that lists each wrong element, and the repairs that "
-            "would make it valid."},
+     .doc = "The body is a mesh document, the name of a shape, or a file. A file that refers to "
+            "others (a .gltf to its .bin, an OBJ file to its .mtl) is sent together with them as "
+            "multipart/form-data, each with the file name by which it is referred to. A surface "
+            "that is not a valid mesh is answered with a problem that lists each wrong element, "
+            "and the repairs that would make it valid."},
 
     /* one mesh */
     {.method = "GET",
@@ -137,15 +138,15 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410, 422},
      .response = "document",
      .summary = "Export a mesh",
-     .doc = "In the format that `format` or Accept names. What the format has no place for is "
-            "listed in the header Export-Warnings, at most 1000 bytes, the rest as \"and 3 more\". "
-            "A position too large for a float is an error for glb and binary stl. A mesh holds "
-            "texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (in glTF v runs down), "
-            "and colours `color` from 0 to 1, which are bytes in PLY; reading and writing convert "
-            "both. A file is sent directly however large the mesh is, unless the client prefers a "
-            "job. The first byte takes about a second for each million faces of STL, half a second "
-            "of GLB, and little of other formats; what takes longer than the server's limit for "
-            "reads is answered 503 `read_timeout`."},
+     .doc = "The file has the format that `format` or Accept names. What the format cannot hold is "
+            "listed in the header Export-Warnings, in at most 1000 bytes; the rest is counted, as "
+            "in \"and 3 more\". A position too large for a float is an error for glb and binary "
+            "stl. A mesh holds texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (in "
+            "glTF v runs down), and colours `color` from 0 to 1, which are bytes in PLY; reading "
+            "and writing convert both. A file is sent directly however large the mesh is, unless "
+            "the client prefers a job. Until the first byte is sent, each million faces takes "
+            "about a second in STL, half a second in GLB, and little in other formats; a request "
+            "that takes longer than the server's limit for reads is answered 503 `read_timeout`."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "get_geometry",
@@ -159,17 +160,18 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304},
      .summary = "Arrays for drawing a mesh",
      .doc =
-         "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 2, u64 revision, u64 base, "
-         "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
-         "origin, f64 scale, u64 layout, u32 rows of vertices and u32 of triangles in this "
-         "answer); then for each vertex id f32 x 4, (position - origin) * scale and 0 dead, 1 "
-         "used or 2 isolated; then for each slot u32 x 4, three vertices and the face's id with "
-         "bits 29 to 31 for the sides that are edges of the face, or four zeros where the slot "
-         "is free. With `since` and `layout` of an answer before, the rows that changed: of the "
-         "vertices, then of the triangles, u32 places, zeros up to a multiple of 16 bytes, and "
-         "the rows for them. The arrays are first grown with zeros to the vertices and triangles "
-         "of the header. A base of 0 says that all rows are there and the arrays begin afresh: "
-         "the server may answer so at any time, and does where the layout is another."},
+         "Little-endian. First a header of 96 bytes: \"HEDG\", u32 version 2, u64 revision, u64 "
+         "base, u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x "
+         "3 origin, f64 scale, u64 layout, u32 rows of vertices and u32 rows of triangles in this "
+         "answer. Then a row for each vertex id: f32 x 3, (position - origin) * scale, and an f32 "
+         "that is 0 for a deleted, 1 for a used and 2 for an isolated vertex. Then the rows of "
+         "triangles: u32 x 4, three vertices and the id of the face, in which bits 29 to 31 mark "
+         "the sides that are edges of the face; a row of four zeros is unused. With `since` and "
+         "`layout` from an earlier answer, only changed rows are sent, those of vertices and then "
+         "those of triangles: u32 row numbers, zeros up to a multiple of 16 bytes, and the rows. "
+         "The client first extends its arrays with zeros to the numbers of vertices and triangles "
+         "in the header. A base of 0 means that all rows are sent and replace the client's arrays: "
+         "the server may answer so at any time, and does if the layout has changed."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/progressive",
      .name = "get_progressive_mesh",
@@ -183,18 +185,19 @@ static const api_route routes[] = {
                     &api_parameter_boundary_weight, &api_parameter_most_splits},
      .statuses = {200, 202, 304, 410, 422},
      .summary = "A mesh from coarse to fine",
-     .doc =
-         "The mesh decimated, and the vertex splits that lead back to it with all ids: any number "
-         "of them leaves a mesh. Of the revision before a decimate, and with the same faces, "
-         "max_error and boundary_weight, it is the record of that edit: the base is the mesh that "
-         "the edit made. Little-endian: \"HEDP\", u32 version 1, u64 revision, u32 "
-         "vertices, edges and faces of the base, splits here, splits there are, 0, ids issued of "
-         "vertices, edges and faces, 0, f64 x 3 least and largest coordinates; vertices (u32 id, "
-         "0, f64 x 3), edges (u32 id, origin, target, 0), faces (u32 id, three corners); then "
-         "splits: u32 bytes, new vertex u, the vertex v it leaves, left and right corner, "
-         "half-edges from u to those three, left face (u, v, left), right face (v, u, right), "
-         "number of faces in which u takes the place of v, 0, f64 x 3 places of u and of v, u32 "
-         "those faces, up to a multiple of 8 bytes. 2^32 - 1 is none."},
+     .doc = "A decimated mesh, the base, and the vertex splits that lead from it back to the whole "
+            "mesh with all ids; after any number of splits the mesh is valid. For the revision "
+            "before an edit decimate, with the same faces, max_error and boundary_weight, the base "
+            "is the mesh that the edit made. Little-endian. First a header: \"HEDP\", u32 version "
+            "1, u64 revision, u32 vertices, edges and faces of the base, splits in this answer, "
+            "splits in all, 0, ids issued of vertices, edges and faces, 0, f64 x 3 smallest and "
+            "f64 x 3 largest coordinates. Then the base: vertices (u32 id, 0, f64 x 3 position), "
+            "edges (u32 id, origin, target, 0), faces (u32 id, three corners). Then the splits, "
+            "each: u32 size in bytes, new vertex u, the vertex v that is split, left and right "
+            "corner, the half-edges from u to v and to these corners, left face (u, v, left), "
+            "right face (v, u, right), number of faces in which u replaces v, 0, f64 x 3 position "
+            "of u, f64 x 3 position of v, u32 ids of the faces in which u replaces v, zeros up to "
+            "a multiple of 8 bytes. 2^32 - 1 stands for none."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/copy",
      .name = "copy_mesh",
@@ -408,14 +411,13 @@ static const api_route routes[] = {
      .response = "check",
      .summary = "Check a mesh",
      .doc =
-         "Every broken invariant by its number, and every defect a valid mesh may have: vertices "
-         "of several fans, without an edge or in one place with another, edges without length, "
-         "faces that have no area or are not flat, components that are small or inside out. A "
-         "component is inside out when it is closed and its volume negative: one that bounds a "
-         "hollow within another is listed too, though that is as it should be, and a component "
-         "more than about 1e107 times smaller than the mesh's largest coordinate never is. Of each "
-         "the first "
-         "are listed and all counted."},
+         "Every broken invariant by its number, and every defect that a valid mesh may have: "
+         "vertices that have several fans, have no edge or share a position with another vertex; "
+         "edges without length; faces that have no area or are not flat; components that are small "
+         "or inside out. A component is inside out if it is closed and its volume is negative: the "
+         "wall of a hollow inside another component is listed too, although it is correct, and a "
+         "component more than about 1e107 times smaller than the mesh's largest coordinate is "
+         "never listed. All defects are counted, and the first 100 of each kind are listed."},
 
     /* edits */
     {.method = "POST",

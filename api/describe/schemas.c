@@ -88,8 +88,8 @@ static const struct {
      "\"minItems\":1},\"paths\":{\"$ref\":\"#/components/schemas/any_members\"},"
      "\"components\":{\"$ref\":\"#/components/schemas/any_members\"}}}"},
     {"any_members",
-     "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"descrip"
-     "tion\":\"As OpenAPI 3.1 says.\"}"},
+     "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"description\":\"A "
+     "document as the OpenAPI 3.1 specification describes it.\"}"},
     {"job_state",
      "{\"type\":\"string\",\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
     {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"

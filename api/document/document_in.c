@@ -44,9 +44,9 @@ struct api_document_in {
 };
 
 _Static_assert((int)API_MAX_DOCUMENT_NUMBER <= (int)HE_JSON_CARRY,
-               "numbers are carried across cuts");
+               "a number of the largest size must fit where pieces of the body are joined");
 _Static_assert(2 * (int)API_MAX_KEY <= (int)HE_JSON_NAMES,
-               "names of members are carried across cuts");
+               "the name of a member must fit where pieces of the body are joined");
 
 api_document_in *api_document_in_new(const he_limits *limits)
 {
@@ -204,7 +204,7 @@ static bool add_value(api_document_in *in, double value)
     }
     if (in->part == 3) {
         return refuse_in(in, IN_LIST, HE_BAD_VALUE,
-                         "a vertex must have three coordinates, and this one has more");
+                         "a vertex must have three coordinates, but this one has more");
     }
     in->point[in->part++] = value;
     return true;

@@ -620,15 +620,17 @@ static const api_field warning_fields[] = {
     API_FIELD("code", "text", shown_warning, code, .required = true),
     API_FIELD("detail", "text", shown_warning, detail, .required = true),
     API_FIELD("count", "count", shown_warning, count, .required = true,
-              .doc = "How often it occurred."),
+              .doc = "How often the warning occurred."),
     API_FIELD("line", "count", shown_warning, at, .known = API_KNOWN(shown_warning, has_line),
-              .doc = "The first line, in a text file."),
+              .doc = "The first line where it occurred, if the body is text."),
     API_FIELD("byte", "count", shown_warning, at, .known = API_KNOWN(shown_warning, has_byte),
-              .doc = "The first byte, in a binary file."),
+              .doc = "The first byte where it occurred, if the body is binary."),
     API_FIELD_MADE("lines", "*count", write_spots, .known = API_KNOWN(shown_warning, has_lines),
-                   .doc = "The lines, at most 100 for all warnings together."),
+                   .doc = "The lines where it occurred, if the body is text; at most 100 for all "
+                          "warnings together."),
     API_FIELD_MADE("bytes", "*count", write_spots, .known = API_KNOWN(shown_warning, has_bytes),
-                   .doc = "The bytes in a binary file, at most 100 for all warnings together."),
+                   .doc = "The bytes where it occurred, if the body is binary; at most 100 for all "
+                          "warnings together."),
     API_FIELD_MADE("vertices", "*id", write_warned, .known = API_KNOWN(shown_warning, has_vertices),
                    .doc = "For bowtie and isolated_vertices: the first 100 of these vertices."),
 };
@@ -681,8 +683,8 @@ static void write_seams(api_out *out, const upload *u)
 {
     const shown_warning value = {.code = "open_seams",
                                  .detail =
-                                     "faces lie apart though their edges coincide: repair=weld "
-                                     "sews them and keeps what their corners say",
+                                     "faces are not connected although their edges coincide: "
+                                     "repair=weld joins them and keeps the values of their corners",
                                  .count = u->seams};
     if (u->seams > 0) {
         api_record_write(out, &api_warning_record, &value);
@@ -720,11 +722,11 @@ static void write_warnings(api_out *out, const void *value)
 {
     const upload *u = ((const report *)value)->u;
     const shown_warning bowties = {.code = "bowtie",
-                                   .detail =
-                                       "fans of faces meet at a vertex without sharing an edge",
+                                   .detail = "fans of faces share a vertex but no edge",
                                    .count = u->bowties.count};
-    const shown_warning isolated = {
-        .code = "isolated_vertices", .detail = "no face has these vertices", .count = u->isolated};
+    const shown_warning isolated = {.code = "isolated_vertices",
+                                    .detail = "these vertices belong to no face",
+                                    .count = u->isolated};
     api_out_array_begin(out);
     for (size_t i = 0; u->has_import && i < u->import.warnings.count; i++) {
         write_warning(out, &u->import.warnings, i);
@@ -741,7 +743,7 @@ static const api_field import_fields[] = {
     API_FIELD("faces", "count", report, faces, .required = true),
     API_FIELD_MADE("attributes", "*#attribute_read", write_attributes,
                    .known = API_KNOWN(report, has_attributes),
-                   .doc = "The attributes that the body has."),
+                   .doc = "The attributes that the mesh got from the body."),
     API_FIELD_MADE("repairs", "*#repair", write_repairs, .required = true,
                    .doc = "The repairs that were asked for, in the order in which they were made."),
     API_FIELD_MADE("warnings", "*#warning", write_warnings, .required = true),

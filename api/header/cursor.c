@@ -73,7 +73,8 @@ bool api_cursor_read(const char *text, const char *collection, const st_mesh_inf
     parts cursor;
     if (!split(text, &cursor) || strlen(collection) != cursor.collection ||
         memcmp(text, collection, cursor.collection) != 0) {
-        return api_problem_set(problem, API_BAD_CURSOR, "the cursor is not one of %s", collection);
+        return api_problem_set(problem, API_BAD_CURSOR,
+                               "the cursor does not belong to the list of %s", collection);
     }
     if (!is_of(&cursor, info)) {
         return api_problem_set(

@@ -40,12 +40,11 @@ struct api_decompressor {
 static bool fail_memory(const api_decompressor *u, api_problem *problem)
 {
     return u->memory.refused
-               ? api_problem_set(
-                     problem, API_TOO_MANY_CODED,
-                     "decompressing this body too would take more than %zu bytes of memory in all",
-                     u->memory.most)
-               : api_problem_set(problem, HE_NO_MEMORY,
-                                 "memory is out: the body cannot be decompressed");
+               ? api_problem_set(problem, API_TOO_MANY_CODED,
+                                 "the bodies that are decompressed at the same time would take "
+                                 "more than %zu bytes of memory with this one",
+                                 u->memory.most)
+               : api_problem_set(problem, HE_NO_MEMORY, "no memory to decompress the body");
 }
 
 /* --- eviction of decoders --- */
@@ -142,7 +141,7 @@ api_decompressor *api_decompressor_new(api_coding coding, api_decompressor_room 
 {
     api_decompressor *u = he_mem_alloc(sizeof *u);
     if (u == NULL) {
-        api_problem_set(problem, HE_NO_MEMORY, "memory is out: the body cannot be decompressed");
+        api_problem_set(problem, HE_NO_MEMORY, "no memory to decompress the body");
         return NULL;
     }
     memset(u, 0, offsetof(api_decompressor, piece));

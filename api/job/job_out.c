@@ -55,24 +55,26 @@ static const api_field job_fields[] = {
               .doc = "The operationId of the request."),
     API_FIELD("state", "#job_state", shown, state, .required = true),
     API_FIELD("phase", "text?", shown, job.phase, .required = true, .zero_is_none = true,
-              .doc = "What the job is doing, or did last."),
+              .doc = "What the job does now, or did last if it has ended."),
     API_FIELD("progress", "number", shown, progress, .required = true,
-              .doc = "From 0 to 1; it never decreases."),
+              .doc = "How much of the work is done, from 0 to 1; it never decreases."),
     API_FIELD("mesh", "text?", shown, job.mesh, .required = true, .zero_is_none = true,
-              .doc = "The id of its mesh; null while the mesh has no id."),
+              .doc = "The id of the mesh that the job works on; null while that mesh has no id."),
     API_FIELD("created", "time", shown, job.created, .required = true),
     API_FIELD("started", "time?", shown, job.started, .required = true, .zero_is_none = true),
     API_FIELD("finished", "time?", shown, job.finished, .required = true, .zero_is_none = true),
     API_FIELD("status", "integer?", shown, job.status, .required = true,
               .known = API_KNOWN(shown, has_status),
-              .doc = "The HTTP status that the request would have been answered with."),
+              .doc = "The HTTP status with which the request would have been answered."),
     API_FIELD("location", "text?", shown, job.location, .required = true, .zero_is_none = true,
-              .doc = "The header Location that the request would have been answered with."),
-    API_FIELD("result_link", "text?", shown, link, .required = true, .zero_is_none = true,
-              .doc = "The path of the result alone, once there is one."),
+              .doc = "The header Location with which the request would have been answered."),
+    API_FIELD(
+        "result_link", "text?", shown, link, .required = true, .zero_is_none = true,
+        .doc = "The path from which GET fetches only the result; null while there is no result."),
     API_FIELD_MADE("result", "#job_result?", write_body, .known = API_KNOWN(shown, has_result),
-                   .doc = "The body that the request would have been answered with; null if there "
-                          "is none, or if it is not JSON, a whole mesh, or too large to keep."),
+                   .doc =
+                       "The body with which the request would have been answered; null if it has "
+                       "none, or the body is not JSON, is a whole mesh, or is too large to keep."),
     API_FIELD_MADE("problem", "#problem?", write_body, .known = API_KNOWN(shown, has_problem),
                    .doc = "The problem, if the job failed."),
 };
@@ -81,7 +83,8 @@ const api_record api_job_record = {"job", job_fields, sizeof job_fields / sizeof
 static const api_field state_fields[] = {
     API_FIELD("id", "text", shown, job.id, .required = true),
     API_FIELD("state", "#job_state", shown, state, .required = true),
-    API_FIELD("progress", "number", shown, progress, .required = true, .doc = "From 0 to 1."),
+    API_FIELD("progress", "number", shown, progress, .required = true,
+              .doc = "How much of the work is done, from 0 to 1."),
 };
 const api_record api_job_state_record = {"job_state_told", state_fields,
                                          sizeof state_fields / sizeof *state_fields};

@@ -301,7 +301,7 @@ bool api_in_array(const api_in *in, size_t min, size_t max)
     }
     size_t count = api_in_count(in);
     if (count < min || (count > max && min == max)) {
-        return api_in_fail(in, HE_BAD_VALUE, "the array has %zu values and needs %s%zu", count,
+        return api_in_fail(in, HE_BAD_VALUE, "the array has %zu values, but needs %s%zu", count,
                            min == max ? "" : "at least ", min);
     }
     if (count > max) {

@@ -30,24 +30,24 @@ static const struct {
 } core_rows[HE_STATUS_COUNT] = {
     [HE_OK] = {200, ""},
     [HE_NO_MEMORY] = {507, "The server had no memory for the request. Nothing was changed."},
-    [HE_IDS_EXHAUSTED] = {507, "Ids have 32 bits and are not reused. `compact` numbers the mesh "
-                               "anew."},
+    [HE_IDS_EXHAUSTED] =
+        {507, "Ids have 32 bits and are not reused. The operation `compact` renumbers the mesh."},
     [HE_LIMIT] = {413, "The request holds more than a configured limit allows; the detail names "
                        "it."},
-    [HE_CANCELLED] = {503, "The work was given up before it ended. Nothing was changed."},
-    [HE_SYNTAX] = {400, "The file does not follow its format at the place that is named."},
-    [HE_BAD_VALUE] = {400, "A number, string or count is not one this place takes; the detail "
-                           "gives the value and the range."},
-    [HE_NOT_FINITE] = {400, "Numbers must fit a double: NaN and infinity are refused, and so is "
-                            "what would become them."},
-    [HE_BAD_INDEX] = {422, "A face names a vertex the document does not have. Indices count from "
-                           "0."},
-    [HE_UNSUPPORTED] = {422, "The file is well formed but uses a part of its format that is not "
-                             "read; the detail names it."},
-    [HE_BEYOND_FLOAT] = {422,
-                         "The format holds positions as floats, and a coordinate of the mesh is "
-                         "larger than the largest one, about 3.4e38. obj, off, ply and json, "
-                         "and stl with encoding=ascii, hold it."},
+    [HE_CANCELLED] = {503, "The request was cancelled before it was done. Nothing was changed."},
+    [HE_SYNTAX] = {400, "The file does not follow its format; the detail says where."},
+    [HE_BAD_VALUE] = {400, "A number, string or count is not allowed here; the detail gives the "
+                           "value and what is allowed."},
+    [HE_NOT_FINITE] = {400, "Numbers must fit a double: NaN and infinity are refused, and so is a "
+                            "number that would become one of them."},
+    [HE_BAD_INDEX] =
+        {422,
+         "A face uses the index of a vertex that the body does not have. Indices count from 0."},
+    [HE_UNSUPPORTED] = {422, "The file is well formed but uses a feature of its format that the "
+                             "server does not support; the detail names it."},
+    [HE_BEYOND_FLOAT] = {422, "The format holds positions as floats, and a coordinate of the mesh "
+                              "is larger than the largest float, about 3.4e38. The formats obj, "
+                              "off, ply and json, and stl with encoding=ascii, can hold it."},
     [HE_CORRUPT] = {500, "A mesh in the server breaks its own invariants. GET .../check lists "
                          "them."},
     [HE_NO_SUCH_ELEMENT] = {422, "The id was never issued in this mesh. In a path this is 404, in "
@@ -56,41 +56,41 @@ static const struct {
                                  "410, in a body 422."},
     [HE_REPEATED_ELEMENT] = {422, "A list names the same element twice."},
     [HE_TOO_FEW_CORNERS] = {422, "Faces are polygons of three corners or more."},
-    [HE_REPEATED_CORNER] = {422, "The corners of a face are at different vertices."},
-    [HE_NONMANIFOLD_EDGE] = {422, "An edge has at most two faces, one on each side."},
-    [HE_ORIENTATION] = {422, "Faces that share an edge run along it in opposite directions, so "
-                             "that all wind the same way."},
-    [HE_NOT_ORIENTABLE] = {422, "Around a strip of faces the sides change over, as on a Moebius "
-                                "band: however its faces are turned, two of them clash. With "
-                                "repair=orient,split it is cut there."},
-    [HE_DOUBLED_EDGE] = {422, "Two vertices are joined by at most one edge."},
-    [HE_CLOSED_FAN] = {422, "The faces about a vertex form one closed fan, or any number of open "
-                            "ones: a closed fan shares its vertex with no other."},
+    [HE_REPEATED_CORNER] = {422, "The corners of a face must be different vertices."},
+    [HE_NONMANIFOLD_EDGE] = {422, "An edge may have at most two faces, one on each side."},
+    [HE_ORIENTATION] = {422, "Two faces that share an edge must run along it in opposite "
+                             "directions, so that they have the same orientation."},
+    [HE_NOT_ORIENTABLE] = {422, "Some faces form a strip that cannot be oriented, like a Moebius "
+                                "strip: whichever faces are reversed, two neighbours have opposite "
+                                "orientations. repair=orient,split cuts the mesh there."},
+    [HE_DOUBLED_EDGE] = {422, "Two vertices may be joined by at most one edge."},
+    [HE_CLOSED_FAN] = {422, "The faces around a vertex must form one closed fan or any number of "
+                            "open fans: a closed fan may not share its vertex with another fan."},
     [HE_FEATURE_EDGE] = {422,
-                         "Edges whose bool attribute `feature` is true are lines that keep their "
-                         "shape: such an edge is not flipped, and a collapse may only shorten a "
-                         "line along itself or draw onto it what is beside it."},
-    [HE_LOCKED_ELEMENT] = {422,
-                           "An element whose bool attribute `locked` is true is not taken away; a "
-                           "vertex keeps its place, an edge its ends and a face its corners. "
-                           "Cutting it is allowed. Write false to unlock it."},
+                         "Edges whose bool attribute `feature` is true form lines that keep their "
+                         "shape: such an edge cannot be flipped, and a collapse may only merge two "
+                         "vertices along a line, or move a vertex beside a line onto it."},
+    [HE_LOCKED_ELEMENT] =
+        {422, "An element whose bool attribute `locked` is true cannot be deleted; a locked vertex "
+              "keeps its position, a locked edge its ends and a locked face its corners. Cutting "
+              "the element is allowed. Set the attribute to false to unlock it."},
     [HE_ISOLATED_VERTEX] = {422, "A vertex without a face has no dual: give it one, or delete it."},
-    [HE_NO_RIM] = {422, "Faces are drawn off what is about them along their rim, and a whole "
-                        "closed component has none. Leave a face out."},
-    [HE_RIM_MEETS_ITSELF] = {422,
-                             "The rim of a region may pass each vertex once. Add the faces that "
-                             "lie between, or take the parts one after another."},
-    [HE_NO_NORMAL] = {422, "The direction of a face comes from its area, and that of a region "
-                           "from the sum of its faces'. Give a vector, or a factor."},
-    [HE_NOT_TRIANGLE] = {422, "Every face has to be a triangle for this: `triangulate` first."},
-    [HE_ATTRIBUTE_CLASH] = {422,
-                            "Attributes of one name on one kind of element must agree in type, "
-                            "in the number of components and in whether they have labels. Rename "
-                            "or delete one of them."},
-    [HE_LINK_CONDITION] = {422,
-                           "Collapsing the edge would make an edge with three faces, a doubled "
-                           "edge or a face without area: the common neighbours of its ends "
-                           "must be exactly the corners opposite to it."},
+    [HE_NO_RIM] = {422, "The faces to extrude or inset need an outline, and a whole closed "
+                        "component has none. Leave out a face."},
+    [HE_RIM_MEETS_ITSELF] =
+        {422, "The outline of the faces may pass each vertex only once. Add the faces between the "
+              "parts that touch, or edit one part after the other."},
+    [HE_NO_NORMAL] = {422, "The normal of a face is derived from its area, and that of several "
+                           "faces from the sum of their areas. Give a vector, or a factor."},
+    [HE_NOT_TRIANGLE] =
+        {422, "Every face must be a triangle for this operation: use `triangulate` first."},
+    [HE_ATTRIBUTE_CLASH] = {422, "Attributes with the same name on the same kind of element must "
+                                 "have the same type and number of components, and both or neither "
+                                 "must have labels. Rename or delete one of them."},
+    [HE_LINK_CONDITION] =
+        {422, "Collapsing the edge would make an edge with three faces, two edges between the same "
+              "vertices or a face that uses a vertex twice: the common neighbours of the edge's "
+              "ends must be exactly the corners opposite the edge."},
 };
 
 static bool is_core(int code)
@@ -115,8 +115,8 @@ const char *api_code_explanation(int code)
     }
     return core_rows[code].explanation != NULL
                ? core_rows[code].explanation
-               : "The request is well formed, but the mesh at this place does not allow it: the "
-                 "title states the rule, the problem names the element. Nothing was changed.";
+               : "The request is well formed, but the mesh does not allow it at this element: the "
+                 "title states the rule, and the problem names the element. Nothing was changed.";
 }
 
 int api_code_http(int code)
@@ -173,11 +173,11 @@ bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool change
 {
     if (wait->end != ST_WAIT_LOST) {
         return api_problem_set(problem, API_NOT_READY,
-                               "the server stopped before the change was safe on the disk");
+                               "the server stopped before the change was on the disk");
     }
     if (!changed) {
         return api_problem_set(problem, API_STORE_LOST,
-                               "the answer shows a change that was lost: %s", wait->reason);
+                               "the answer would show a change that was lost: %s", wait->reason);
     }
     int code = wait->status == ST_FULL ? API_STORE_FULL : API_STORE_FAILED;
     return api_problem_set(problem, code, "the change was lost: %s", wait->reason);
@@ -199,9 +199,9 @@ void api_problem_set_repairs(api_problem *problem, unsigned repairs)
     problem->repairs = repairs;
     for (unsigned r = 0, named = 0; r < HE_REPAIR_COUNT; r++) {
         if ((repairs >> r & 1) != 0) {
-            int length =
-                snprintf(problem->detail + used, sizeof problem->detail - used, "%s%s",
-                         named++ == 0 ? "; it passes with repair=" : ",", he_repair_names[r]);
+            int length = snprintf(problem->detail + used, sizeof problem->detail - used, "%s%s",
+                                  named++ == 0 ? "; the body is accepted with repair=" : ",",
+                                  he_repair_names[r]);
             used += length > 0 ? (size_t)length : 0;
             used = used < sizeof problem->detail ? used : sizeof problem->detail - 1;
         }

@@ -26,7 +26,7 @@
     X(MISSING_MEMBER, "missing_member", 400, "A member is missing",                                \
       "The object at the pointer needs a member that it does not have.")                           \
     X(WRONG_TYPE, "wrong_type", 400, "A value has the wrong type",                                 \
-      "The value at the pointer has another JSON type than is expected there.")                    \
+      "The value at the pointer does not have the JSON type that is expected there.")              \
     X(UNEXPECTED_BODY, "unexpected_body", 400, "This request must not have a body",                \
       "The path and method use no body. A body is refused rather than ignored.")                   \
     X(MISSING_BODY, "missing_body", 400, "A body is missing",                                      \
@@ -55,7 +55,7 @@
     X(BAD_PARAMETER, "bad_parameter", 400, "A query parameter has a bad value",                    \
       "The value does not have the parameter's type, or is out of its range.")                     \
     X(BAD_CURSOR, "bad_cursor", 400, "The cursor does not belong to this collection",              \
-      "Use a cursor exactly as `next` gave it, and with the same collection.")                     \
+      "Use a cursor exactly as `next` gave it, and with the same list.")                           \
     X(BAD_HEADER, "bad_header", 400, "A header is not well formed",                                \
       "The value of a request header does not follow its syntax.")                                 \
     X(BAD_ID, "bad_id", 400, "This cannot be the id of a mesh",                                    \

@@ -12,83 +12,91 @@
     /* requests */                                                                                 \
     X(REQUESTS, "hedge_http_requests_total", COUNTER, "method,route,status",                       \
       "Requests that ended, by method, template of the path and class of the status (none: the "   \
-      "client was lost before the answer).")                                                       \
+      "client disconnected before the answer).")                                                   \
     X(REQUEST_TIME, "hedge_http_request_duration_seconds", HISTOGRAM, "method,route,status",       \
       "Time from the request line to the last byte of the answer, or the end of the stream.")      \
     X(IN_FLIGHT, "hedge_http_requests_in_flight", GAUGE, "",                                       \
-      "Requests that began and have not ended, event streams among them.")                         \
-    X(BYTES_IN, "hedge_http_request_bytes_total", COUNTER, "", "Bytes of bodies that arrived.")    \
+      "Requests that began and have not ended, including event streams.")                          \
+    X(BYTES_IN, "hedge_http_request_bytes_total", COUNTER, "",                                     \
+      "Bytes of request bodies that arrived.")                                                     \
     X(BYTES_OUT, "hedge_http_response_bytes_total", COUNTER, "",                                   \
-      "Bytes of bodies that were "                                                                 \
-      "answered.")                                                                                 \
+      "Bytes of response bodies that were sent.")                                                  \
     X(PROBLEMS, "hedge_problems_total", COUNTER, "code",                                           \
       "Requests that were refused or failed, by the code of the problem.")                         \
     /* connections */                                                                              \
     X(CONNECTIONS, "hedge_connections", GAUGE, "", "Connections that are open.")                   \
     X(CONNECTION_LIMIT, "hedge_connections_limit", GAUGE, "",                                      \
-      "Connections that may be open; those beyond are answered 503.")                              \
+      "Connections that may be open; further ones are answered 503.")                              \
     X(CONNECTIONS_OPENED, "hedge_connections_opened_total", COUNTER, "",                           \
       "Connections that were accepted.")                                                           \
     X(CONNECTIONS_REFUSED, "hedge_connections_refused_total", COUNTER, "reason",                   \
-      "Connections that were closed or answered 503 since there were too many (limit), no memory " \
-      "for them (memory), or the server was stopping.")                                            \
+      "Connections that were closed or answered 503 because there were too many (limit), no "      \
+      "memory for them (memory), or the server was stopping.")                                     \
     X(CONNECTIONS_LATE, "hedge_connections_timed_out_total", COUNTER, "stage",                     \
-      "Connections that were closed for taking too long, by what they took too long for: idle, "   \
-      "head, body, answer.")                                                                       \
+      "Connections that were closed because something took too long: the next request (idle), "    \
+      "the headers (head), the body, or reading the answer.")                                      \
     X(HANDSHAKES, "hedge_tls_handshakes_total", COUNTER, "result",                                 \
-      "TLS handshakes that ended: completed, or failed (refused, left by the client, or too "      \
+      "TLS handshakes that ended: completed, or failed (refused, abandoned by the client, or too " \
       "slow).")                                                                                    \
     X(LIMITED, "hedge_limited_total", COUNTER, "client,limit",                                     \
-      "Requests and connections that were refused since one client had as much as it may, by the " \
+      "Requests and connections that were refused because one client had reached a limit, by the " \
       "kind of client and the limit.")                                                             \
     /* edits */                                                                                    \
     X(EDITS, "hedge_edits_total", COUNTER, "operation,result",                                     \
-      "Operations on meshes: applied, rehearsed by a dry run, or refused. Of a list that is "      \
-      "refused the operation that was refused is counted, and of one that could not be stored "    \
-      "all are.")                                                                                  \
+      "Operations on meshes: applied, tried by a dry run, or refused. If a list of operations is " \
+      "refused, the operation that caused this is counted; if a list cannot be stored, all its "   \
+      "operations are counted.")                                                                   \
     X(REVISIONS, "hedge_revisions_total", COUNTER, "", "Revisions of meshes that were made.")      \
     /* meshes */                                                                                   \
-    X(MESHES, "hedge_meshes", GAUGE, "", "Meshes that there are, in memory or not.")               \
-    X(MESH_LIMIT, "hedge_meshes_limit", GAUGE, "", "Meshes that there may be.")                    \
+    X(MESHES, "hedge_meshes", GAUGE, "", "Meshes in the store, whether in memory or not.")         \
+    X(MESH_LIMIT, "hedge_meshes_limit", GAUGE, "", "Meshes that the store may hold.")              \
     X(MESHES_LOADED, "hedge_meshes_in_memory", GAUGE, "", "Meshes that are in memory.")            \
     X(ELEMENTS, "hedge_elements", GAUGE, "kind", "Elements of the meshes that are in memory.")     \
     X(EVICTIONS, "hedge_mesh_evictions_total", COUNTER, "",                                        \
-      "Meshes that left memory to make room for others.")                                          \
+      "Meshes that were removed from memory to make space for others.")                            \
     X(LOADS, "hedge_mesh_loads_total", COUNTER, "result",                                          \
-      "Looks for a mesh on the disk: loaded, absent, damaged, or failed.")                         \
+      "Attempts to load a mesh from the disk: loaded, absent, damaged, or failed.")                \
     X(LOAD_TIME, "hedge_mesh_load_duration_seconds", HISTOGRAM, "",                                \
       "How long a mesh took to be loaded from the disk.")                                          \
     /* memory */                                                                                   \
     X(MEMORY, "hedge_memory_bytes", GAUGE, "holder",                                               \
       "Bytes that count towards the memory budget: contents of meshes, their histories, "          \
-      "snapshots for readers, events for listeners, answers of jobs, connections, and all else.")  \
+      "snapshots for reads, events for event streams, answers of jobs, connections, and "          \
+      "everything else.")                                                                          \
     X(MEMORY_BUDGET, "hedge_memory_budget_bytes", GAUGE, "", "The memory budget; 0 for none.")     \
     X(MEMORY_FULL, "hedge_memory_full", GAUGE, "",                                                 \
-      "1 while no mesh can leave memory and requests that need much of it are refused, else 0.")   \
+      "1 while no mesh can be removed from memory and requests that need much memory are "         \
+      "refused, else 0.")                                                                          \
     /* events */                                                                                   \
     X(STREAMS, "hedge_event_streams", GAUGE, "about",                                              \
-      "Event streams that are open, by what they are about: mesh or job.")                         \
-    X(STREAM_LIMIT, "hedge_event_streams_limit", GAUGE, "about", "Event streams there may be.")    \
-    X(EVENTS, "hedge_events_total", COUNTER, "", "Events of meshes that were made for listeners.") \
+      "Event streams that are open, by their subject: mesh or job.")                               \
+    X(STREAM_LIMIT, "hedge_event_streams_limit", GAUGE, "about",                                   \
+      "Event streams that may be open.")                                                           \
+    X(EVENTS, "hedge_events_total", COUNTER, "",                                                   \
+      "Events about meshes that were written for event streams.")                                  \
     X(EVENT_LAG, "hedge_event_lag_seconds", HISTOGRAM, "",                                         \
-      "Time from a change to its being handed to a listener's connection, durability included; "   \
-      "once for each listener.")                                                                   \
+      "Time from a change until its event is handed to the connection of an event stream, "        \
+      "including the time to make it durable; once for each stream.")                              \
     X(BEHIND, "hedge_event_streams_behind_total", COUNTER, "",                                     \
-      "How often a listener was so far behind that it was told to fetch the mesh anew.")           \
+      "How often an event stream was so far behind that its client was told to fetch the mesh "    \
+      "again.")                                                                                    \
     /* jobs */                                                                                     \
     X(JOBS, "hedge_jobs", GAUGE, "state", "Jobs that the server knows, by state.")                 \
-    X(JOBS_ENDED, "hedge_jobs_ended_total", COUNTER, "state", "Jobs that ended, by how.")          \
-    X(JOB_WAIT, "hedge_job_wait_seconds", HISTOGRAM, "", "How long jobs waited to be begun.")      \
+    X(JOBS_ENDED, "hedge_jobs_ended_total", COUNTER, "state",                                      \
+      "Jobs that ended, by their last state.")                                                     \
+    X(JOB_WAIT, "hedge_job_wait_seconds", HISTOGRAM, "",                                           \
+      "How long jobs waited before they started.")                                                 \
     X(JOB_TIME, "hedge_job_duration_seconds", HISTOGRAM, "", "How long jobs ran.")                 \
     /* the store */                                                                                \
     X(STORE_STATE, "hedge_store_state", GAUGE, "state",                                            \
-      "1 for the state that the store is in, 0 for the other states: writable, full when the "     \
-      "disk has no space, failed when changes are refused until a restart.")                       \
+      "1 for the state of the store, 0 for the other states: writable, full (the disk has no "     \
+      "space), failed (changes are refused until a restart).")                                     \
     X(DISK_FULL, "hedge_store_disk_full_total", COUNTER, "", "How often the disk was found full.") \
     X(COMMIT_TIME, "hedge_store_commit_duration_seconds", HISTOGRAM, "",                           \
-      "How long a group of changes took to be written and synced; its count is that of commits.")  \
+      "How long a group of changes took to be written and synced; the count is the number of "     \
+      "commits.")                                                                                  \
     X(SYNC_TIME, "hedge_store_sync_duration_seconds", HISTOGRAM, "",                               \
-      "How long the last step of a transaction took: writing to the -wal and syncing it.")         \
+      "How long the last step of a transaction took: writing to the -wal file and syncing it.")    \
     X(GROUP_SIZE, "hedge_store_commit_records", HISTOGRAM, "",                                     \
       "Changes that were committed together.")                                                     \
     X(PENDING, "hedge_store_records_pending", GAUGE, "",                                           \
@@ -97,22 +105,24 @@
       "Changes that could not be made durable; none of them was acknowledged.")                    \
     X(QUEUE, "hedge_store_queue_bytes", GAUGE, "", "Bytes of changes that wait for the disk.")     \
     X(QUEUE_LIMIT, "hedge_store_queue_limit_bytes", GAUGE, "",                                     \
-      "Bytes that may wait; changes beyond are refused with store_behind.")                        \
+      "Bytes of changes that may wait for the disk; further changes are refused with "             \
+      "store_behind.")                                                                             \
     X(WAL, "hedge_store_wal_bytes", GAUGE, "",                                                     \
       "Bytes of the -wal file that are in use, as of the last commit.")                            \
     X(CHECKPOINT_TIME, "hedge_store_checkpoint_duration_seconds", HISTOGRAM, "",                   \
-      "How long the -wal took to be written back into the database.")                              \
+      "How long the -wal file took to be written back into the database.")                         \
     /* threads */                                                                                  \
     X(POOL_WAITING, "hedge_pool_tasks_waiting", GAUGE, "pool,share",                               \
-      "Tasks that wait for a thread. Pool work has the shares brief (a client waits, and not for " \
-      "long), long (a client waits) and job; pool answers makes pieces of answers.")               \
-    X(POOL_LIMIT, "hedge_pool_tasks_waiting_limit", GAUGE, "pool,share", "Tasks that may wait.")   \
+      "Tasks that wait for a thread. The pool work has the shares brief (short requests), long "   \
+      "(long requests) and job (jobs); the pool answers produces parts of answers.")               \
+    X(POOL_LIMIT, "hedge_pool_tasks_waiting_limit", GAUGE, "pool,share",                           \
+      "Tasks that may wait for a thread.")                                                         \
     X(POOL_RUNNING, "hedge_pool_tasks_running", GAUGE, "pool,share", "Tasks that run.")            \
     X(POOL_REFUSED, "hedge_pool_tasks_refused_total", COUNTER, "pool,share",                       \
-      "Tasks that were refused since as many waited as may.")                                      \
+      "Tasks that were refused because too many were waiting.")                                    \
     /* the program */                                                                              \
     X(LOG_DROPPED, "hedge_log_lines_dropped_total", COUNTER, "",                                   \
-      "Lines of the log that were dropped since they were not read in time.")                      \
+      "Lines of the log that were dropped because they were not read in time.")                    \
     X(BUILD_INFO, "hedge_build_info", GAUGE, "version,commit",                                     \
       "1, with the version and the commit that the server was built from.")                        \
     X(PROCESSOR, "process_cpu_seconds_total", COUNTER, "", "Processor time that was spent.")       \

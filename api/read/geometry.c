@@ -62,9 +62,11 @@ static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, cons
         const he_delta *delta = st_revision_delta(x->mesh, r);
         records += delta == NULL ? 0 : delta->count + 1;
         if (delta == NULL) {
-            status = he_fail_plain(err, HE_UNSUPPORTED, "the history does not reach back");
+            status = he_fail_plain(err, HE_UNSUPPORTED,
+                                   "the history does not reach back to the last drawn revision");
         } else if (records > most) {
-            status = he_fail_plain(err, HE_LIMIT, "the way forward is too long");
+            status = he_fail_plain(err, HE_LIMIT,
+                                   "there are too many changes since the last drawn revision");
         } else {
             status = he_touched_add(&touched, mesh, delta, err);
         }

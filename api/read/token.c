@@ -30,14 +30,14 @@ static void write_prefixes(api_out *out, const void *value)
 
 static const api_field token_fields[] = {
     API_FIELD("name", "text?", rights, name, .required = true,
-              .doc = "Null if the server needs no tokens."),
+              .doc = "The name of the token; null if the server needs no tokens."),
     API_FIELD("role", "#role_name", rights, role, .required = true),
     API_FIELD_MADE("prefixes", "*text", write_prefixes, .required = true,
-                   .doc =
-                       "The token sees only meshes whose ids begin with one of these; if the list "
-                       "is empty, all."),
+                   .doc = "The token can use only meshes whose ids begin with one of these "
+                          "prefixes; if the list is empty, it can use all meshes."),
     API_FIELD("expires", "time?", rights, expires, .required = true,
-              .known = API_KNOWN(rights, ends), .doc = "Null: never."),
+              .known = API_KNOWN(rights, ends),
+              .doc = "When the token expires; null if it never does."),
 };
 const api_record api_token_record = {"token", token_fields,
                                      sizeof token_fields / sizeof *token_fields};
@@ -49,7 +49,7 @@ typedef struct ticket {
 
 static const api_field ticket_fields[] = {
     API_FIELD("path", "text", ticket, path, .required = true,
-              .doc = "The path with the ticket at its end."),
+              .doc = "The path of the request, with the ticket added at its end."),
     API_FIELD("expires", "time", ticket, expires, .required = true),
 };
 const api_record api_ticket_record = {"ticket", ticket_fields,
@@ -98,7 +98,8 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
     }
     for (const char *c = target; *c != '\0'; c++) {
         if (*c <= ' ' || *c > '~' || *c == '#') {
-            return api_in_fail(in, API_BAD_PATH, "a path cannot contain byte %zu of this one",
+            return api_in_fail(in, API_BAD_PATH,
+                               "byte %zu of the path is a character that a path cannot contain",
                                (size_t)(c - target));
         }
     }

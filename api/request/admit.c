@@ -305,8 +305,9 @@ bool api_refuse_size(api_exchange *x)
     if (x->route->body_kind == API_BODY_NONE) {
         return api_fail(x, API_UNEXPECTED_BODY, "%s must not have a body here", x->request.method);
     }
-    return api_fail(x, API_BODY_TOO_LARGE, "the body %s %llu bytes",
-                    x->decompressor == NULL ? "exceeds" : "decompresses to more than",
+    return api_fail(x, API_BODY_TOO_LARGE,
+                    x->decompressor == NULL ? "the body exceeds %llu bytes"
+                                            : "the body decompresses to more than %llu bytes",
                     (unsigned long long)api_body_cap(x));
 }
 
@@ -333,7 +334,7 @@ bool api_refuse_format(api_exchange *x, const char *detail)
                                  format->choices[i]);
         assert(used < sizeof names);
     }
-    api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s: name the format with ?format=, one of %s", detail,
+    api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s: give the format with ?format=, one of %s", detail,
              names);
     x->problem.supported = x->route->consumes;
     return false;
@@ -358,7 +359,7 @@ static bool check_content_type(api_exchange *x)
     }
     char text[140] = "the body has no Content-Type";
     if (type != NULL) {
-        snprintf(text, sizeof text, "\"%.100s\" is not read here", type);
+        snprintf(text, sizeof text, "the Content-Type \"%.100s\" is not accepted here", type);
     }
     if (x->route->body_kind == API_BODY_UPLOAD) {
         if (is_generic(type) && api_param_text(x, "format") != NULL) {

@@ -36,7 +36,7 @@ static bool refuse_unknown(api_exchange *x, bool has_token)
 static bool refuse_role(api_exchange *x, api_role needed)
 {
     const char *role = api_role_name(needed);
-    api_fail(x, API_FORBIDDEN, "this needs a token with the role \"%s\"", role);
+    api_fail(x, API_FORBIDDEN, "this request needs a token with the role \"%s\"", role);
     x->problem.role = role;
     return false;
 }

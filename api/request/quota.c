@@ -32,9 +32,10 @@ bool api_service_apply_quotas(api_service *service)
 static bool refuse_bytes(api_exchange *x, const st_usage *usage)
 {
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESH_BYTES);
-    return api_fail(x, API_QUOTA,
-                    "the meshes of this token may take %llu bytes in all, and take %llu",
-                    (unsigned long long)usage->most_bytes, (unsigned long long)usage->bytes);
+    return api_fail(
+        x, API_QUOTA,
+        "the meshes of this token may take %llu bytes of memory in all, and now take %llu",
+        (unsigned long long)usage->most_bytes, (unsigned long long)usage->bytes);
 }
 
 bool api_quota_fail_new(api_exchange *x)
@@ -45,7 +46,7 @@ bool api_quota_fail_new(api_exchange *x)
         return refuse_bytes(x, &usage);
     }
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESHES);
-    return api_fail(x, API_QUOTA, "this token may have %llu meshes, and has %llu",
+    return api_fail(x, API_QUOTA, "this token may have %llu meshes, and now has %llu",
                     (unsigned long long)usage.most_meshes, (unsigned long long)usage.meshes);
 }
 
@@ -59,5 +60,5 @@ bool api_quota_fail(api_exchange *x)
     }
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESH_BYTES);
     return api_fail(x, API_QUOTA,
-                    "the meshes of the token that made this one may not take more memory");
+                    "the meshes of the token that created this mesh may not take more memory");
 }

@@ -71,7 +71,9 @@ bool api_role_find(const char *text, size_t length, api_role *out)
 static bool read_name(const reader *r, word w, api_token *out)
 {
     if (!api_token_is_name(w.at, w.length)) {
-        return fail(r, "the name (field 1) is not 1 to %d of A-Z a-z 0-9 . _ -, or is a token",
+        return fail(r,
+                    "the name (field 1) is not 1 to %d of the characters A-Z a-z 0-9 . _ -, or is "
+                    "itself a token",
                     API_TOKEN_NAME);
     }
     memcpy(out->name, w.at, w.length);
@@ -102,8 +104,8 @@ static bool read_hash(const reader *r, word w, api_token *out)
         good = high >= 0 && low >= 0;
         out->hash[i] = (unsigned char)(good ? high << 4 | low : 0);
     }
-    return good ||
-           fail(r, "the hash (field 3) is not sha256: and %d digits 0-9 a-f", 2 * API_TOKEN_HASH);
+    return good || fail(r, "the hash (field 3) is not \"sha256:\" followed by %d digits 0-9 a-f",
+                        2 * API_TOKEN_HASH);
 }
 
 static bool read_prefixes(const reader *r, word w, api_token *out)
@@ -116,8 +118,8 @@ static bool read_prefixes(const reader *r, word w, api_token *out)
             return fail(r, "a token takes at most %d prefixes", API_TOKEN_PREFIXES);
         }
         if (!is_of_ids(prefix, API_TOKEN_PREFIX)) {
-            return fail(r, "prefix %zu is not 1 to %d of A-Z a-z 0-9 . _ -", out->prefix_count + 1,
-                        API_TOKEN_PREFIX);
+            return fail(r, "prefix %zu is not 1 to %d of the characters A-Z a-z 0-9 . _ -",
+                        out->prefix_count + 1, API_TOKEN_PREFIX);
         }
         memcpy(out->prefixes[out->prefix_count++], prefix.at, prefix.length);
         at = comma == NULL ? NULL : comma + 1;
@@ -222,7 +224,7 @@ static bool read_setting(const reader *r, word w, unsigned *seen, api_token *out
     const api_limit limit = find_limit((word){w.at, name});
     return limit != API_LIMIT_COUNT
                ? read_limit(r, limit, (word){equals + 1, w.length - name - 1}, out)
-               : fail(r, "what follows the hash is prefix=, expires=, or a limit: requests=, "
+               : fail(r, "a field after the hash must be prefix=, expires=, or a limit: requests=, "
                          "bytes=, jobs=, meshes= or mesh-bytes=");
 }
 
@@ -354,10 +356,10 @@ static bool add_token(reader *r, const char *at, size_t length, gathered *to)
     const api_token *other =
         met_find(&to->names, list, offsetof(api_token, name), sizeof token->name);
     if (other != NULL) {
-        return fail(r, "the name is that of line %zu", other->line);
+        return fail(r, "line %zu has the same name", other->line);
     }
     other = met_find(&to->hashes, list, offsetof(api_token, hash), sizeof token->hash);
-    return other == NULL || fail(r, "the hash is that of line %zu", other->line);
+    return other == NULL || fail(r, "line %zu has the same hash", other->line);
 }
 
 static bool read_lines(reader *r, const char *at, const char *end, gathered *to)
@@ -379,7 +381,7 @@ static bool read_lines(reader *r, const char *at, const char *end, gathered *to)
         at = newline == NULL ? end : newline + 1;
     }
     r->line = 0;
-    return to->list.count > 0 || fail(r, "there is no token in it");
+    return to->list.count > 0 || fail(r, "the file has no token");
 }
 
 bool api_token_file_read(const char *bytes, size_t length, api_token_list *out,

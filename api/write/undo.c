@@ -43,7 +43,7 @@ static bool read_request(api_exchange *x, steps *s)
 
 static const char *name_of(const steps *s)
 {
-    return s->which == ST_UNDO ? "undo" : "do again";
+    return s->which == ST_UNDO ? "undo" : "redo";
 }
 
 static void refuse(api_exchange *x, const steps *s, st_status status)
@@ -52,8 +52,9 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     uint32_t left = s->which == ST_UNDO ? x->info.undo : x->info.redo;
     if (status == ST_NOTHING) {
         api_fail(x, s->which == ST_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
-                 left == 0 ? "no edit is left to %s at revision %llu"
-                           : "fewer edits are left to %s at revision %llu than are asked for",
+                 left == 0
+                     ? "no edit is left to %s at revision %llu"
+                     : "fewer edits are left to %s at revision %llu than the request asks for",
                  name_of(s), present);
     } else if (status == ST_AHEAD) {
         api_in_fail(&s->to, API_NO_SUCH_REVISION,
@@ -64,8 +65,7 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
                     to);
     } else if (status == ST_ELSEWHERE) {
         api_in_fail(&s->to, API_UNREACHABLE_REVISION,
-                    "there is no number of steps to %s that leads to revision %llu", name_of(s),
-                    to);
+                    "no number of steps to %s leads to revision %llu", name_of(s), to);
     } else {
         api_fail_store(x, status);
     }

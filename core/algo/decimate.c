@@ -163,7 +163,7 @@ static he_status fill_queue(he_decimation *d, he_error *err)
 {
     const he_mesh *m = d->mesh;
     uint32_t issued = m->c.edges.issued;
-    he_status status = he_progress_phase(m->progress, "costing edges", 0.3, err);
+    he_status status = he_progress_phase(m->progress, "computing costs of edges", 0.3, err);
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
         status = he_progress_at(m->progress, e, issued, err);
         if (he_edge_is_live(m, (he_edge){e})) {

@@ -181,7 +181,8 @@ static uint64_t rows_of(const he_sizes *s)
 
 /* Computes the sizes after each step; fails if they are too large. A step multiplies sizes by at
  * most seven, so 64 bits are enough, and numbers of rows within the limit fit into ids. */
-_Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS, "the limit is below the number of ids");
+_Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS,
+               "HE_SUBDIVIDE_ROWS must be below the number of ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
                           he_error *err)
 {
@@ -307,8 +308,7 @@ static he_status prepare(he_subdivide_step *s, he_error *err)
         failed |= s->degree == NULL || (s->sharp == NULL && !smooth);
     }
     if (failed) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look at %u vertices",
-                             c->vertices.live);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to check %u vertices", c->vertices.live);
     }
     if (s->scheme != HE_LINEAR) {
         count_edges(s);
@@ -371,7 +371,7 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement
         status = he_subdivide_place(s, s->from->position, s->to->position, err);
     }
     if (status == HE_OK && s->from->column_count > 0) {
-        status = he_progress_phase(s->progress, "carrying attributes", to, err);
+        status = he_progress_phase(s->progress, "interpolating attributes", to, err);
     }
     return status == HE_OK ? he_subdivide_attributes(s, err) : status;
 }

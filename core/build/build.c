@@ -12,14 +12,18 @@ void he_defect_text(const he_defect *d, char *text, size_t size)
 {
     const char *title = he_status_title(d->reason);
     if (d->kind == HE_VERTEX) {
-        snprintf(text, size, "vertex %u: a closed fan shares it with another fan", d->id);
+        snprintf(text, size, "vertex %u: a closed fan of faces shares the vertex with another fan",
+                 d->id);
     } else if (d->other != HE_NONE) {
         snprintf(text, size, "face %u, edge %u-%u: %s", d->id, d->vertex, d->other,
-                 d->reason == HE_ORIENTATION ? "another face runs along it in the same direction"
-                                             : "two other faces already have it");
+                 d->reason == HE_ORIENTATION
+                     ? "another face runs along the edge in the same direction"
+                     : "two other faces already use the edge");
     } else if (d->vertex != HE_NONE) {
-        snprintf(text, size, "face %u, corner %u: %s vertex %u", d->id, d->corner,
-                 d->reason == HE_BAD_INDEX ? "there is no" : "it visits twice the", d->vertex);
+        snprintf(text, size,
+                 d->reason == HE_BAD_INDEX ? "face %u, corner %u: there is no vertex %u"
+                                           : "face %u, corner %u: the face uses vertex %u twice",
+                 d->id, d->corner, d->vertex);
     } else {
         snprintf(text, size, "face %u: %s", d->id, title);
     }

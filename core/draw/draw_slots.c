@@ -153,7 +153,8 @@ static he_status reserve(he_draw_slots *s, const he_mesh *m, uint64_t slots, he_
     }
     if (!grow(&s->first, &s->first_capacity, m->c.faces.issued) ||
         !grow(&s->owner, &s->owner_capacity, (size_t)slots)) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the places of triangles");
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory for the positions of triangles in the arrays");
     }
     return HE_OK;
 }
@@ -170,7 +171,8 @@ he_status he_draw_slots_new(const he_mesh *m, uint64_t layout, uint64_t revision
 {
     he_draw_slots *s = he_mem_zero(1, sizeof *s);
     if (s == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the places of triangles");
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory for the positions of triangles in the arrays");
     }
     uint64_t corners = 2 * (uint64_t)m->c.edges.live - m->c.boundary_halfedges;
     he_status status = reserve(s, m, corners - 2 * (uint64_t)m->c.faces.live, err);
@@ -246,7 +248,7 @@ static he_status reserve_step(he_draw_slots *s, size_t vertices, size_t slots, h
         size_t capacity = he_mem_grown(s->step_capacity, s->step_count + 1);
         he_draw_slot_step *steps = he_mem_array(s->steps, capacity, sizeof *steps);
         if (steps == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory to note what changed");
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory to record the changes");
         }
         s->steps = steps;
         s->step_capacity = capacity;
@@ -265,7 +267,8 @@ he_status he_draw_slots_changed(const he_draw_slots *s, uint64_t since, uint64_t
                                 he_ids *vertices, he_ids *triangles, he_error *err)
 {
     if (since < s->known) {
-        return he_fail_plain(err, HE_UNSUPPORTED, "what changed is not remembered");
+        return he_fail_plain(err, HE_UNSUPPORTED,
+                             "the changes since that revision are no longer recorded");
     }
     size_t step = s->step_count;
     while (step > 0 && s->steps[step - 1].revision > since) {
@@ -278,7 +281,7 @@ he_status he_draw_slots_changed(const he_draw_slots *s, uint64_t since, uint64_t
     size_t t = step == 0 ? 0 : s->steps[step - 1].slots;
     size_t v_count = s->changed_vertices.count - v, t_count = s->changed_slots.count - t;
     if (v_count + t_count > most) {
-        return he_fail_plain(err, HE_LIMIT, "%zu changes are noted", v_count + t_count);
+        return he_fail_plain(err, HE_LIMIT, "%zu changes are recorded", v_count + t_count);
     }
     he_status status = he_ids_reserve(vertices, v_count, err);
     if (status == HE_OK) {
@@ -375,7 +378,7 @@ typedef struct budget {
 static he_status spend(budget *b, uint64_t steps, he_error *err)
 {
     if (steps > b->left) {
-        return he_fail_plain(err, HE_LIMIT, "bringing the triangles forward takes too many steps");
+        return he_fail_plain(err, HE_LIMIT, "updating the triangles takes too many steps");
     }
     b->left -= steps;
     return HE_OK;
@@ -427,14 +430,16 @@ static he_status check_frame(const he_draw_slots *s, const he_mesh *m, const he_
     for (size_t i = 0; i < t->vertices.count; i++) {
         uint32_t v = t->vertices.ids[i];
         if (m->c.vertex_halfedge[v] != HE_DEAD && !is_in_ball(&s->frame, m->c.position[v])) {
-            return he_fail(err, HE_UNSUPPORTED, HE_VERTEX, v, "vertex %u left the frame", v);
+            return he_fail(err, HE_UNSUPPORTED, HE_VERTEX, v,
+                           "vertex %u moved outside the bounds of the drawing", v);
         }
     }
     if (t->moved.count > m->c.vertices.live / 2) {
         he_frame frame = he_frame_of(m);
         he_vec3 shift = he_vec3_sub(frame.origin, s->frame.origin);
         if (frame.scale != s->frame.scale || he_vec3_extent(shift) != 0) {
-            return he_fail_plain(err, HE_UNSUPPORTED, "most vertices moved to another frame");
+            return he_fail_plain(err, HE_UNSUPPORTED,
+                                 "most vertices moved, so that the drawing needs other bounds");
         }
     }
     return HE_OK;
@@ -527,7 +532,8 @@ he_status he_draw_slots_advance(he_draw_slots *s, const he_mesh *m, he_touched *
                 (he_draw_slot_step){revision, s->changed_vertices.count, s->changed_slots.count};
         }
         if (s->dead > s->count / 2) {
-            status = he_fail_plain(err, HE_UNSUPPORTED, "more than half of the slots are dead");
+            status = he_fail_plain(err, HE_UNSUPPORTED,
+                                   "more than half of the rows of triangles are unused");
         }
     }
     he_mem_free(r.length);

@@ -75,7 +75,7 @@ static const he_format formats[] = {
     },
     {
         .name = "obj",
-        .doc = "Wavefront OBJ, polygons only; its materials are in a library of their own, mtl",
+        .doc = "Wavefront OBJ, polygons only; its materials are in a separate file, mtl",
         .media_types = LIST("model/obj", "text/x-obj"),
         .extensions = LIST("obj"),
         .encodings = LIST("ascii"),
@@ -88,7 +88,7 @@ static const he_format formats[] = {
     },
     {
         .name = "mtl",
-        .doc = "Material library of Wavefront OBJ; it is read where it comes with its OBJ file",
+        .doc = "Material library of Wavefront OBJ; read only together with its OBJ file",
         .media_types = LIST("model/mtl"),
         .extensions = LIST("mtl"),
         .encodings = LIST("ascii"),

@@ -105,11 +105,11 @@ void st_unpacker_free(st_unpacker *unpacker)
 st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why)
 {
     const unsigned long long said = ZSTD_getFrameContentSize(packed.bytes, packed.size);
-    *why = "it is no zstd frame that says how long it is";
+    *why = "it is not a zstd frame that declares its length";
     if (said == ZSTD_CONTENTSIZE_UNKNOWN || said == ZSTD_CONTENTSIZE_ERROR) {
         return ST_DAMAGED;
     }
-    *why = "it is longer than a part may be";
+    *why = "it declares more bytes than a part may have";
     if (said > sizeof unpacker->part) {
         return ST_DAMAGED;
     }
@@ -119,7 +119,7 @@ st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, co
         *why = ZSTD_getErrorName(got);
         return ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation ? ST_NO_MEMORY : ST_DAMAGED;
     }
-    *why = "it is shorter than it says";
+    *why = "it decompresses to fewer bytes than it declares";
     if (got != said) {
         return ST_DAMAGED;
     }

@@ -187,14 +187,16 @@ static he_status read_rest(he_cursor *c, st_frame *out, he_error *err)
         return he_refuse_at(c, err, "the totals in the record are cut short");
     }
     if (he_left(c) > 0 && (out->in_parts || !has_body(r->kind))) {
-        return he_refuse_at(c, err, "the record has a body, and its kind has none");
+        return he_refuse_at(c, err,
+                            "the record has a body, which a record of its kind cannot have");
     }
     if (out->in_parts && !has_body(r->kind)) {
-        return he_refuse_at(c, err,
-                            "the record has its content in parts, and its kind has no content");
+        return he_refuse_at(
+            c, err, "the record has its content in parts, but a record of its kind has no content");
     }
     if (r->staged_edit && (!out->in_parts || r->kind != ST_RECORD_EDIT)) {
-        return he_refuse_at(c, err, "the record has its body in parts, and is not an edit");
+        return he_refuse_at(c, err,
+                            "the record has its body in parts, which only an edit can have");
     }
     r->body = c->at;
     r->body_size = he_left(c);

@@ -59,24 +59,24 @@ static void check_edge_links(checker *c, uint32_t e)
         if (dead) {
             if (k->next[h] != HE_DEAD || k->prev[h] != HE_DEAD || k->origin[h] != HE_DEAD ||
                 k->face[h] != HE_DEAD) {
-                broken(c, 12, (element){HE_EDGE, e}, "dead edge %u still has links", e);
+                broken(c, 12, (element){HE_EDGE, e}, "deleted edge %u still has links", e);
             }
             continue;
         }
         if (!halfedge_lives(c->m, k->next[h])) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "next %u of halfedge %u does not live",
+            broken(c, 1, (element){HE_HALFEDGE, h}, "next %u of halfedge %u does not exist",
                    k->next[h], h);
         }
         if (!halfedge_lives(c->m, k->prev[h])) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "prev %u of halfedge %u does not live",
+            broken(c, 1, (element){HE_HALFEDGE, h}, "prev %u of halfedge %u does not exist",
                    k->prev[h], h);
         }
         if (!he_vertex_is_live(c->m, (he_vertex){k->origin[h]})) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "origin %u of halfedge %u does not live",
+            broken(c, 1, (element){HE_HALFEDGE, h}, "origin %u of halfedge %u does not exist",
                    k->origin[h], h);
         }
         if (k->face[h] != HE_NONE && !he_face_is_live(c->m, (he_face){k->face[h]})) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "face %u of halfedge %u does not live",
+            broken(c, 1, (element){HE_HALFEDGE, h}, "face %u of halfedge %u does not exist",
                    k->face[h], h);
         }
     }
@@ -93,13 +93,13 @@ static void check_links(checker *c)
     for (uint32_t v = 0; v < k->vertices.issued && !enough(c); v++) {
         uint32_t h = k->vertex_halfedge[v];
         if (h != HE_DEAD && h != HE_NONE && !halfedge_lives(c->m, h)) {
-            broken(c, 8, (element){HE_VERTEX, v}, "halfedge %u of vertex %u does not live", h, v);
+            broken(c, 8, (element){HE_VERTEX, v}, "halfedge %u of vertex %u does not exist", h, v);
         }
     }
     for (uint32_t f = 0; f < k->faces.issued && !enough(c); f++) {
         uint32_t h = k->face_halfedge[f];
         if (h != HE_DEAD && !halfedge_lives(c->m, h)) {
-            broken(c, 6, (element){HE_FACE, f}, "halfedge %u of face %u does not live", h, f);
+            broken(c, 6, (element){HE_FACE, f}, "halfedge %u of face %u does not exist", h, f);
         }
     }
 }
@@ -156,7 +156,7 @@ static void check_face(checker *c, uint32_t f)
         he_bits_set(c->in_face, h);
         uint32_t v = k->origin[h];
         if (c->stamp[v] == f + 1) {
-            broken(c, 7, (element){HE_FACE, f}, "face %u visits vertex %u twice", f, v);
+            broken(c, 7, (element){HE_FACE, f}, "face %u uses vertex %u twice", f, v);
         }
         c->stamp[v] = f + 1;
         degree++;
@@ -195,7 +195,8 @@ static void check_ring(checker *c, uint32_t v)
     bool boundary = false;
     do {
         if (he_bits_get(c->in_ring, h) || k->origin[h] != v) {
-            broken(c, 9, (element){HE_VERTEX, v}, "turning about vertex %u does not come back", v);
+            broken(c, 9, (element){HE_VERTEX, v},
+                   "the half-edges around vertex %u do not lead back to the first", v);
             return;
         }
         he_bits_set(c->in_ring, h);
@@ -203,7 +204,7 @@ static void check_ring(checker *c, uint32_t v)
         uint32_t target = k->origin[h ^ 1];
         if (target > v && c->stamp[target] == v + 1) {
             broken(c, 10, (element){HE_EDGE, h >> 1},
-                   "edge %u is not the only one between %u and %u", h >> 1, v, target);
+                   "edge %u is not the only edge between vertices %u and %u", h >> 1, v, target);
         }
         c->stamp[target] = v + 1;
         h = k->prev[h] ^ 1;
@@ -233,7 +234,7 @@ static void check_vertices(checker *c)
             uint32_t v = k->origin[h];
             bool isolated = k->vertex_halfedge[v] == HE_NONE;
             broken(c, isolated ? 8 : 9, (element){HE_VERTEX, v},
-                   "turning about vertex %u misses halfedge %u", v, h);
+                   "the half-edges around vertex %u do not include halfedge %u", v, h);
         }
     }
 }
@@ -241,7 +242,7 @@ static void check_vertices(checker *c)
 static void check_count(checker *c, const char *what, uint32_t stored, uint32_t counted)
 {
     if (stored != counted) {
-        broken(c, 12, (element){HE_MESH_KIND, 0}, "%u %s are counted, there are %u", stored, what,
+        broken(c, 12, (element){HE_MESH_KIND, 0}, "the mesh counts %u %s, but has %u", stored, what,
                counted);
     }
 }
@@ -251,8 +252,9 @@ static void check_dead_attributes(checker *c, const he_column *column)
     for (size_t row = 0; row < column->rows && !enough(c); row++) {
         if (!he_mesh_is_live(c->m, column->domain, (uint32_t)row) &&
             memcmp(he_column_row(column, row), column->fallback, column->row_bytes) != 0) {
-            broken(c, 12, (element){column->domain, (uint32_t)row}, "dead %s %zu has a value of %s",
-                   he_kind_name(column->domain), row, column->name);
+            broken(c, 12, (element){column->domain, (uint32_t)row},
+                   "deleted %s %zu has a value of attribute %s", he_kind_name(column->domain), row,
+                   column->name);
         }
     }
 }
@@ -265,7 +267,7 @@ static void check_rows(checker *c)
         vertices += k->vertex_halfedge[v] != HE_DEAD;
         he_vec3 p = k->position[v];
         if (k->vertex_halfedge[v] == HE_DEAD && (p.x != 0 || p.y != 0 || p.z != 0)) {
-            broken(c, 12, (element){HE_VERTEX, v}, "dead vertex %u has a position", v);
+            broken(c, 12, (element){HE_VERTEX, v}, "deleted vertex %u has a position", v);
         }
     }
     for (uint32_t h = 0; h < 2 * k->edges.issued; h++) {

@@ -119,7 +119,8 @@ he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_erro
     size_t mask = ((size_t)1 << bits) - 1, kept = from;
     size_t *table = he_mem_zero(mask + 1, sizeof *table);
     if (table == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to fold %zu records", d->count - from);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to combine %zu changes",
+                             d->count - from);
     }
     he_status status = HE_OK;
     size_t i = from;

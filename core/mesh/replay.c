@@ -96,7 +96,7 @@ static he_status copy_object(void *object, uint32_t of, void **out, he_error *er
     }
     he_content *copy = he_mem_zero(1, sizeof *copy);
     if (copy == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the content before");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the content before an edit");
     }
     *out = copy;
     return he_content_copy(object, NULL, copy, err);
@@ -123,7 +123,7 @@ static he_status side_of(const he_delta *delta, uint64_t key, other_side **out, 
 {
     other_side *side = side_new(key, delta->object_count);
     if (side == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the other side of an edit");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the inverse of an edit");
     }
     for (size_t i = 0; i < delta->count; i++) {
         const he_record *r = &delta->records[i];

@@ -155,9 +155,10 @@ const he_op he_face_rows[] = {
                                           .kind = HE_VERTEX,
                                           .flags = HE_REQUIRED | HE_WALKS,
                                           .doc = "The corners, counter-clockwise."}},
-        .results = {[FACE_ADD_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
-                    [FACE_ADD_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                            "The new edges, in the order of its sides."}},
+        .results =
+            {[FACE_ADD_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
+             [FACE_ADD_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                     "The new edges, in the order of the sides of the face."}},
         .refusals = {HE_TOO_FEW_CORNERS, HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_CORNER,
                      HE_INTERIOR_VERTEX, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN},
         .change = {0, HE_VARIES, 1},

@@ -80,16 +80,15 @@ const he_op he_material_rows[] = {
                                          .flags = HE_RANGE | HE_DERIVED,
                                          .max = 1,
                                          .doc = "From 0 (a mirror) to 1. A new material has 1."},
-             [MATERIAL_SET_EMISSION] =
-                 {.name = "emission",
-                  .type = HE_PARAM_COLOR,
-                  .doc =
-                      "The light that it emits: linear red, green and blue, which may be above 1."},
-             [MATERIAL_SET_TWO_SIDED] =
-                 {.name = "two_sided",
-                  .type = HE_PARAM_FLAG,
-                  .flags = HE_DERIVED,
-                  .doc = "Are its faces visible from behind? Those of a new material are not."},
+             [MATERIAL_SET_EMISSION] = {.name = "emission",
+                                        .type = HE_PARAM_COLOR,
+                                        .doc = "The light that the material emits: linear red, "
+                                               "green and blue, which may be above 1."},
+             [MATERIAL_SET_TWO_SIDED] = {.name = "two_sided",
+                                         .type = HE_PARAM_FLAG,
+                                         .flags = HE_DERIVED,
+                                         .doc = "Whether faces of the material are visible from "
+                                                "behind. Those of a new material are not."},
              [MATERIAL_SET_FACES] =
                  {.name = "face",
                   .plural = "faces",

@@ -113,17 +113,18 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
         .name = "point", .type = HE_PARAM_POINT, .flags = HE_REQUIRED, \
         .doc = "Any point of the plane."                               \
     }
-#define PLANE_NORMAL                                                                            \
-    {                                                                                           \
-        .name = "normal", .type = HE_PARAM_POINT, .flags = HE_REQUIRED,                         \
-        .doc = "The direction of its normal. Its length does not matter, but must not be zero." \
+#define PLANE_NORMAL                                                                               \
+    {                                                                                              \
+        .name = "normal", .type = HE_PARAM_POINT, .flags = HE_REQUIRED,                            \
+        .doc = "The direction of the plane's normal. Its length does not matter, but must not be " \
+               "zero."                                                                             \
     }
-#define PLANE_TOLERANCE                                                                  \
-    {                                                                                    \
-        .name = "tolerance", .type = HE_PARAM_NUMBER, .flags = HE_DERIVED,               \
-        .doc = "Vertices within this distance of the plane count as in it; 1e-9 of the " \
-               "longest side of the box around the edges when not given, or what "       \
-               "rounding needs where coordinates are larger than that."                  \
+#define PLANE_TOLERANCE                                                                            \
+    {                                                                                              \
+        .name = "tolerance", .type = HE_PARAM_NUMBER, .flags = HE_DERIVED,                         \
+        .doc = "Vertices within this distance of the plane count as in the plane. Default: 1e-9 "  \
+               "of the longest side of the bounding box of the edges, or more if the rounding of " \
+               "large coordinates needs it."                                                       \
     }
 #define EDGES_SPLIT                                                            \
     {                                                                          \
@@ -244,12 +245,15 @@ const he_op he_mesh_rows[] = {
         .name = "compact",
         .doc = "Renumber all elements without gaps. All ids change, and the history is cleared.",
         .size = HE_OP_WHOLE,
-        .results = {[COMPACT_OUT_VERTICES] = {"vertices", HE_RESULT_MAP, HE_VERTEX,
-                                              "For each old id the new one, or null."},
-                    [COMPACT_OUT_EDGES] = {"edges", HE_RESULT_MAP, HE_EDGE,
-                                           "For each old id the new one, or null."},
-                    [COMPACT_OUT_FACES] = {"faces", HE_RESULT_MAP, HE_FACE,
-                                           "For each old id the new one, or null."}},
+        .results = {[COMPACT_OUT_VERTICES] =
+                        {"vertices", HE_RESULT_MAP, HE_VERTEX,
+                         "For each old id the new id, or null if the element was deleted."},
+                    [COMPACT_OUT_EDGES] =
+                        {"edges", HE_RESULT_MAP, HE_EDGE,
+                         "For each old id the new id, or null if the element was deleted."},
+                    [COMPACT_OUT_FACES] =
+                        {"faces", HE_RESULT_MAP, HE_FACE,
+                         "For each old id the new id, or null if the element was deleted."}},
         .change = {0, 0, 0},
         .pace = 2,
         .run = run_compact,

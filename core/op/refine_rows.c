@@ -66,7 +66,7 @@ const he_op he_refine_rows[] = {
                                   .min = 1,
                                   .max = HE_SUBDIVIDE_STEPS,
                                   .fallback = 1,
-                                  .doc = "How many steps."}},
+                                  .doc = "How often to subdivide."}},
         .results = {[SUBDIVIDE_OUT_VERTICES] = {"vertices", HE_RESULT_COUNTS, HE_VERTEX,
                                                 "The number of vertices after each step."},
                     [SUBDIVIDE_OUT_EDGES] = {"edges", HE_RESULT_COUNTS, HE_EDGE,

@@ -191,12 +191,13 @@ const he_op he_vertex_rows[] = {
                   .flags = HE_REQUIRED | HE_NULLABLE,
                   .doc = "The faces counter-clockwise from this neighbour to `right` move to the "
                          "new vertex; null is the boundary."},
-             [VERTEX_SPLIT_RIGHT] =
-                 {.name = "right",
-                  .type = HE_PARAM_ELEMENT,
-                  .kind = HE_VERTEX,
-                  .flags = HE_REQUIRED | HE_NULLABLE,
-                  .doc = "The neighbour where these faces end; null is the boundary."},
+             [VERTEX_SPLIT_RIGHT] = {.name = "right",
+                                     .type = HE_PARAM_ELEMENT,
+                                     .kind = HE_VERTEX,
+                                     .flags = HE_REQUIRED | HE_NULLABLE,
+                                     .doc =
+                                         "The faces counter-clockwise from `left` to this "
+                                         "neighbour move to the new vertex; null is the boundary."},
              [VERTEX_SPLIT_TO] = {.name = "to",
                                   .type = HE_PARAM_POINT,
                                   .flags = HE_REQUIRED,
@@ -259,21 +260,18 @@ const he_op he_vertex_rows[] = {
     {
         .name = "vertex_bevel",
         .doc = "Bevel a vertex: replace it by a face across its edges.",
-        .params =
-            {[VERTEX_BEVEL_VERTEX] =
-                 {.name = "vertex",
-                  .type = HE_PARAM_ELEMENT,
-                  .kind = HE_VERTEX,
-                  .flags =
-                      HE_REQUIRED,
-                  .doc = "The vertex to bevel. It becomes the first corner of the new face."},
-             [VERTEX_BEVEL_WIDTH] =
-                 {.name = "width",
-                  .type = HE_PARAM_NUMBER,
-                  .flags =
-                      HE_REQUIRED,
-                  .doc = "How far from it each edge is cut, above 0; 99 % of an edge that is not "
-                         "longer."}},
+        .params = {[VERTEX_BEVEL_VERTEX] =
+                       {.name = "vertex",
+                        .type = HE_PARAM_ELEMENT,
+                        .kind = HE_VERTEX,
+                        .flags = HE_REQUIRED,
+                        .doc = "The vertex to bevel. It becomes the first corner of the new face."},
+                   [VERTEX_BEVEL_WIDTH] =
+                       {.name = "width",
+                        .type = HE_PARAM_NUMBER,
+                        .flags = HE_REQUIRED,
+                        .doc = "The distance from the vertex at which each edge is cut, above 0; "
+                               "an edge that is not longer is cut at 99 % of its length."}},
         .results = {[VERTEX_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                                    "The new vertices, counter-clockwise."},
                     [VERTEX_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,

@@ -19,7 +19,7 @@ typedef struct he_gather {
 
 static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
 {
-    return he_fail(err, HE_CORRUPT, kind, id, "the half-edges about %s %u do not close",
+    return he_fail(err, HE_CORRUPT, kind, id, "the half-edges around %s %u do not form a loop",
                    he_kind_name(kind), id);
 }
 
@@ -28,7 +28,7 @@ static he_status exhausted(const he_gather *g, he_kind kind, uint32_t id, he_err
     if (g->capped) {
         return corrupt(kind, id, err);
     }
-    return he_fail(err, HE_LIMIT, kind, id, "the answer grows too long at %s %u",
+    return he_fail(err, HE_LIMIT, kind, id, "the answer becomes too long at %s %u",
                    he_kind_name(kind), id);
 }
 

@@ -247,7 +247,7 @@ he_status he_bvh_new(const he_mesh *m, he_progress *progress, he_bvh **out, he_e
     tree->exponent = he_exponent_of(fmax(he_vec3_extent(bounds.min), he_vec3_extent(bounds.max)));
     tree->scale = ldexp(1, -tree->exponent);
     if (count > 0) {
-        status = he_progress_phase(progress, "sorting by place", 1, err);
+        status = he_progress_phase(progress, "sorting by position", 1, err);
         status = status == HE_OK ? build(tree, m, count, &budget, err) : status;
     }
     if (status != HE_OK) {

@@ -218,7 +218,7 @@ static he_status prepare(walk *w, he_error *err)
                             ? NULL
                             : he_mem_array(NULL, tree->count, HUBS * sizeof *w->search.hubs_of);
     if (w->commons == NULL || (tree->hubs.count > 0 && w->search.hubs_of == NULL)) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the hubs of %u triangles",
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the shared vertices of %u triangles",
                              tree->count);
     }
     if (w->search.hubs_of != NULL) {

@@ -182,7 +182,7 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
     }
     hubs->spokes = he_mem_array(NULL, (size_t)total, sizeof *hubs->spokes);
     if (hubs->spokes == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u hubs",
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u vertices",
                              hubs->count);
     }
     /* Each count first becomes the end of its hub's run of entries; filling the run from its last
@@ -225,7 +225,8 @@ static he_status find(search *s, he_hubs *out, he_error *err)
     qsort(list, count, sizeof *list, compare);
     hubs.places = he_mem_array(NULL, count, sizeof *hubs.places);
     if (hubs.places == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the places of %zu hubs", count);
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory for the positions of %zu vertices", count);
     } else {
         hubs.count = number_hubs(s, list, count, hubs.places);
     }

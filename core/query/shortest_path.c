@@ -9,7 +9,8 @@
 
 static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
 {
-    return he_fail(err, HE_CORRUPT, kind, id, "a walk from %s %u meets links that do not close",
+    return he_fail(err, HE_CORRUPT, kind, id,
+                   "the links of the mesh are damaged: a walk from %s %u does not end",
                    he_kind_name(kind), id);
 }
 

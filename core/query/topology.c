@@ -15,7 +15,7 @@ static he_status no_memory(he_error *err)
 
 static he_status broken(he_kind kind, uint32_t id, he_error *err)
 {
-    return he_fail(err, HE_CORRUPT, kind, id, "the links at %s %u lead nowhere", he_kind_name(kind),
+    return he_fail(err, HE_CORRUPT, kind, id, "the links at %s %u are damaged", he_kind_name(kind),
                    id);
 }
 

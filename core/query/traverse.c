@@ -14,7 +14,8 @@ static uint32_t halfedge_end(const he_mesh *m)
 
 static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
 {
-    return he_fail(err, HE_CORRUPT, kind, id, "a walk from %s %u meets links that do not close",
+    return he_fail(err, HE_CORRUPT, kind, id,
+                   "the links of the mesh are damaged: a walk from %s %u does not end",
                    he_kind_name(kind), id);
 }
 
@@ -187,7 +188,7 @@ he_status he_traverse_breadth_first(const he_mesh *m, const he_breadth_first *wa
 {
     if (walk->kind != HE_VERTEX && walk->kind != HE_FACE) {
         return he_fail_plain(err, HE_BAD_VALUE,
-                             "a breadth-first walk begins at a vertex or a face");
+                             "a breadth-first walk must begin at a vertex or a face");
     }
     he_status status = he_mesh_require(m, walk->kind, walk->from, err);
     if (status != HE_OK) {

@@ -15,7 +15,7 @@ static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
     out->corners = he_mem_array(NULL, soup->corner_count, sizeof *out->corners);
     out->starts = he_mem_array(NULL, soup->face_count, sizeof *out->starts);
     if (out->corners == NULL || out->starts == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look at %zu faces", soup->face_count);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to check %zu faces", soup->face_count);
     }
     if (soup->corner_count > 0) {
         memcpy(out->corners, soup->corners, soup->corner_count * sizeof *out->corners);
@@ -72,8 +72,7 @@ static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *ou
         after = he_mem_zero(edges + 1, sizeof *after);
     }
     if (status == HE_OK && (before == NULL || after == NULL)) {
-        status =
-            he_fail_plain(err, HE_NO_MEMORY, "no memory to look at %zu faces", soup->face_count);
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to check %zu faces", soup->face_count);
     }
     if (status == HE_OK) {
         for (size_t f = 0, kept = 0; f < soup->face_count; f++) {
@@ -114,7 +113,7 @@ static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *
     bool splits = false;
     he_status status = copy_faces(soup, &copy, err);
     if (status == HE_OK && done == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to look for repairs");
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to search for repairs");
     }
     bool goes_on = true;
     if (status == HE_OK && dropped != NULL) {
@@ -174,7 +173,7 @@ he_status he_repair_advise(he_soup *soup, unsigned asked, unsigned *out, he_erro
     }
     done = he_mem_zero(1, sizeof *done);
     if (done == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look for repairs");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to search for repairs");
     }
     he_mend m = {.soup = soup, .out = done};
     he_status status = he_mend_drop_degenerate(&m, err);

@@ -74,7 +74,8 @@ static bool has_marks(const he_mesh *content, const uint32_t issued[HE_KIND_COUN
 
 static st_status wrong_marks(load *l, const st_record *record)
 {
-    return damaged(l, "record %llu has issued other ids", (unsigned long long)record->number);
+    return damaged(l, "record %llu gave out other ids than it says",
+                   (unsigned long long)record->number);
 }
 
 /* --- contents --- */
@@ -248,7 +249,8 @@ static st_status take_edit_part(load *l, const st_piece *piece)
 {
     st_record *record = &l->pending;
     if (piece->coding != HE_CODING_PLAIN || piece->size > HE_STORED_PART) {
-        return damaged(l, "a part of the edit of record %llu is coded otherwise",
+        return damaged(l,
+                       "a part of the edit of record %llu has another coding than an edit may have",
                        (unsigned long long)record->number);
     }
     memcpy(l->edit + record->body_size, piece->bytes, piece->size);
@@ -288,8 +290,10 @@ static st_status take_step(load *l, const st_record *record)
     he_delta *delta = NULL;
     he_error err = {0};
     if (st_log_top(log, which) != record->inverts || record->inverts == 0) {
-        return damaged(l, "record %llu inverts revision %llu, which is not next",
-                       (unsigned long long)record->number, (unsigned long long)record->inverts);
+        return damaged(
+            l,
+            "record %llu undoes or redoes revision %llu, which is not the next one to undo or redo",
+            (unsigned long long)record->number, (unsigned long long)record->inverts);
     }
     if (!st_log_reserve_steps(log, which, 1, mesh->content)) {
         return no_memory();
@@ -317,14 +321,14 @@ static st_status check_record(load *l, const st_record *record)
 {
     const st_mesh *mesh = l->mesh;
     if (mesh->content == NULL) {
-        return damaged(l, "the mesh does not begin with a content");
+        return damaged(l, "the first record of the mesh has no content");
     }
     bool revises = record->kind <= ST_RECORD_CONTENT;
     uint64_t number = l->record + 1;
     uint64_t revision = st_log_head(&mesh->log) + (revises ? 1 : 0);
     if (record->incarnation != mesh->info.incarnation || record->number != number ||
         record->revision != revision) {
-        return damaged(l, "record %llu is not here", (unsigned long long)number);
+        return damaged(l, "record %llu is missing", (unsigned long long)number);
     }
     return ST_OK;
 }
@@ -362,7 +366,7 @@ static st_status take_base(load *l, const st_piece *piece)
     const st_record *record = &piece->record;
     if (l->mesh->content != NULL || record->incarnation != l->mesh->info.incarnation ||
         record->revision == 0) {
-        return damaged(l, "the base is of another mesh");
+        return damaged(l, "the record from which the mesh is loaded belongs to another mesh");
     }
     if (l->until != 0 && record->revision > l->until) {
         return ST_GONE;
@@ -404,13 +408,15 @@ static st_status check_card(load *l, const st_card *card)
     const st_counts *counts = &card->counts;
     if (l->record != card->record || st_log_head(&l->mesh->log) != card->revision ||
         l->metadata != card->metadata) {
-        return damaged(l, "the records end at %llu, but the mesh has %llu",
+        return damaged(l, "the last record is number %llu, but the mesh should have %llu",
                        (unsigned long long)l->record, (unsigned long long)card->record);
     }
     if (he_mesh_vertices(content) != counts->vertices || he_mesh_edges(content) != counts->edges ||
         he_mesh_faces(content) != counts->faces ||
         he_mesh_boundary_halfedges(content) != counts->boundary) {
-        return damaged(l, "the records lead to another mesh than they led to");
+        return damaged(
+            l,
+            "the records lead to other numbers of elements than the mesh had when it was stored");
     }
     return ST_OK;
 }

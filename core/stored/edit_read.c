@@ -253,9 +253,9 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
                             "a stored replacement must say 0 (ids stay) or 1 (ids are new)");
     }
     he_content *taken = he_mem_alloc(sizeof *taken);
-    he_status status = taken == NULL
-                           ? he_fail_plain(err, HE_NO_MEMORY, "no memory for the content after")
-                           : he_stored_content_read(c->at, he_left(c), &mesh, err);
+    he_status status =
+        taken == NULL ? he_fail_plain(err, HE_NO_MEMORY, "no memory for the content after an edit")
+                      : he_stored_content_read(c->at, he_left(c), &mesh, err);
     if (status != HE_OK) {
         he_mem_free(taken);
         return status;

@@ -58,7 +58,8 @@ static bool stop(srv_parts *parts, const siginfo_t *reason)
     if (ended) {
         return true;
     }
-    srv_log_tell(parts->log, SRV_LEVEL_ERROR, "work that did not end within %d s was given up%s",
+    srv_log_tell(parts->log, SRV_LEVEL_ERROR,
+                 "requests and jobs that did not end within %d s were abandoned%s",
                  STOP_MILLIS / 1000,
                  srv_config_folder(parts->config) == NULL
                      ? ""
@@ -110,7 +111,7 @@ int srv_daemon_run(const srv_started *started)
             _exit(1);
         }
     } else {
-        tell_stop(parts.log, "it could not start");
+        tell_stop(parts.log, "the daemon could not start");
     }
     close_parts(&parts);
     srv_log_tell(parts.log, SRV_LEVEL_INFO, "hedged has stopped");

@@ -24,7 +24,7 @@ static bool reload_tokens(srv_parts *parts, char *message, size_t size)
         snprintf(message, size, "no memory for the quotas of the tokens");
         return false;
     }
-    srv_log_tell(parts->log, SRV_LEVEL_INFO, "%zu tokens are in force, read again from %s",
+    srv_log_tell(parts->log, SRV_LEVEL_INFO, "%zu tokens are accepted, read again from %s",
                  api_tokens_count(parts->tokens), parts->config->tokens);
     return true;
 }
@@ -71,13 +71,13 @@ static bool reload_settings(srv_parts *parts, char *message, size_t size)
         if (srv_option_is_setting(row) && !is_reloaded(row) &&
             differs(row, parts->config, &fresh)) {
             srv_log_tell(parts->log, SRV_LEVEL_WARNING,
-                         "%s has another %s than hedged was started with: that takes a restart",
-                         file, row->name);
+                         "%s has a new value of %s, which takes effect only after a restart", file,
+                         row->name);
         }
     }
     const srv_log_settings settings = srv_start_log_settings(&fresh);
     srv_log_set(parts->log, &settings);
-    srv_log_tell(parts->log, SRV_LEVEL_INFO, "the settings of the log are read again from %s",
+    srv_log_tell(parts->log, SRV_LEVEL_INFO, "the settings of the log were read again from %s",
                  file);
     srv_config_clear(&fresh);
     return true;
@@ -94,7 +94,8 @@ static bool reload_certificates(srv_parts *parts, char *message, size_t size)
         return false;
     }
     srv_log_tell(parts->log, SRV_LEVEL_INFO,
-                 "new connections get the certificate read again from %s", config->tls_cert);
+                 "new connections use the certificate that was read again from %s",
+                 config->tls_cert);
     return true;
 }
 
@@ -122,7 +123,8 @@ bool srv_reload(void *context, char *message, size_t size)
     tell_systemd_begun();
     for (size_t i = 0; i < sizeof reloads / sizeof *reloads; i++) {
         if (!reloads[i](parts, why, sizeof why)) {
-            srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; what was in force before still is", why);
+            srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; the previous settings stay in effect",
+                         why);
             if (ok) { /* this is the first failure, and `message` reports only that one */
                 snprintf(message, size, "%s", why);
             }

@@ -73,18 +73,20 @@ void srv_tell_budget(srv_log *log, const srv_config *config, const st_memory_lim
     const uint64_t mib = UINT64_C(1) << 20, budget = st_memory_budget();
     if (budget == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
-                     "no memory budget: the system does not say what the machine has");
+                     "no memory budget: the system does not say how much memory the machine has");
     } else if (config->memory_budget == 0) {
         srv_log_tell(log, SRV_LEVEL_INFO,
                      "memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
                      " MiB that %s allows",
                      budget / mib, limit->bytes / mib, limit->source);
     } else if (budget > limit->bytes) {
-        srv_log_tell(log, SRV_LEVEL_WARNING,
-                     "memory budget %" PRIu64 " MiB as told, more than the %" PRIu64
-                     " MiB that %s allows: the kernel may end the daemon before it is used up",
-                     budget / mib, limit->bytes / mib, limit->source);
+        srv_log_tell(
+            log, SRV_LEVEL_WARNING,
+            "memory budget %" PRIu64 " MiB, as configured, is more than the %" PRIu64
+            " MiB that %s allows: the kernel may kill the daemon before the budget is used up",
+            budget / mib, limit->bytes / mib, limit->source);
     } else {
-        srv_log_tell(log, SRV_LEVEL_INFO, "memory budget %" PRIu64 " MiB as told", budget / mib);
+        srv_log_tell(log, SRV_LEVEL_INFO, "memory budget %" PRIu64 " MiB, as configured",
+                     budget / mib);
     }
 }

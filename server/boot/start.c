@@ -76,7 +76,8 @@ void srv_start_tell(srv_log *log, const srv_config *config, char *const *environ
     tell_options(log, config);
     if (srv_config_find_unknown(environment, names, sizeof names) > 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
-                     "variables that no option has are ignored: %s; --help lists those there are",
+                     "environment variables that belong to no option are ignored: %s; --help lists "
+                     "the options",
                      names);
     }
 }

@@ -25,8 +25,8 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     const bool found_full = !was_full && now->fulls != before->fulls;
     if (found_full) {
         srv_log_tell(log, SRV_LEVEL_ERROR,
-                     "the disk of %s is full: changes are refused, reads and DELETE go on. Make "
-                     "space there, or delete meshes",
+                     "the disk of %s is full: changes are refused, but reads and DELETE continue. "
+                     "Make space on this disk, or delete meshes",
                      folder);
     }
     if ((was_full || found_full) && now->status == ST_OK) {
@@ -34,18 +34,18 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
                      folder);
     }
     if (now->damaged_keys > 0 && before->damaged_keys == 0) {
-        srv_log_tell(
-            log, SRV_LEVEL_WARNING,
-            "in %s keys of requests (Idempotency-Key) are damaged, %" PRIu64
-            " so far: such a request is refused when it is sent again, or done again where "
-            "the key itself is damaged",
-            folder, now->damaged_keys);
+        srv_log_tell(log, SRV_LEVEL_WARNING,
+                     "the store in %s has %llu damaged records of requests with an "
+                     "Idempotency-Key: such a request is refused if it is sent again, or is done a "
+                     "second time if its key cannot be read",
+                     folder, (unsigned long long)now->damaged_keys);
     }
     if (now->status == ST_FAILED && before->status != ST_FAILED) {
-        srv_log_tell(log, SRV_LEVEL_ERROR,
-                     "the disk of %s failed%s%s: reads go on, no change is taken any more. Look at "
-                     "the disk and start hedged again: what was acknowledged is there",
-                     folder, now->reason[0] == '\0' ? "" : ", ", now->reason);
+        srv_log_tell(
+            log, SRV_LEVEL_ERROR,
+            "the disk of %s failed%s%s: reads continue, but changes are refused. Check the disk "
+            "and start hedged again: every change that was acknowledged is on the disk",
+            folder, now->reason[0] == '\0' ? "" : ", ", now->reason);
     }
 }
 
@@ -55,7 +55,7 @@ void srv_watch_describe(const srv_parts *parts, char text[SRV_STATUS])
     st_store_health(parts->store, &health);
     snprintf(text, SRV_STATUS, "listening on %s%s", parts->url,
              health.status == ST_FULL     ? "; the disk is full, and changes are refused"
-             : health.status == ST_FAILED ? "; the disk failed, and no change is taken any more"
+             : health.status == ST_FAILED ? "; the disk failed, and changes are refused"
                                           : "");
 }
 
@@ -80,7 +80,8 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
     if (srv_healthcheck(parts->url, message, sizeof message)) {
         srv_notify("WATCHDOG=1");
     } else {
-        srv_log_tell(parts->log, SRV_LEVEL_WARNING, "asked itself for /livez, and %s", message);
+        srv_log_tell(parts->log, SRV_LEVEL_WARNING, "the daemon asked itself for /livez, and %s",
+                     message);
     }
 }
 

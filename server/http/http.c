@@ -13,7 +13,8 @@
 #include <string.h>
 #include <sys/socket.h>
 
-_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES, "a head that passes leaves room");
+_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES,
+               "headers of the largest allowed size must leave space in the buffer");
 
 /* --- callbacks of libmicrohttpd --- */
 

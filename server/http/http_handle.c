@@ -113,10 +113,10 @@ static bool is_awaited(void *context, const char *phase, double done)
     uint64_t now = st_clock_micros();
     if (now >= r->work_until) {
         char text[128];
-        snprintf(text, sizeof text, "the answer was not found within %" PRIu64 " seconds%s",
+        snprintf(text, sizeof text, "the answer was not ready within %" PRIu64 " seconds%s",
                  r->http->options.read_seconds,
                  api_can_be_job(r->exchange)
-                     ? "; a job has more time, for which the header is Prefer: respond-async"
+                     ? "; a job has more time: send the header Prefer: respond-async"
                      : "");
         api_give_up(r->exchange, API_READ_TIMEOUT, text);
         return false;

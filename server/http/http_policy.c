@@ -69,7 +69,7 @@ bool srv_policy_host(const srv_policy *policy, const char *host, size_t length,
     }
     return api_problem_set(
         problem, API_WRONG_HOST,
-        "the server does not accept this Host; its option --allow-host adds one");
+        "the server does not accept this Host; its option --allow-host adds a name");
 }
 
 bool srv_policy_is_name(const srv_policy *policy, const char *host)
@@ -143,18 +143,19 @@ bool srv_policy_origin(const srv_policy *policy, const srv_sender *sender, api_p
         return true;
     }
     if (origin != NULL && !is_own_origin(origin, sender->host, sender->scheme)) {
-        return api_problem_set(
-            problem, API_FOREIGN_ORIGIN,
-            "a page of another origin sent this; the server's option --allow-origin allows it");
+        return api_problem_set(problem, API_FOREIGN_ORIGIN,
+                               "a page of another origin sent the request; the server's option "
+                               "--allow-origin would allow the origin");
     }
     if (fetch_site != NULL && strcasecmp(fetch_site, "cross-site") == 0) {
-        return api_problem_set(problem, API_FOREIGN_ORIGIN,
-                               "a page of another site sent this, says Sec-Fetch-Site");
+        return api_problem_set(
+            problem, API_FOREIGN_ORIGIN,
+            "the header Sec-Fetch-Site says that a page of another site sent the request");
     }
     if (fetch_site != NULL && strcasecmp(fetch_site, "same-site") == 0 && origin == NULL) {
         return api_problem_set(problem, API_FOREIGN_ORIGIN,
-                               "a page of another origin of this site sent this, says "
-                               "Sec-Fetch-Site, and the header Origin is missing");
+                               "the header Sec-Fetch-Site says that a page of another origin of "
+                               "this site sent the request, and the header Origin is missing");
     }
     return true;
 }

@@ -75,13 +75,13 @@ static void write_dropped(srv_log *log, uint64_t dropped)
 {
     char time[ST_TIMESTAMP], line[160];
     st_clock_format(st_clock_utc(), time);
-    int length =
-        snprintf(line, sizeof line,
-                 atomic_load(&log->json)
-                     ? "{\"time\":\"%s\",\"level\":\"warning\",\"event\":\"dropped\","
-                       "\"dropped\":%" PRIu64 "}\n"
-                     : "%s warning %" PRIu64 " lines were dropped, which nobody read in time\n",
-                 time, dropped);
+    int length = snprintf(line, sizeof line,
+                          atomic_load(&log->json)
+                              ? "{\"time\":\"%s\",\"level\":\"warning\",\"event\":\"dropped\","
+                                "\"dropped\":%" PRIu64 "}\n"
+                              : "%s warning %" PRIu64
+                                " lines were dropped, because they were not read in time\n",
+                          time, dropped);
     write_all(log, line, (size_t)length);
 }
 

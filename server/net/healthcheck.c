@@ -98,9 +98,9 @@ bool srv_healthcheck(const char *url, char *message, size_t size)
     }
     int status = ask(&to);
     if (status == 0) {
-        snprintf(message, size, "no answer came");
+        snprintf(message, size, "no answer arrived");
     } else {
-        snprintf(message, size, "the answer was %d", status);
+        snprintf(message, size, "the answer had the status %d", status);
     }
     return status == 200;
 }

@@ -44,7 +44,7 @@ static const char *make_room(const srv_address *address, const char *path)
         return errno == ENOENT ? NULL : strerror(errno);
     }
     if (!S_ISSOCK(found.st_mode)) {
-        return "there is a file of that name, and it is no socket";
+        return "there is a file with this name that is not a socket";
     }
     int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0) {
@@ -53,7 +53,7 @@ static const char *make_room(const srv_address *address, const char *path)
     int code = connect(fd, &address->socket.any, address->length) == 0 ? 0 : errno;
     close(fd);
     if (code == 0 || code == EAGAIN || code == EINPROGRESS) {
-        return "another program listens there";
+        return "another program listens on this socket";
     }
     if (code != ECONNREFUSED) {
         return strerror(code);

@@ -47,8 +47,9 @@ static bool load(file *f, char *message, size_t size)
         snprintf(message, size, "%s cannot be read: %s", f->path,
                  in != NULL && f->text == NULL ? "no memory" : strerror(errno));
     } else if (f->length > SRV_MAX_PEM) {
-        snprintf(message, size, "%s is longer than the %d bytes that such a file may have", f->path,
-                 SRV_MAX_PEM);
+        snprintf(message, size,
+                 "%s is longer than the %d bytes that a file of certificates or keys may have",
+                 f->path, SRV_MAX_PEM);
         ok = false;
     }
     if (in != NULL) {
@@ -95,7 +96,10 @@ static bool read_key(srv_certificate *pair, const file *f, char *message, size_t
         code = gnutls_privkey_import_x509_raw(pair->key, &data, GNUTLS_X509_FMT_PEM, NULL, 0);
     }
     if (code == GNUTLS_E_DECRYPTION_FAILED) {
-        snprintf(message, size, "%s is encrypted, and nobody is asked for its passphrase", f->path);
+        snprintf(
+            message, size,
+            "%s is encrypted, and hedged does not ask for a passphrase: decrypt the file first",
+            f->path);
     } else if (code < 0) {
         snprintf(message, size, "%s has no private key in PEM: %s", f->path, gnutls_strerror(code));
     }

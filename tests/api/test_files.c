@@ -481,7 +481,7 @@ static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
         if (i < 3) {
             assert_non_null(strstr(
                 r.body,
-                "name the format with ?format=, one of obj, off, ply, stl, glb, gltf, json"));
+                "give the format with ?format=, one of obj, off, ply, stl, glb, gltf, json"));
             assert_non_null(strstr(r.body, "\"supported\":[\"application/json\",\"model/obj\""));
         }
         bench_reply_free(&r);

@@ -302,7 +302,7 @@ static void a_mesh_counts_for_the_token_that_made_it(void **state)
     bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, cube)));
     bench_done(bench_expect(201, bench_post(b, "/v1/meshes", cube)));
     expect_code(bench_post(b, "/v1/meshes", cube), 507, "quota",
-                "this token may have 2 meshes, and has 2");
+                "this token may have 2 meshes, and now has 2");
     expect_code(bench_post(b, "/v1/meshes/m/copy", NULL), 507, "quota", "2 meshes");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
                 "the meshes of this token may take 20000 bytes");
@@ -310,12 +310,12 @@ static void a_mesh_counts_for_the_token_that_made_it(void **state)
      * message must not say how large that token's quota is. */
     bench_use_token(b, "prueba");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
-                "the token that made this one");
+                "the token that created this mesh");
     expect_code(bench_post(b, "/v1/meshes/m/edits",
                            "{\"ops\":[{\"op\":\"subdivide\",\"scheme\":\"linear\"},"
                            "{\"op\":\"subdivide\",\"scheme\":\"linear\"},"
                            "{\"op\":\"subdivide\",\"scheme\":\"linear\"}]}"),
-                507, "quota", "the token that made this one");
+                507, "quota", "the token that created this mesh");
     bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_done(r);

@@ -39,8 +39,8 @@ static void a_flat_fan_of_thousands_is_searched_whole(void **state)
 
 static void expect_steps(const char *detail, const char *of)
 {
-    char steps[48];
-    snprintf(steps, sizeof steps, " %d steps that a %s may take", (int)API_MAX_STEPS, of);
+    char steps[64];
+    snprintf(steps, sizeof steps, " %d computing steps that a %s may take", (int)API_MAX_STEPS, of);
     if (strstr(detail, steps) == NULL || strstr(detail, "Prefer: respond-async") == NULL) {
         fail_msg("%s", detail);
     }

@@ -196,7 +196,7 @@ static const struct {
      "\"vertices\":8,\"halfedges\":24,\"edges\":12,\"faces\":8,\"boundary_loops\":0,"
      "\"isolated_vertices\":0,\"components\":2,"},
     {"obj", open_bowtie, 201, "\"code\":\"bowtie\"", NULL, NULL},
-    {"obj", moebius, 422, "another face runs along it", "orient,split",
+    {"obj", moebius, 422, "another face runs along the edge", "orient,split",
      "\"edges\":11,\"faces\":5,"},
 };
 

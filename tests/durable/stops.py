@@ -47,7 +47,7 @@ def prove(run):
             thread.join()
         run.judge('it stops in time', took < SECONDS, took)
         run.judge('its status is 1', status == 1, status)
-        run.judge('it says that work was given up', 'was given up' in daemon.log(), daemon.log())
+        run.judge('it says that work was abandoned', 'were abandoned' in daemon.log(), daemon.log())
         run.judge('nothing that hung was answered as done', not {200, 404} & set(answers), answers)
         run.count('stops with work under way', status == 1)
         daemon = run.start()

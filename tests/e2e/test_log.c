@@ -129,7 +129,7 @@ static void what_keeps_it_from_starting_is_a_line_of_json_too(void **state)
         assert_string_not_equal(member(line_with(&l, "level", "error"), "message"), "");
         if (i >= 2) {
             assert_string_equal(member(line_with(&l, "message", "hedged stops"), "reason"),
-                                "it could not start");
+                                "the daemon could not start");
         }
         free_lines(&l);
     }
@@ -281,13 +281,13 @@ static void a_reload_reads_the_settings_of_the_log_again(void **state)
 
     write_file(file, "log-level = debug\nlog-format = text\nlog = access\nmax-meshes = 6\n");
     kill(daemon_pid(d), SIGHUP);
-    snprintf(trust, sizeof trust, "Z info the settings of the log are read again from %s", file);
+    snprintf(trust, sizeof trust, "Z info the settings of the log were read again from %s", file);
     free(daemon_wait_log(d, trust, 1));
     reply_done(reply_expect(200, client_get(c, "/livez")));
 
     write_file(file, "log-level = loud\n");
     kill(daemon_pid(d), SIGHUP);
-    free(daemon_wait_log(d, "; what was in force before still is", 1));
+    free(daemon_wait_log(d, "; the previous settings stay in effect", 1));
     reply_done(reply_expect(200, client_get(c, "/readyz")));
     client_free(c);
     char *log = daemon_stop_and_tell(d);
@@ -343,7 +343,7 @@ static void no_token_and_no_ticket_is_ever_said(void **state)
         assert_null(strstr(r.body == NULL ? "" : r.body, token));
         reply_free(&r);
         kill(daemon_pid(d), SIGHUP);
-        free(daemon_wait_log(d, "tokens are in force", 1));
+        free(daemon_wait_log(d, "tokens are accepted", 1));
         client_free(c);
         char *log = daemon_stop_and_tell(d);
         assert_non_null(strstr(log, "/v1/tickets"));

@@ -149,7 +149,7 @@ static void tori_are_refused_before_the_kernel_steps_in(void **state)
         print_message("note: the daemon is in no control group here: it is told its budget\n");
     }
     client *c = client_new(d);
-    snprintf(said, sizeof said, made ? "of the %d MiB that /" : "as told", LIMIT_MIB);
+    snprintf(said, sizeof said, made ? "of the %d MiB that /" : "as configured", LIMIT_MIB);
     expect_budget(d, c, said);
 
     static const char body[] =

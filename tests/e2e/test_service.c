@@ -202,7 +202,7 @@ static void variables_that_no_option_has_are_named(void **state)
     unsetenv("HEDGE_MAX_MESHS");
     unsetenv("HEDGE_MAX_MESHES");
     char *said = daemon_stop_and_tell(d);
-    const char *line = strstr(said, "variables that no option has are ignored: ");
+    const char *line = strstr(said, "environment variables that belong to no option are ignored: ");
     assert_non_null(line);
     assert_non_null(strstr(line, "HEDGE_PORT"));
     assert_non_null(strstr(line, "HEDGE_MAX_MESHS"));

@@ -123,7 +123,7 @@ static void a_new_certificate_is_for_new_connections(void **state)
 
     transport_make_pair("after", certificate, key);
     kill(daemon_pid(d), SIGHUP);
-    free(daemon_wait_log(d, "new connections get the certificate", 1));
+    free(daemon_wait_log(d, "new connections use the certificate", 1));
     s_client(d, "", said, sizeof said);
     assert_non_null(strstr(said, "subject=CN = after"));
     /* This client trusts only the old certificate. It keeps its old connection, on which the new
@@ -147,7 +147,7 @@ static void a_bad_pair_leaves_the_one_before_in_force(void **state)
     daemon_process *d = start();
     transport_make_pair("unused", other, key);
     kill(daemon_pid(d), SIGHUP);
-    char *log = daemon_wait_log(d, "what was in force before still is", 1);
+    char *log = daemon_wait_log(d, "the previous settings stay in effect", 1);
     assert_non_null(strstr(log, "is not the key of the first certificate in"));
     assert_non_null(strstr(log, certificate));
     free(log);
@@ -288,7 +288,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     /* The socket of a running daemon must not be taken over by a second daemon. */
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", listen, "--store", "memory"), said, sizeof said), 1);
-    assert_non_null(strstr(said, "another program listens there"));
+    assert_non_null(strstr(said, "another program listens on this socket"));
     reply_done(reply_expect(200, client_get(c, "/livez")));
     char *log = daemon_wait_log(d, "\"peer\":\"unix:uid=", 2);
     free(log);
@@ -303,7 +303,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     assert_int_equal(shell(said, sizeof said, "echo x >%s", listen + 5), 0);
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", listen, "--store", "memory"), said, sizeof said), 1);
-    assert_non_null(strstr(said, "it is no socket"));
+    assert_non_null(strstr(said, "that is not a socket"));
     memset(longest, 'x', sizeof longest);
     memcpy(longest, "unix:", 5);
     longest[5 + 108] = '\0';

@@ -81,7 +81,7 @@ static void a_daemon_asks_for_tokens_and_reads_its_file_again(void **state)
 
     write_file("#", boss.line);
     assert_int_equal(kill(daemon_pid(d), SIGHUP), 0);
-    free(daemon_wait_log(d, "1 tokens are in force", 1));
+    free(daemon_wait_log(d, "1 tokens are accepted", 1));
     assert_string_equal(listener_next(l, true), "bye");
     assert_string_equal(listener_string(l, "reason"), "token");
     assert_string_equal(listener_next(l, true), "");
@@ -113,7 +113,7 @@ static void a_wrong_file_is_no_start(void **state)
                      1);
     assert_non_null(strstr(said, "No such file"));
     assert_int_equal(daemon_run(ARGUMENTS("--listen", "0.0.0.0:0"), said, sizeof said), 2);
-    assert_non_null(strstr(said, "name a file of --tokens, or set --insecure"));
+    assert_non_null(strstr(said, "give a file with --tokens, or set --insecure"));
     assert_int_equal(daemon_run(ARGUMENTS("--new-token", "a b"), said, sizeof said), 2);
     assert_int_equal(daemon_run(ARGUMENTS("--new-token", "a", "root"), said, sizeof said), 2);
 }

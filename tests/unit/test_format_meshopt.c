@@ -259,7 +259,7 @@ static void what_the_extension_forbids_is_refused(void **state)
         {"{'buffer':2,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
          HE_BAD_INDEX, "there is no buffer 2; the file has 2"},
         {"{'buffer':1,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
-         HE_BAD_VALUE, "buffer 1 is a fallback without bytes"},
+         HE_BAD_VALUE, "buffer 1 is only a fallback and has no bytes"},
         {"{'buffer':0,'byteOffset':1024,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,"
          "'byteStride':16}",
          NULL, HE_BAD_VALUE, "do not fit in a buffer of 1024"},
@@ -450,7 +450,7 @@ static void a_fallback_may_be_missing_unless_a_plain_view_needs_it(void **state)
     glb_expect_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
                        "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
                        "," MESHES "}",
-                       HE_BAD_VALUE, "buffer 0 is a fallback without bytes");
+                       HE_BAD_VALUE, "buffer 0 is only a fallback and has no bytes");
     glb_expect_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
                        "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
                        "," ACCESSORS "," MESHES "}",

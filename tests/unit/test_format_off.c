@@ -189,9 +189,9 @@ static void vertices_without_what_is_announced(void **state)
     /* If the normals or colours stand on lines of their own, these look like further vertices: the
      * error must say what is wrong with the file. */
     expect_refused("off", "NOFF\n2 0 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n", HE_SYNTAX, 5,
-                   "needs it in its own line");
+                   "must be on the same line");
     expect_refused("off", "COFF\n2 1 0\n0 0 0\n7 8 9\n1 0 0\n7 8 9\n3 0 1 2\n", HE_SYNTAX, 6,
-                   "vertices from line 3 on");
+                   "from line 3 on, vertices");
 }
 
 static void face_colors(void **state)

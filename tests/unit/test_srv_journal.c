@@ -459,14 +459,14 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
     } damages[] = {
         {"DELETE FROM record WHERE mesh = 2 AND number = 4", "record 4 is missing"},
         {"DELETE FROM record WHERE mesh = 2 AND number = 7",
-         "the records end at 6, but the mesh has 7"},
+         "the last record is number 6, but the mesh should have 7"},
         {"DELETE FROM record WHERE mesh = 2 AND number = 1", "record 1, from which"},
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 1 AND number = 3) "
          "WHERE mesh = 2 AND number = 3",
          "the chain of records breaks at record 3"},
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 1 AND number = 1) "
          "WHERE mesh = 2 AND number = 1",
-         "record 1 is another mesh's"},
+         "record 1 belongs to another mesh"},
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 2 AND number = 3) "
          "WHERE mesh = 2 AND number = 4",
          "record 4 has the number 3"},
@@ -554,8 +554,9 @@ static void other_files_are_refused_by_name(void **state)
     (void)state;
     make_two();
     store_sql_run(folder, "PRAGMA user_version = 7");
-    expect_refused(folder,
-                   "has version 7 of the tables, and this hedged 1.2.3 knows them up to version 3");
+    expect_refused(
+        folder,
+        "has version 7 of the tables, but this hedged 1.2.3 supports them only up to version 3");
     store_sql_run(folder, "PRAGMA user_version = 3; PRAGMA application_id = 5");
     expect_refused(folder, "is not a store of hedged");
     store_sql_run(folder, "PRAGMA application_id = 0x68656467; UPDATE state SET position = 1");

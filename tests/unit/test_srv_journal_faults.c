@@ -206,7 +206,7 @@ static void the_folder_above_a_new_one_is_synced(void **state)
         watched_syncs = 0;
         watched_fails = true;
         assert_false(st_sqlite_open(&options, &out));
-        assert_non_null(strstr(out.message, "cannot sync the folder above"));
+        assert_non_null(strstr(out.message, "the parent folder cannot be synced"));
         assert_int_equal(access(path, F_OK), -1);
         watched_fails = false;
         assert_true(st_sqlite_open(&options, &out));

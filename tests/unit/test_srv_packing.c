@@ -87,10 +87,10 @@ static void what_would_be_longer_than_a_part_is_refused(void **state)
     unsigned char *zeros = test_calloc(1, LARGE), bomb[1024];
     const size_t size = ZSTD_compress(bomb, sizeof bomb, zeros, LARGE, 1);
     assert_false(ZSTD_isError(size));
-    expect_refused(bomb, size, "longer than a part");
+    expect_refused(bomb, size, "more bytes than a part may have");
     test_free(zeros);
-    expect_refused("", 0, "no zstd frame");
-    expect_refused("not a frame at all", 18, "no zstd frame");
+    expect_refused("", 0, "not a zstd frame");
+    expect_refused("not a frame at all", 18, "not a zstd frame");
 }
 
 /* A part with a changed byte must either be refused with a reason or decompress to at most the size

@@ -98,8 +98,7 @@ static void systemd_is_told_how_the_disk_is(void **state)
     create(store, "c");
     wait_until(store, ST_FAILED);
     look_and_expect(&watch, &parts, fd,
-                    "STATUS=listening on " URL
-                    "; the disk failed, and no change is taken any more");
+                    "STATUS=listening on " URL "; the disk failed, and changes are refused");
     disk_fail_at(0);
 
     unsetenv("NOTIFY_SOCKET");

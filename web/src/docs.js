@@ -152,7 +152,7 @@ function operationSection(path, method, operation, shared) {
         nodes.push(parametersTable(parameters));
     }
     if (operation.requestBody) {
-        const word = operation.requestBody.required ? 'Body' : 'Body, which may be left out';
+        const word = operation.requestBody.required ? 'Body' : 'Body (optional)';
         nodes.push(make('h4', {}, word), ...contentNodes(operation.requestBody.content));
     }
     return section(id, heading, ...nodes, ...responseNodes(operation.responses));

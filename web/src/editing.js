@@ -171,7 +171,7 @@ export class Editing {
             await this.#session.run(operation, this.#work);
             const { revision, history } = this.#session.shown;
             const isFinal = history.entries[0]?.undoable === false;
-            const end = isFinal ? ' It cannot be undone.' : '';
+            const end = isFinal ? ' This edit cannot be undone.' : '';
             this.#toasts.tell(operation.op, `Done: this is revision ${revision}.${end}`);
         } finally {
             this.#work.end();

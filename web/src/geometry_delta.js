@@ -30,7 +30,7 @@ export function applyDelta(geometry, buffer, rowTexels = 2048) {
         return null;
     }
     if (header.base !== geometry.revision || header.layout !== geometry.layout) {
-        throw new RangeError('The changes belong to another geometry.');
+        throw new RangeError('The changes are not for the geometry that is shown.');
     }
     const view = new DataView(buffer);
     const [vertexRows, triangleRows] = [88, 92].map((at) => view.getUint32(at, true));
@@ -41,7 +41,7 @@ export function applyDelta(geometry, buffer, rowTexels = 2048) {
         !fits(vertices.places, geometry.vertexCount, header.vertexCount) ||
         !fits(triangles.places, geometry.triangleCount, header.triangleCount)
     ) {
-        throw new RangeError('The changes of the geometry do not fit.');
+        throw new RangeError('The changes do not fit the geometry that is shown.');
     }
     const before = [geometry.vertices, geometry.triangles];
     geometry.vertices = grown(geometry.vertices, header.vertexCount, rowTexels);

@@ -81,7 +81,7 @@ export function wordsOf(answer) {
     if (answer === null) {
         return null;
     }
-    const end = answer.undoable === false ? ' It cannot be undone.' : '';
+    const end = answer.undoable === false ? ' This edit cannot be undone.' : '';
     return `${changesOf(answer)}${end}`;
 }
 

@@ -35,7 +35,7 @@ static he_status motion_init(const he_mesh *m, const he_region *r, motion *out, 
     out->moves = he_mem_array(NULL, most, sizeof *out->moves);
     out->of = he_mem_array(NULL, r->faces.ids.count, sizeof *out->of);
     if (out->path == NULL || out->at == NULL || out->moves == NULL || out->of == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to make a rim smaller");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to shrink an outline");
     }
     return HE_OK;
 }

@@ -457,9 +457,9 @@ static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_re
     he_status status = HE_OK;
     uint64_t *done = he_bits_new(count);
     if (done == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to keep regions apart");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to separate the regions");
     }
-    status = count > 1 ? he_progress_phase(m->progress, "drawing faces off", 1, err) : HE_OK;
+    status = count > 1 ? he_progress_phase(m->progress, "separating faces", 1, err) : HE_OK;
     for (size_t i = 0; status == HE_OK && i < count; i++) {
         he_region r = {.faces = {.slots = NULL}};
         uint32_t index;

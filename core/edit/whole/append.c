@@ -438,7 +438,7 @@ static he_status make_room(const he_mesh *other, maps *at, target **targets, he_
     at->face = he_mem_array(NULL, other->c.faces.issued + 1u, sizeof *at->face);
     *targets = he_mem_zero(columns + 1, sizeof **targets);
     if (at->vertex == NULL || at->edge == NULL || at->face == NULL || *targets == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to bring in another mesh");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to append another mesh");
     }
     he_status status = he_ids_reserve(&out->vertices, other->c.vertices.live, err);
     if (status == HE_OK) {

@@ -228,7 +228,7 @@ he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {
-        status = he_progress_phase(m->progress, "turning over", 1, err);
+        status = he_progress_phase(m->progress, "reversing faces", 1, err);
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */

@@ -48,7 +48,7 @@ static he_status plan(const he_mesh *m, he_vertex v, he_reservation *need, he_id
         return HE_OK;
     }
     if (need->vertices > HE_MAX_ROWS - fans) {
-        return he_fail_plain(err, HE_IDS_EXHAUSTED, "too many bow-ties to take apart");
+        return he_fail_plain(err, HE_IDS_EXHAUSTED, "too many bow-ties to split");
     }
     need->vertices += fans - 1;
     need->lineage += fans - 1;

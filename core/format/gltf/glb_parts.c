@@ -410,16 +410,17 @@ static he_status note_positions(const he_mesh *m, he_warnings *warnings, he_erro
 
 static void note_geometry(const he_glb_parts *g, he_warnings *warnings)
 {
-    he_warnings_add_count(warnings, "triangulated",
-                          "cut into triangles for other programs, and kept for hedge: a face",
-                          g->cuts.polygons);
     he_warnings_add_count(
-        warnings, "split_vertices",
-        "made for other programs where corners differ, and joined by hedge: a vertex",
-        g->splits.copies.count);
-    he_warnings_add_count(
-        warnings, "turned_triangles",
-        "cut into triangles some of which have no area or are turned over: a face", g->cuts.turned);
+        warnings, "triangulated",
+        "cut into triangles for other programs, and stored uncut for hedge: a face",
+        g->cuts.polygons);
+    he_warnings_add_count(warnings, "split_vertices",
+                          "added for other programs where values of corners differ, and merged "
+                          "again when hedge reads the file: a vertex",
+                          g->splits.copies.count);
+    he_warnings_add_count(warnings, "turned_triangles",
+                          "cut into triangles of which some have no area or are reversed: a face",
+                          g->cuts.turned);
 }
 
 static he_status make(he_glb_parts *g, he_progress *progress, he_warnings *warnings, he_error *err)

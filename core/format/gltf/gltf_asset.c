@@ -30,8 +30,8 @@ he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error
 {
     if (bytes > asset->room) {
         return he_json_fail(&asset->json, value, err, HE_LIMIT,
-                            "the scene has more than %llu MiB of geometry, and more than "
-                            "%llu times the file",
+                            "the scene has more than %llu MiB of geometry, and more than %llu "
+                            "times the size of the file",
                             (unsigned long long)(HE_GLTF_ROOM >> 20),
                             (unsigned long long)HE_GLTF_FACTOR);
     }
@@ -200,7 +200,7 @@ static void note_images(he_gltf *asset)
             (void)he_beside_find_uri(asset->into->beside, text, length);
             name = uri;
         }
-        he_gltf_note(asset, "ignored_images", "not held: the image", name, i);
+        he_gltf_note(asset, "ignored_images", "not kept: the image", name, i);
     }
 }
 
@@ -209,9 +209,9 @@ static void note_rest(he_gltf *asset)
 {
     static const struct {
         const char *name, *code, *text;
-    } parts[] = {
-        {"animations", "ignored_animations", "ignored: animations"},
-        {"skins", "ignored_skins", "ignored: skins; meshes are as their nodes place them"}};
+    } parts[] = {{"animations", "ignored_animations", "ignored: animations"},
+                 {"skins", "ignored_skins",
+                  "ignored, so that meshes are only placed by their nodes: skins"}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         uint32_t list = he_json_find(&asset->json, 0, parts[i].name);
         if (he_json_first(&asset->json, list) != HE_NONE) {

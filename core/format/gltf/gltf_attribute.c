@@ -130,13 +130,14 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
     for (uint32_t i = 0; i < column->components; i++, at += he_type_bytes(column->type)) {
         double value = values[i];
         if (!(fabs(value) <= (double)FLT_MAX) && fraction) {
-            he_warnings_add(&s->asset->into->warnings,
-                            &(he_occurrence){.code = "not_finite",
-                                             .text = "set to 0: values that are not finite of",
-                                             .subject = column->name,
-                                             .length = strlen(column->name),
-                                             .place = HE_PLACE_BYTE,
-                                             .at = place});
+            he_warnings_add(
+                &s->asset->into->warnings,
+                &(he_occurrence){.code = "not_finite",
+                                 .text = "set to 0: values that are not finite, of attribute",
+                                 .subject = column->name,
+                                 .length = strlen(column->name),
+                                 .place = HE_PLACE_BYTE,
+                                 .at = place});
             value = 0;
         }
         if (column->type == HE_FLOAT) {

@@ -145,7 +145,8 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
         return HE_OK; /* hedge wrote this material, of which it knew only the name */
     }
     if (table->count == HE_MATERIALS) {
-        note(asset, value, "material_limit", "left out: materials beyond 4096", "");
+        note(asset, value, "material_limit",
+             "left out, because a mesh has at most 4096 materials: further materials", "");
         return HE_OK;
     }
     he_look look = read_look(&r, value);

@@ -397,8 +397,8 @@ static void note_meshes(const scene *s)
         unused += he_bits_get(s->used, i) == 0;
     }
     he_warnings_add_count(warnings, "unused_meshes",
-                          "left out, being in no node of the scene: a mesh", unused);
-    he_warnings_add_count(warnings, "instances", "made once more for another node: a mesh",
+                          "left out, because no node of the scene uses it: a mesh", unused);
+    he_warnings_add_count(warnings, "instances", "copied, because another node uses it too: a mesh",
                           s->instances);
 }
 

@@ -419,7 +419,7 @@ he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err)
 {
     he_import *into = surface->asset->into;
     he_warnings_add_count(&into->warnings, "mirrored",
-                          "turned over, since its node mirrors it: a face", surface->mirrored);
+                          "reversed, because its node mirrors it: a face", surface->mirrored);
     he_gltf_note_attributes(surface);
     he_status status =
         finish_names(surface, &surface->object, &surface->own_objects, "object", err);

@@ -42,7 +42,7 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
     }
     if (b->bytes == NULL) {
         return he_json_fail(json, object, err, HE_BAD_VALUE,
-                            "buffer %llu is a fallback without bytes, and cannot be read",
+                            "buffer %llu is only a fallback and has no bytes, so it cannot be read",
                             (unsigned long long)buffer);
     }
     *out = (he_gltf_buffer){.bytes = b->bytes + start,

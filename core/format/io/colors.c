@@ -81,7 +81,8 @@ he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_warnings *
     }
     if (above) {
         he_warnings_add_count(warnings, "byte_colors",
-                              "read as 0 to 255, being whole and above 1: colours", colors->given);
+                              "read as 0 to 255, because they are whole numbers above 1: colours",
+                              colors->given);
     }
     return HE_OK;
 }

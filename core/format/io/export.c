@@ -101,11 +101,12 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
     for (size_t row = 0; row < column->rows; row++) {
         for (uint32_t i = 0; i < column->components; i++) {
             if (!isfinite(component_of(column, row, i))) {
-                he_warnings_add(warnings, &(he_occurrence){
-                                              .code = "not_finite",
-                                              .text = "written as 0: values that are not finite of",
-                                              .subject = name,
-                                              .length = strlen(name)});
+                he_warnings_add(
+                    warnings, &(he_occurrence){
+                                  .code = "not_finite",
+                                  .text = "written as 0: values that are not finite, of attribute",
+                                  .subject = name,
+                                  .length = strlen(name)});
             }
         }
     }
@@ -135,7 +136,8 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
 
 void he_export_note_materials(const he_mesh *mesh, he_warnings *warnings)
 {
-    he_warnings_add_count(warnings, "materials_lost", "not carried: what a material looks like",
+    he_warnings_add_count(warnings, "materials_lost",
+                          "not written: the colours and other properties of a material",
                           he_materials_count(he_mesh_materials(mesh)));
 }
 

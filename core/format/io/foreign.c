@@ -41,7 +41,7 @@ static const struct {
     SIGNATURE("DRACO", 0, "a Draco file, which is not read: decode it to PLY or OBJ first"),
     SIGNATURE("ISO-10303-21", 0, "a STEP file, which is not read: export it as STL or GLB"),
     SIGNATURE("version https://git-lfs", 0,
-              "a pointer of Git LFS, not the file itself: fetch that with git lfs pull"),
+              "a pointer of Git LFS, not the file itself: fetch the file with git lfs pull"),
     SIGNATURE("\xFF\xFE", 0, "UTF-16 text: send it as UTF-8"),
     SIGNATURE("\xFE\xFF", 0, "UTF-16 text: send it as UTF-8"),
 #undef SIGNATURE

@@ -58,7 +58,8 @@ static he_status add_row(library *l, uint32_t number, bool fresh, he_error *err)
         return HE_OK;
     }
     if (table->count == HE_MATERIALS) {
-        note(l, "material_limit", "left out: materials beyond 4096", NULL, 0);
+        note(l, "material_limit",
+             "left out, because a mesh has at most 4096 materials: further materials", NULL, 0);
         he_material_release(row);
         return HE_OK;
     }

@@ -274,7 +274,8 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
              "read although numbers that the header declares are missing: a vertex", line);
     }
     if (count > end) {
-        note(o, "extra_numbers", "ignored: numbers that the header does not declare", line);
+        note(o, "extra_numbers", "ignored, because the header does not declare them: numbers",
+             line);
     }
     forget_numbers(o);
     if (soup->vertex_count == o->vertices) {
@@ -526,8 +527,8 @@ static he_status explain(const off *o, he_status status, he_error *err)
     if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
         size_t length = strlen(err->text);
         snprintf(err->text + length, sizeof err->text - length,
-                 "; vertices from line %llu on lack what the header announces: one that has it "
-                 "needs it in its own line",
+                 "; from line %llu on, vertices lack values that the header announces, which must "
+                 "be on the same line",
                  (unsigned long long)o->lacking);
     }
     return status;

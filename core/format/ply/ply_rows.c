@@ -343,13 +343,14 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
     he_column *column = target->column;
     bool whole = column->type == HE_INT32 || column->type == HE_UINT32;
     if (!whole && !(fabs(value) <= (column->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_warnings_add(&rows->into->warnings,
-                        &(he_occurrence){.code = "not_finite",
-                                         .text = "set to 0: values that are not finite of",
-                                         .subject = column->name,
-                                         .length = strlen(column->name),
-                                         .place = rows->unit,
-                                         .at = rows->at});
+        he_warnings_add(
+            &rows->into->warnings,
+            &(he_occurrence){.code = "not_finite",
+                             .text = "set to 0: values that are not finite, of attribute",
+                             .subject = column->name,
+                             .length = strlen(column->name),
+                             .place = rows->unit,
+                             .at = rows->at});
         value = 0;
     }
     if (target->full != 1) {
@@ -502,13 +503,14 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
 {
     unsigned char *at = he_column_row(rows->uv, corner);
     if (!(fabs(value) <= (rows->uv->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_warnings_add(&rows->into->warnings,
-                        &(he_occurrence){.code = "not_finite",
-                                         .text = "set to 0: values that are not finite of",
-                                         .subject = "uv",
-                                         .length = strlen("uv"),
-                                         .place = rows->unit,
-                                         .at = rows->at});
+        he_warnings_add(
+            &rows->into->warnings,
+            &(he_occurrence){.code = "not_finite",
+                             .text = "set to 0: values that are not finite, of attribute",
+                             .subject = "uv",
+                             .length = strlen("uv"),
+                             .place = rows->unit,
+                             .at = rows->at});
         value = 0;
     }
     float narrow = (float)value;

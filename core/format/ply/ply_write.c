@@ -197,8 +197,8 @@ static he_status split(ply_writer *w, he_progress *progress, he_warnings *warnin
         add(w, HE_PLY_VERTEX_MARK, NULL, 0, HE_PLY_UINT32);
         w->outputs[w->count - 1].own = true;
         he_warnings_add_count(warnings, "split_vertices",
-                              "made for other programs where corners differ, and joined by hedge: "
-                              "a vertex",
+                              "added for other programs where values of corners differ, and merged "
+                              "again when hedge reads the file: a vertex",
                               w->splits.copies.count);
     }
     return status;

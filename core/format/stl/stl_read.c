@@ -424,7 +424,7 @@ static he_status stl_finish(void *state, he_error *err)
     }
     if (status == HE_OK) {
         he_warnings_add_count(&o->into->warnings, "welded",
-                              "made one with another at its position: a corner",
+                              "merged with another at the same position: a corner",
                               soup->corner_count - soup->vertex_count);
     }
     return status;

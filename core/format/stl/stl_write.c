@@ -33,9 +33,9 @@ static void stl_close(void *state)
 static void note_cuts(const he_export_triangles *cuts, he_warnings *warnings)
 {
     he_warnings_add_count(warnings, "triangulated", "cut into triangles: a face", cuts->polygons);
-    he_warnings_add_count(
-        warnings, "turned_triangles",
-        "cut into triangles some of which have no area or are turned over: a face", cuts->turned);
+    he_warnings_add_count(warnings, "turned_triangles",
+                          "cut into triangles of which some have no area or are reversed: a face",
+                          cuts->turned);
 }
 
 /* The mesh that a reader will make of the file, in which vertices at equal positions are merged. It
@@ -104,13 +104,14 @@ static he_status note_differences(const stl_writer *w, again *a, he_warnings *wa
         status = try_facets(w, a, &defects, err);
     }
     if (status == HE_OK) {
-        he_warnings_add_count(warnings, "isolated_vertices", "not carried: a vertex of no face",
-                              a->isolated);
-        he_warnings_add_count(warnings, "merged",
-                              "at the position of another, and one with it: a vertex", merged);
+        he_warnings_add_count(warnings, "isolated_vertices",
+                              "not written, because it belongs to no face: a vertex", a->isolated);
+        he_warnings_add_count(
+            warnings, "merged",
+            "read back as one with another vertex, because both have the same position: a vertex",
+            merged);
         he_warnings_add_count(warnings, "no_mesh_again",
-                              "refused without repairs when it is read again: a facet or vertex",
-                              defects);
+                              "readable only with repairs: a facet or vertex", defects);
     }
     return status;
 }

@@ -60,7 +60,7 @@ const char *he_lexer_fault_text(const he_lexer *x)
     case HE_FAULT_MEMBER:
         return "',' or '}' is expected here";
     case HE_FAULT_FOLLOWS:
-        return "something follows the value";
+        return "there is more text after the value";
     case HE_FAULT_DEPTH:
         return "the nesting is too deep";
     case HE_FAULT_STRING:

@@ -42,7 +42,7 @@ static size_t pass_escape(const char *at, const char *end, const char **wrong, b
         return 0;
     }
     if (at[1] != 'u') {
-        *wrong = "the escape is not one of JSON's";
+        *wrong = "this escape does not exist in JSON";
         return at[1] != '\0' && strchr("\"\\/bfnrt", at[1]) != NULL ? 2 : 0;
     }
     int unit = hex(at + 2, there < 6 ? there - 2 : 4);
@@ -52,13 +52,13 @@ static size_t pass_escape(const char *at, const char *end, const char **wrong, b
         return 0;
     }
     if (unit == 0) {
-        *wrong = "a null character is not taken in strings";
+        *wrong = "a string must not contain a null character";
         return 0;
     }
     if (unit < 0xD800 || unit > 0xDFFF) {
         return 6;
     }
-    *wrong = "a surrogate stands alone";
+    *wrong = "half of a surrogate pair is missing";
     return unit < 0xDC00 && pass_low_half(at + 6, end, cut) > 0 ? 12 : 0;
 }
 
@@ -86,7 +86,7 @@ size_t he_json_character(const char *at, const char *end, const char **wrong, bo
         return pass_escape(at, end, wrong, cut);
     }
     if (c < 0x20) {
-        *wrong = "a control character stands raw in a string";
+        *wrong = "a control character in a string must be escaped";
         return 0;
     }
     size_t size = he_utf8_character(at, (size_t)(end - at));

@@ -163,7 +163,8 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
         }
     }
     return st_sqlite_has_no_log(
-        file, "it would be replayed onto the backup; remove it, or name another file", message);
+        file, "this log would be replayed onto the backup; remove the log, or choose another file",
+        message);
 }
 
 /* The free space that must be left beside a backup, because the daemon goes on writing to its

@@ -104,7 +104,7 @@ bool st_folder_open(st_folder *folder, const char *path)
         return st_folder_fail(folder, "cannot make", "");
     }
     if (made && !sync_above(path)) {
-        (void)st_folder_fail(folder, "cannot sync the folder above", "");
+        (void)st_folder_fail(folder, "the parent folder cannot be synced", "");
         (void)rmdir(path); /* the folder is removed, so that the next start tries again */
         return false;
     }
@@ -135,7 +135,8 @@ const char *st_folder_doubt(const st_folder *folder)
     }
     const uint32_t type = (uint32_t)system.f_type;
     return type == NFS || type == FUSE || type == P9 || type == cifs || type == smb2
-               ? "it is on a network or user file system: locks and syncs may not be kept there"
+               ? "the folder is on a network or user file system, on which locks and syncs may not "
+                 "be reliable"
                : "";
 }
 

@@ -15,7 +15,7 @@ static const char *damage_of(const st_db *db)
 {
     const int code = db->handle == NULL ? SQLITE_OK : sqlite3_errcode(db->handle);
     return code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE
-               ? "a table or a row of the store is not what it was"
+               ? "a table or a row of the store was changed or damaged"
                : st_db_message(db);
 }
 
@@ -88,11 +88,11 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
         return st_refuse(message, "%.300s is not a store of hedged", path);
     }
     return version <= ST_SCHEMA_VERSION ||
-           st_refuse(message,
-                     "%.300s has version %lld of the tables, and this hedged%s%s knows them up to "
-                     "version %d: start a newer hedged, or restore a backup made by this one",
-                     path, (long long)version, release[0] == '\0' ? "" : " ", release,
-                     ST_SCHEMA_VERSION);
+           st_refuse(
+               message,
+               "%.300s has version %lld of the tables, but this hedged%s%s supports them only up "
+               "to version %d: start a newer hedged, or restore a backup made by this one",
+               path, (long long)version, release[0] == '\0' ? "" : " ", release, ST_SCHEMA_VERSION);
 }
 
 static bool make_store(st_sqlite *self, const char *path, const char *release,

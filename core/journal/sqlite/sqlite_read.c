@@ -132,7 +132,7 @@ st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row)
 {
     if (!st_mesh_row_read(s, row)) {
         (void)snprintf(row->card.damage, sizeof row->card.damage,
-                       "the facts that are kept of the mesh have a wrong checksum");
+                       "the stored description of the mesh has a wrong checksum");
     }
     return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
 }
@@ -428,7 +428,8 @@ static st_status unpack(st_reader *reader, st_piece *piece)
     piece->coding &= ~(unsigned)HE_CODING_PACKED;
     return status != ST_DAMAGED
                ? status
-               : damaged(reader, "part %llu of the content after record %llu is badly packed: %s",
+               : damaged(reader,
+                         "part %llu of the content after record %llu cannot be decompressed: %s",
                          (unsigned long long)reader->part, (unsigned long long)reader->number, why);
 }
 
@@ -534,7 +535,7 @@ static st_status read_inline_base(st_reader *reader)
                        (unsigned long long)number);
     }
     if (number == 1 && frame->chain != st_chain_of_origin(reader->row.origin)) {
-        return damaged(reader, "record 1 is another mesh's");
+        return damaged(reader, "record 1 belongs to another mesh");
     }
     reader->chain = st_frame_next_chain(bytes, size);
     reader->inline_parts = he_cursor_over(frame->record.body, frame->record.body_size);
@@ -565,7 +566,7 @@ static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;
     if (reader->number != row->card.record) {
-        return damaged(reader, "the records end at %llu, but the mesh has %llu",
+        return damaged(reader, "the last record is number %llu, but the mesh should have %llu",
                        (unsigned long long)reader->number, (unsigned long long)row->card.record);
     }
     if (reader->chain != row->chain) {

@@ -296,7 +296,8 @@ static bool restore(st_folder *folder, const char *path, const char *file, char 
     /* Only the file itself is copied, so changes in a log beside it would be left out. */
     good = good && st_sqlite_finish_restore(folder) &&
            st_sqlite_has_no_log(
-               file, "what is in it is not written back; restore a file that --backup made",
+               file,
+               "the changes in this log are not in the file yet; restore a file that --backup made",
                folder->message) &&
            st_sqlite_check_file(file, folder->message) && remove_copy(folder);
     if (good && !(copy_file(folder, file) && renew_copy(folder) &&

@@ -61,11 +61,11 @@ unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context)
     st_progress progress;
     unsigned told = check_structure(self, say, context);
     if (st_schema_check(&self->cards) != ST_SQL_DONE) {
-        say(context, "its tables are not those of a store");
+        say(context, "the file does not have the tables of a store");
         told++;
     }
     if (st_identity_read(&self->cards, &identity) != ST_SQL_DONE) {
-        say(context, "its version and settings (table meta) cannot be read");
+        say(context, "the version and settings of the store (table meta) cannot be read");
         told++;
     }
     if (st_progress_read(&self->cards, &progress) != ST_SQL_DONE) {
@@ -77,7 +77,7 @@ unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context)
     if (st_kept_count_damaged(&self->cards, &damaged) == ST_SQL_DONE && damaged > 0) {
         char text[96];
         (void)snprintf(text, sizeof text,
-                       "%llu keys of requests (Idempotency-Key) are not what they were",
+                       "%llu records of requests with an Idempotency-Key are damaged",
                        (unsigned long long)damaged);
         say(context, text);
         told++;

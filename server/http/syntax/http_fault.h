@@ -28,7 +28,7 @@ enum {
     X(TLS, BAD_FRAMING, "the bytes begin a TLS handshake, and this port speaks plain HTTP", 0)  \
     X(EMPTY_LINES, BAD_FRAMING, "too many empty lines before a request", SRV_MAX_EMPTY_LINES)   \
     X(METHOD, BAD_FRAMING, "the method is not a token", 0)                                      \
-    X(LONG_METHOD, NOT_IMPLEMENTED, "no method has so many characters", SRV_MAX_METHOD)         \
+    X(LONG_METHOD, NOT_IMPLEMENTED, "the method has too many characters", SRV_MAX_METHOD)       \
     X(TARGET, BAD_PATH, "a character of the request target must be percent-encoded", 0)         \
     X(LONG_TARGET, URI_TOO_LONG, "path and query have too many characters", API_MAX_URI)        \
     X(PARAMETERS, BAD_QUERY, "the query has too many parameters", SRV_MAX_PARAMETERS)           \
@@ -48,10 +48,10 @@ enum {
     X(LENGTH, BAD_FRAMING, "Content-Length is not one number of decimal digits", 0)             \
     X(LARGE_LENGTH, BODY_TOO_LARGE, "Content-Length is above 9223372036854775807", 0)           \
     X(CODING, BAD_FRAMING, "Transfer-Encoding does not end in chunked, given once", 0)          \
-    X(OTHER_CODING, NOT_IMPLEMENTED, "no Transfer-Encoding but chunked is understood", 0)       \
-    X(OLD_CODING, BAD_FRAMING, "HTTP/1.0 has no Transfer-Encoding", 0)                          \
+    X(OTHER_CODING, NOT_IMPLEMENTED, "the only supported Transfer-Encoding is chunked", 0)      \
+    X(OLD_CODING, BAD_FRAMING, "an HTTP/1.0 request must not have a Transfer-Encoding", 0)      \
     X(TWO_LENGTHS, BAD_FRAMING, "Content-Length and Transfer-Encoding exclude each other", 0)   \
-    X(HOST, BAD_FRAMING, "Host has a character that no host has", 0)                            \
+    X(HOST, BAD_FRAMING, "Host has a character that a host name cannot have", 0)                \
     X(NO_HOST, BAD_FRAMING, "HTTP/1.1 needs a Host header", 0)                                  \
     X(CHUNK_SIZE, BAD_FRAMING, "the size of a chunk is not a hexadecimal number below 2^63", 0) \
     X(EXTENSION, BAD_FRAMING, "an extension of a chunk has a control character", 0)             \
