@@ -398,8 +398,8 @@ static bool edit(api_exchange *x, edits *e)
 /* --- limiting the work of a list --- */
 
 /* Charges work that was not known when the operation was charged, for example because edge flips
- * cause further flips. An operation reports progress every HE_PROGRESS_STRIDE elements; each poll
- * beyond those that its charge includes is charged here. */
+ * cause further flips. An operation calls this function once every HE_PROGRESS_STRIDE elements;
+ * the calls that its charge includes are free, and each later call is charged here. */
 static bool tell_and_charge(void *context, const char *phase, double done)
 {
     edits *e = context;

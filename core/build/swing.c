@@ -23,7 +23,7 @@ typedef struct swinging {
     uint32_t *swing, *first;
     unsigned char *found; /* the flags that each part of the work has found */
     size_t *matched;      /* number of corners that have a turn, in each part of the work */
-    unsigned all;         /* the flags that any part has found */
+    unsigned all;         /* the flags that at least one part of the work has found */
 } swinging;
 
 /* --- faces ------------------------------------------------------------------------------------ */

@@ -305,8 +305,8 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     return true;
 }
 
-/* Returns the exponent of the area of a square around the origin of coordinates that contains the
- * mesh. */
+/* Returns an exponent of 2 that suits all areas of the mesh: twice the exponent of its largest
+ * coordinate. */
 static int area_unit_of_all(const he_mesh *m)
 {
     he_box box;

@@ -131,7 +131,7 @@ typedef struct st_journal_measures {
     st_distribution syncs;
     st_distribution groups;      /* numbers of records and notes in each group */
     st_distribution checkpoints; /* microseconds to copy the write-ahead log into the database */
-    uint64_t behind;             /* records and notes queued or being committed */
+    uint64_t behind;             /* number of records and notes that wait for their commit */
     uint64_t lost;               /* records and notes that will never be durable */
     /* Bytes of the queue, those reserved included: now, and allowed at most. */
     uint64_t queued, most_queued;

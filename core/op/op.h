@@ -34,8 +34,9 @@ enum {
     HE_EXCLUSIVE = 4, /* the ends of the range are excluded */
     HE_RANGE = 8,     /* min and max apply */
     HE_DERIVED = 16,  /* a number or flag whose default is computed from the mesh, as `doc` says */
-    HE_COSTS_MESH =
-        32,         /* if it is given, a local operation costs as much as one of the whole mesh */
+    /* If a request gives the parameter, a local operation costs as much as one of the whole mesh.
+     */
+    HE_COSTS_MESH = 32,
     HE_WHOLE = 128, /* a number with a range, without a fraction */
     /* The operation also visits neighbours of the elements: all corners of the faces around a
      * vertex, all edges at the corners of a face or along a loop, both loops of an edge. */

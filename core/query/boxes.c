@@ -339,8 +339,8 @@ static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
         out[2] = (node_pair){a->first, a->first + 1};
         return 3;
     }
-    /* Splits the node that is no leaf; if neither is, the node higher up in the tree, which has the
-     * lower number. */
+    /* If one node of the pair is a leaf, the other one is split. If none is, the node higher up in
+     * the tree is split, which has the lower number. */
     bool first = b->count > 0 || (a->count == 0 && p.a < p.b);
     for (uint32_t side = 0; side < 2; side++) {
         out[side] = first ? (node_pair){a->first + side, p.b} : (node_pair){p.a, b->first + side};

@@ -6,7 +6,7 @@
 /* An entry of the hash table: boundary half-edges between two positions for which no half-edge that
  * runs the other way was found yet. */
 typedef struct slot {
-    uint32_t halfedge; /* the first of these half-edges + 1; 0 in a free slot */
+    uint32_t halfedge; /* id of the half-edge found first, plus 1; 0 in a free slot */
     uint32_t waiting;
 } slot;
 

@@ -77,7 +77,7 @@ typedef struct st_mesh_info {
     /* ST_OK, or why the mesh has no content: ST_DAMAGED or ST_NEWER, see st_load. */
     st_status unreadable;
     bool busy;               /* a long edit has claimed the mesh, see write.h */
-    char job[ST_JOB_ID + 1]; /* id of the job that makes that long edit, "" if no job does */
+    char job[ST_JOB_ID + 1]; /* id of the job whose long edit has claimed the mesh, or "" */
 } st_mesh_info;
 
 /* A change that listeners of a mesh are sent: a revision, a rename or a removal. */

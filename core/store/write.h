@@ -69,7 +69,8 @@ st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
 /* Claims the mesh for a long edit, which then works on a copy without the lock. `info` is filled in
  * on failure, too.
  * Returns ST_ABSENT or ST_LOST if the store no longer has the mesh.
- * Returns ST_DAMAGED or ST_NEWER if it has no content.
+ * Returns ST_DAMAGED if the content of the mesh is damaged on the disk.
+ * Returns ST_NEWER if a newer release of hedge wrote the content.
  * Returns ST_BUSY if a long edit has claimed it.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);

@@ -327,8 +327,9 @@ static void a_bevel_beside_a_hole_keeps_the_ends_of_its_edge(void **state)
     bool from_0 = he_origin(m, he_edge_halfedge(e, 0)).i == 0;
     script_prepare(m, "edge_bevel edge=0-2 width=1");
     assert_counts(m, 8, 10, 3);
-    /* The new face has six corners: a cut, an end of the bevelled edge and another cut, then the
-     * same three at the other end of the edge. */
+    /* The new face has six corners. Three are at one end of the bevelled edge: a new vertex on the
+     * neighbouring edge, the old end, a new vertex on the next neighbouring edge. Three are at the
+     * other end of the edge. */
     assert_face(m, 2, from_0 ? "405627" : "425607");
     assert_at(m, 0, 0, 0, 0);
     assert_at(m, 2, 4, 4, 0);

@@ -175,8 +175,8 @@ static st_message *message_new(const char *bytes, size_t length)
     return message;
 }
 
-/* Appends a message, which it takes, at the place queue->newest. NULL makes all listeners fall
- * behind. */
+/* Appends a message, which the queue then owns. If `message` is NULL, because memory was out, the
+ * queue is emptied: every listener learns that it missed messages. */
 static void append(st_queue *queue, st_message *message)
 {
     if (message == NULL || !reserve_place(queue)) {
