@@ -357,7 +357,7 @@ static bool check_content_type(api_exchange *x)
             return true;
         }
     }
-    char text[140] = "the body has no Content-Type";
+    char text[160] = "the body has no Content-Type";
     if (type != NULL) {
         snprintf(text, sizeof text, "the Content-Type \"%.100s\" is not accepted here", type);
     }
