@@ -32,8 +32,8 @@ void *he_mem_zero(size_t count, size_t size);
  * memory is out; the caller then still owns the old block. */
 void *he_mem_array(void *memory, size_t count, size_t size);
 
-/* Returns the capacity to grow to so that `need` fits and appending takes amortised constant
- * time. */
+/* Returns the capacity to which an array should grow so that `need` elements fit and appending
+ * takes amortised constant time. */
 size_t he_mem_grown(size_t capacity, size_t need);
 
 /* A growable list of ids. {0} is the empty list. */

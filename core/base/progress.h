@@ -34,15 +34,16 @@ typedef struct he_progress {
     void *context;
     const struct he_parallel *parallel; /* threads for the work (parallel.h), or NULL */
     const char *phase;
-    double span_from, span_to; /* begin and end of the span, as fractions of the whole work */
-    double from, to;           /* begin and end of the phase, as fractions of the whole work */
+    double span_from, span_to; /* where the span begins and ends, as fractions of the whole work */
+    double from, to;           /* where the phase begins and ends, as fractions of the whole work */
     double done;
     bool cancelled;
 } he_progress;
 
 void he_progress_init(he_progress *progress,
                       bool (*tell)(void *context, const char *phase, double done), void *context);
-/* Begins a span: the work until the next span begins ends at fraction `to` of the whole work. */
+/* Begins a span, which lasts until the next span begins; it ends at fraction `to` of the whole
+ * work. */
 void he_progress_span(he_progress *progress, double to);
 /* Begins the next phase, which ends at fraction `to` of its span.
  * Returns HE_CANCELLED if the work was cancelled. */

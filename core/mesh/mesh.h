@@ -111,9 +111,9 @@ bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
  * dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
-/* Makes all long work with this mesh report its progress to `progress`, which may cancel the work:
- * it then fails with HE_CANCELLED. NULL removes it. No other thread may use the mesh, and the
- * watch must exist until it is removed. */
+/* Makes all long work with this mesh report its progress to the watch `progress` (progress.h),
+ * which may cancel the work: it then fails with HE_CANCELLED. NULL removes the watch. No other
+ * thread may use the mesh, and the watch must exist until it is removed. */
 void he_mesh_set_progress(he_mesh *mesh, he_progress *progress);
 /* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. An
  * edit that is cancelled then leaves the mesh half edited, because a rollback would take about as
