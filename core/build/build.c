@@ -144,8 +144,8 @@ static void return_positions(he_soup *soup, he_content *k)
 static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_swings *swings,
                              he_content *k, he_error *err)
 {
-    /* The spare array becomes `next`, because its memory has been written to before: the system
-     * clears each fresh page on first use. */
+    /* The array `spare` of he_swings becomes the array `next` of the mesh, because its memory has
+     * been written to before: the system clears each fresh page on first use. */
     k->next = swings->spare;
     swings->spare = NULL;
     he_status status = he_content_reserve_edges(k, swings->edges, err);

@@ -32,7 +32,7 @@ typedef struct he_soup {
      * columns are filled up with their default. */
     he_column **columns;
     size_t column_count, column_capacity;
-    he_materials materials; /* the mesh gets all of them, even those that no face uses */
+    he_materials materials; /* materials; the mesh gets all of them, even those that no face uses */
 } he_soup;
 
 void he_soup_init(he_soup *soup, const he_limits *limits);
@@ -50,7 +50,7 @@ HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices,
                                         he_error *err);
 /* Finds the face of a corner, by bisection. */
 uint32_t he_soup_face_of(const he_soup *soup, size_t corner);
-/* Finds the column of this domain and name, or makes it.
+/* Finds the column with the domain and name of `schema`, or makes it.
  * Returns HE_BAD_VALUE if a column of another type exists. */
 HE_NODISCARD he_status he_soup_column(he_soup *soup, const he_column_schema *schema,
                                       he_column **out, he_error *err);
@@ -67,14 +67,15 @@ typedef struct he_defect {
     he_kind kind; /* kind of the element at fault: HE_FACE or HE_VERTEX */
     uint32_t id;
     uint32_t corner;        /* corner of the face; HE_NONE if no single corner is at fault */
-    uint32_t vertex, other; /* ends of the edge at fault, or HE_NONE */
+    uint32_t vertex, other; /* the vertex, or both ends of the edge, at fault; else HE_NONE */
 } he_defect;
 
 enum { HE_REPORT_DEFECTS = 100 };
 
 typedef struct he_report {
-    he_defect defects[HE_REPORT_DEFECTS]; /* the first ones: of faces, then edges, then vertices */
-    uint64_t total;                       /* number of all defects */
+    /* the first defects: those of faces, then of edges, then of vertices */
+    he_defect defects[HE_REPORT_DEFECTS];
+    uint64_t total; /* number of all defects */
 } he_report;
 
 /* Writes one sentence that describes the defect for people. */

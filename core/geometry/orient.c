@@ -11,7 +11,7 @@ static int sign(double x)
     return (x > 0) - (x < 0);
 }
 
-/* --- expansions: components in rising order of size, none of them zero --- */
+/* --- expansions: sums of doubles, in rising order of size, none of them zero --- */
 
 enum { MOST = 192 }; /* most components that the determinant of three-by-three differences needs */
 

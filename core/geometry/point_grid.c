@@ -1,4 +1,4 @@
-/* point_grid.c - finds points within a tolerance of another by a hash table of cells.
+/* point_grid.c - finds the points within a tolerance of a given point, by a hash table of cells.
  *
  * The constant NEAR is the tolerance, a quarter of a cell, with a margin for the rounding of the
  * division. For coordinates so large that the margin is too small (2^43 cells from 0), both

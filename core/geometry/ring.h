@@ -11,7 +11,7 @@ typedef struct he_ring {
     /* The sum of |u|^2 |v|^2 over the triangles of the fan, u and v being two sides of each: how
      * large the terms of `vector` were before they cancelled. */
     double reach;
-    uint32_t degree; /* 0 if the links are broken */
+    uint32_t degree; /* number of corners; 0 if the links are broken */
 } he_ring;
 
 /* The squared relative error of a product of differences, with a margin. */

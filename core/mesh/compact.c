@@ -75,7 +75,7 @@ static uint32_t rank_halfedge(const block *edges, uint32_t h)
  * of a block from the lowest up, so that no branch depends on which rows are live. */
 typedef struct walk {
     const block *blocks;
-    uint64_t left; /* bits of the present block that are not visited */
+    uint64_t left; /* bits of the present block that are not visited yet */
     size_t at;
     uint32_t row, fresh;
 } walk;

@@ -23,8 +23,9 @@
  *
  *     F1   the edge is no feature and the origin, which is deleted, has a feature edge;
  *     F2   the edge is a feature and the origin is an end or a corner;
- *     F3   the side of a triangle beside the edge that is deleted is a feature;
- *     F4   the target would move and has a feature edge, unless the edge is one of exactly two.
+ *     F3   a triangle beside the edge would lose a side that is a feature;
+ *     F4   the target would move and has a feature edge, unless it has exactly two and the edge is
+ *          one of them.
  *
  * So a feature line can be simplified along itself, and vertices beside it can be collapsed onto
  * it. A vertex moves if its position changes: a new point that rounds to the old position is no
