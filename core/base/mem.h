@@ -26,7 +26,7 @@ void he_mem_set_hook(const he_mem_hook *hook);
 void *he_mem_alloc(size_t size);
 void *he_mem_resize(void *memory, size_t size);
 void he_mem_free(void *memory);
-/* Returns count * size bytes, zeroed; NULL if memory is out. */
+/* Allocates count * size bytes, all zero; returns NULL if memory is out. */
 void *he_mem_zero(size_t count, size_t size);
 /* Allocates an array if `memory` is NULL, else resizes the array at `memory`. Returns NULL if
  * memory is out; the caller then still owns the old block. */

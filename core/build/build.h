@@ -12,11 +12,11 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* Limits on a soup; 0 means that only the limits of every mesh apply. */
+/* Limits on the size of a soup; 0 means that there is no limit but those of every mesh. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
     uint64_t bytes;        /* memory of the soup */
-    he_progress *progress; /* progress of filling and building; NULL for none */
+    he_progress *progress; /* watch of filling and building (progress.h); may be NULL */
 } he_limits;
 
 typedef struct he_soup {

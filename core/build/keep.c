@@ -18,7 +18,7 @@ static bool holds_default(const he_column *column, size_t row)
 typedef struct joining {
     he_soup *soup;
     const uint32_t *into, *from;
-    bool *has_corners; /* for each vertex, true if a corner uses it */
+    bool *has_corners; /* true for each vertex that a corner uses */
 } joining;
 
 /* Returns true if vertex v has corners, and another value than the vertex to which it is joined. In

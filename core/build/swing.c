@@ -130,7 +130,7 @@ static uint32_t end_of(const swinging *t, size_t v)
  * corner to its swing (the next corner counter-clockwise), or is `count` if it has none. */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
-    /* a bit for each corner that is a swing; number of corners reached */
+    /* `entered`: a bit for each corner that is the swing of another; `met`: corners reached */
     uint32_t entered = 0, met = 0;
     for (uint32_t i = 0; i < count; i++) {
         entered |= follow[i] < count ? 1u << follow[i] : 0;

@@ -226,7 +226,7 @@ static he_status prepare(he_draw_arrays *d, uint32_t face, uint64_t *most, he_er
     uint32_t first = d->mesh->c.face_halfedge[face], degree;
     uint32_t fourth = next[next[next[first]]];
     if (fourth == first || next[fourth] == first) {
-        return HE_OK; /* triangles and quadrilaterals are always drawn as fans */
+        return HE_OK; /* the face is a triangle or quadrilateral, which is always drawn as a fan */
     }
     he_vec3 normal = normal_of(d, first, &degree);
     if (is_fan(d, first, normal)) {

@@ -47,7 +47,7 @@ he_frame he_frame_of(const he_mesh *m);
 enum { HE_DRAWN_DEAD = 0, HE_DRAWN_USED = 1, HE_DRAWN_ISOLATED = 2 };
 enum {
     HE_DRAWN_SIDES = 29, /* the first of the three bits that mark sides as edges */
-    HE_DRAWN_ROW = 4     /* words of a row, in both arrays */
+    HE_DRAWN_ROW = 4     /* number of words in a row of either array */
 };
 
 typedef struct he_draw_arrays {

@@ -54,7 +54,7 @@ typedef struct he_draw_slots {
     uint32_t faces; /* entries of `first` */
     /* first freed run of the linked list for each length; bin 0 is the list of long runs */
     uint32_t bin[HE_DRAW_SLOT_BINS];
-    uint64_t filled; /* one bit for each list in `bin`: it is not empty */
+    uint64_t filled; /* a bit for each list in `bin`, set if the list is not empty */
 
     uint64_t known; /* the revision since which all changes are remembered */
     he_ids changed_vertices, changed_slots;

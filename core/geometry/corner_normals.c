@@ -43,8 +43,8 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, they
- * are computed. */
+/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, the
+ * normals needed are computed. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {

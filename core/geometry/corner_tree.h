@@ -42,12 +42,12 @@ typedef struct he_corner_tree {
     /* Coordinates of the corners in a list, in its order, filled up with infinity to whole
      * batches. */
     double *x, *y;
-    uint32_t *place; /* for each corner of the loop, its index in `order`, or HE_NONE */
+    uint32_t *place; /* index in `order` of each corner of the loop, or HE_NONE */
     /* The corners in the order of the Z curve, HE_NONE for each that was removed; or, in a plain
      * list, the corners in any order and without gaps. */
     uint32_t *order;
     uint32_t count;  /* number of entries of `order` */
-    uint32_t made;   /* number of corners when the tree was made */
+    uint32_t made;   /* number of corners when the tree or list was made */
     uint32_t leaves; /* number of leaves; 0 for a list */
 } he_corner_tree;
 

@@ -41,7 +41,7 @@ typedef enum state {
 typedef struct ears {
     const he_mesh *m;
     const he_planar_loop *f;
-    bool avoid; /* avoid diagonals that exist as edges */
+    bool avoid; /* true if diagonals that exist as edges must be avoided */
     ring loop;  /* the corners that are not cut off yet, in a ring without a node of its own */
     ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; each begins at node n + state */
     /* Lists of PIERCED corners, by the corner that lies in their triangle. Each list begins at node
@@ -81,7 +81,7 @@ static void leave_tree(ears *e, uint32_t corner)
 }
 
 /* Updates the state of a corner whose neighbour has changed. A corner that turns left is inserted
- * into the list of candidates behind `before`. */
+ * into the list of candidates behind the corner `before`. */
 static void look_at(ears *e, uint32_t i, uint32_t before)
 {
     take_out(e->kinds, i);
@@ -191,7 +191,7 @@ static void cut_off(ears *e, uint32_t i, uint32_t *corners)
     }
     e->left--;
     /* The corners a and c, on both sides of the corner i that was cut off, take the place of i in
-     * the list. */
+     * the list of candidates. */
     look_at(e, c, i);
     take_out(e->kinds, a);
     look_at(e, a, e->kinds.prev[i]);

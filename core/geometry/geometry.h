@@ -50,7 +50,7 @@ double he_corner_angle(const he_mesh *m, he_halfedge h);
 /* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
     he_vec3 normal;   /* unit vector, or zero if the face is degenerate */
-    he_vec3 centroid; /* mean of the corners, where face_poke puts its vertex */
+    he_vec3 centroid; /* mean of the corners' positions, where face_poke puts a vertex */
     double area;
     uint32_t degree;
     bool degenerate;

@@ -75,7 +75,8 @@ static void add_scaled(sums *s, double x, int exponent)
     add(&s->of[window], ldexp(part, above - window * WINDOW));
 }
 
-/* Returns the sum of all totals divided by `divisor`, or the largest double if it is too large. */
+/* Returns the sum of all totals divided by `divisor`, or the largest double if that is too large
+ * for a double. */
 static double sum_of(sums *s, const total *plain, double divisor)
 {
     add_scaled(s, plain->sum, 0);

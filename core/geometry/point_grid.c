@@ -16,8 +16,8 @@
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
-/* The number of slots that are cleared between two reports of progress, because writing to fresh
- * memory is slow. */
+/* The number of slots that are cleared between two reports of progress; it is small because writing
+ * to fresh memory is slow. */
 enum { STRETCH = 16 * HE_PROGRESS_STRIDE };
 
 he_status he_point_grid_make(he_point_grid *out, const he_point_grid_points *points, size_t most,

@@ -6,7 +6,7 @@
 
 /* A corner in the chain of an interval. One corner may be in two chains. */
 typedef struct link {
-    /* `up` and `down` are the links above and below it in the chain; HE_NONE at the ends. */
+    /* `up` and `down` are the links above and below this one in the chain; HE_NONE at the ends. */
     uint32_t corner, up, down;
 } link;
 
@@ -21,7 +21,7 @@ typedef struct interval {
 
 typedef struct sweep {
     const he_planar_loop *f;
-    uint32_t *rank; /* for each corner, its place in the order of visits */
+    uint32_t *rank; /* place of each corner in the order in which corners are visited */
     /* The interval that each side of the loop bounds; HE_NONE while the sweep line does not cross
      * the side. */
     uint32_t *within;

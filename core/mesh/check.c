@@ -12,8 +12,8 @@ typedef struct checker {
     const he_mesh *m;
     he_problem *problems;
     size_t capacity, total;
-    uint64_t *in_face; /* a bit for each half-edge: the walk around its face reached it */
-    uint64_t *in_ring; /* a bit for each half-edge: the walk around its origin reached it */
+    uint64_t *in_face; /* a bit for each half-edge, set if the walk around its face reached it */
+    uint64_t *in_ring; /* a bit for each half-edge, set if the walk around its origin reached it */
     /* A word for each vertex: 1 + the id of the face or vertex whose walk reached it last. */
     uint32_t *stamp;
 } checker;

@@ -29,7 +29,7 @@ typedef struct he_labels he_labels;
 
 /* The schema of an attribute: what its values mean, without the values. */
 typedef struct he_column_schema {
-    const char *name; /* UTF-8, ends in NUL, of 1 to HE_COLUMN_NAME - 1 bytes */
+    const char *name; /* UTF-8 of 1 to HE_COLUMN_NAME - 1 bytes, ended by NUL */
     he_kind domain;
     he_type type;
     uint32_t components; /* 1 to HE_COLUMN_COMPONENTS */
@@ -47,7 +47,7 @@ struct he_column {
     /* The strings of which each value is an index; NULL if the column is not categorical. */
     he_labels *labels;
     unsigned char *data;
-    size_t rows;     /* rows in memory; every row beyond has the default value */
+    size_t rows;     /* number of rows in memory; every row beyond has the default value */
     size_t capacity; /* number of rows that fit into the memory allocated */
 };
 

@@ -96,7 +96,8 @@ static bool walk_on(walk *w)
     return true;
 }
 
-/* Moves the live rows of the content `from` into the content `to`; `ranks` gives their new ids. */
+/* A move of the live rows of the content `from` into the content `to`; `ranks` gives their new
+ * ids. */
 typedef struct moving {
     const he_content *from;
     he_content *to;

@@ -29,8 +29,8 @@ typedef enum he_col {
     HE_COL_VERTEX_HALFEDGE,
     HE_COL_FACE_HALFEDGE,
     HE_COL_POSITION,
-    /* The constants from here to HE_COL_REPLACED are not columns: records with them say something
-     * else. */
+    /* The constants from here to HE_COL_REPLACED name no columns: records with them say something
+     * other than that a word changed. */
     HE_COL_PARENT, /* `row` is the new element, `before` the one it came from, `word` the kind */
     /* `row` is the deleted element, `before` the one it was merged into, `word` the kind */
     HE_COL_MERGED,
@@ -75,7 +75,7 @@ typedef struct he_savepoint {
 } he_savepoint;
 
 he_delta *he_delta_new(void); /* makes an empty delta; NULL if memory is out */
-/* Allocates memory in a delta for this many more records and objects. */
+/* Allocates memory in a delta for `records` more records and `objects` more objects. */
 HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t objects,
                                         he_error *err);
 void he_delta_free(he_delta *delta);

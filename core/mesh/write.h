@@ -257,8 +257,8 @@ static inline void he_attributes_copy(he_mesh *m, he_kind kind, uint32_t to, uin
         he_values_copy(m, kind, to, from);
     }
 }
-/* Sets the attributes of row `to` to the mean of n rows, or copies the first row if the column's
- * rule is copy. */
+/* Sets the attributes of row `to` to the mean of the n rows in `from`, or copies the first row if
+ * the column's rule is copy. */
 void he_attributes_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
 /* Mixes the attributes of `row` with those of `other`: columns with the rule interpolate get the
  * value between `other` (t = 0) and `row` (t = 1); all other columns keep the value of `row`. */

@@ -411,7 +411,8 @@ he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mes
 {
     he_stored_reader *r;
     he_cursor c = he_cursor_over(bytes, size);
-    /* Each link takes at least one byte of the input, so this bounds the size of the content. */
+    /* Each link takes at least one byte of the input, so the content has at most four times as many
+     * bytes as the input. */
     he_status status = he_stored_reader_new(sizeof(uint32_t) * (uint64_t)size, &r, err);
     if (status != HE_OK) {
         return status;

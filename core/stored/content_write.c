@@ -17,7 +17,7 @@ enum stage {
     MATERIAL,
     MATERIAL_NAME,
     PADDING,
-    ARRAYS, /* the first of HE_CONTENT_ARRAYS stages, one for each array */
+    ARRAYS, /* the first of HE_CONTENT_ARRAYS kinds: each array is a kind of piece */
     COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
     DONE
 };
