@@ -89,10 +89,10 @@ he_status he_report_fail(const he_report *report, he_error *err);
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
 
-/* Makes a mesh, which the caller owns. If the soup has defects, the call fails with the reason and
- * element of the first one, and `report` (which may be NULL) gets the first HE_REPORT_DEFECTS. The
- * soup is only read, unless `flags` has HE_BUILD_TAKE: then columns and positions are moved instead
- * of copied, and the soup is cleared on success.
+/* he_build makes a mesh, which the caller owns. If the soup has defects, the call fails with the
+ * reason and element of the first one, and `report` (which may be NULL) gets the first
+ * HE_REPORT_DEFECTS. The soup is only read, unless `flags` has HE_BUILD_TAKE: then columns and
+ * positions are moved instead of copied, and the soup is cleared on success.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the soup has more elements than there are ids.
  * Returns HE_CANCELLED if the work was cancelled. */

@@ -61,7 +61,7 @@ typedef struct he_draw_arrays {
 /* Prepares to draw all faces. Borrows the mesh, which must not change while it is drawn; `frame`
  * must keep its vertices with edges within the unit ball. he_draw_arrays_clear frees the drawing.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits. */
 HE_NODISCARD he_status he_draw_arrays_init(he_draw_arrays *drawing, const he_mesh *m,
                                            const he_frame *frame, he_error *err);
 /* Prepares like he_draw_arrays_init, but to draw only some live faces, which must be in rising

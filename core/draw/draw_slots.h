@@ -64,7 +64,7 @@ typedef struct he_draw_slots {
 
 /* Makes a new layout of a mesh, with the runs of slots in the order of faces.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits. */
 HE_NODISCARD he_status he_draw_slots_new(const he_mesh *m, uint64_t layout, uint64_t revision,
                                          he_draw_slots **out, he_error *err);
 void he_draw_slots_free(he_draw_slots *slots);
@@ -89,7 +89,7 @@ void he_touched_clear(he_touched *touched);
  * changes.
  * Returns HE_LIMIT if the update takes more than `most` steps.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits.
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits.
  * Returns HE_UNSUPPORTED if the layout has ended. */
 HE_NODISCARD he_status he_draw_slots_advance(he_draw_slots *slots, const he_mesh *m,
                                              he_touched *touched, uint64_t revision, uint64_t most,

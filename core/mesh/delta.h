@@ -82,7 +82,8 @@ void he_delta_free(he_delta *delta);
 /* Removes the records of a delta but keeps the memory. */
 void he_delta_empty(he_delta *delta);
 /* Returns the memory of a delta: the capacity of its records, but only the rows (not the capacity)
- * of its columns and contents, so that a delta read back from storage counts as much as before. */
+ * of its columns and contents, so that a delta read back from storage counts as much as before it
+ * was stored. */
 size_t he_delta_bytes(const he_delta *delta);
 /* Frees the capacity of a delta beyond its records; if memory is out, the capacity stays. */
 void he_delta_trim(he_delta *delta);

@@ -299,7 +299,7 @@ HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, h
 /* These functions add or drop an attribute column, and record it in the delta. On success the mesh
  * owns `takes`, which must have as many rows as its domain has issued. The column gets the first
  * free slot. A slot may be used again, because the history is linear: a record that names a slot is
- * only applied while its column is there. */
+ * only applied while the column that it means is in the slot. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
 /* Puts a material into a slot of the mesh's table, in place of the one that is there; with NULL the
