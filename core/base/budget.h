@@ -15,14 +15,14 @@
 
 typedef struct he_budget {
     uint64_t left;         /* steps that may still be taken; UINT64_MAX means no limit */
-    he_progress *progress; /* borrowed; NULL if the work cannot be cancelled */
+    he_progress *progress; /* the watch, borrowed; NULL if the work cannot be cancelled */
     uint32_t unheard;      /* steps charged since the watch was last asked */
 } he_budget;
 
 enum { HE_BUDGET_STRIDE = 1 << 15 };
 
 /* Only he_budget_take calls these two functions: he_budget_exhausted refuses work for which too few
- * steps are left, he_budget_ask asks whether to go on. */
+ * steps are left, he_budget_ask asks the watch whether to go on. */
 HE_NODISCARD he_status he_budget_exhausted(he_budget *budget, he_error *err);
 HE_NODISCARD he_status he_budget_ask(he_budget *budget, he_error *err);
 

@@ -37,7 +37,8 @@ static void ask_for_huge_pages(void *memory, size_t size)
 {
     size_t before = (uintptr_t)memory % PAGE, length = (before + size + PAGE - 1) / PAGE * PAGE;
     if (before <= HEADER) {
-        /* The result is ignored, because without huge pages everything works, only slower. */
+        /* The result of madvise is ignored, because without huge pages everything works, only
+         * slower. */
         (void)madvise((char *)memory - before, length, MADV_HUGEPAGE);
     }
 }

@@ -26,14 +26,14 @@ void he_mem_set_hook(const he_mem_hook *hook);
 void *he_mem_alloc(size_t size);
 void *he_mem_resize(void *memory, size_t size);
 void he_mem_free(void *memory);
-/* Returns count * size bytes, zeroed; NULL if memory is out. */
+/* Allocates count * size bytes, all zero; returns NULL if memory is out. */
 void *he_mem_zero(size_t count, size_t size);
 /* Allocates an array if `memory` is NULL, else resizes the array at `memory`. Returns NULL if
  * memory is out; the caller then still owns the old block. */
 void *he_mem_array(void *memory, size_t count, size_t size);
 
-/* Returns the capacity to grow to so that `need` fits and appending takes amortised constant
- * time. */
+/* Returns the capacity to which an array should grow so that `need` elements fit and appending
+ * takes amortised constant time. */
 size_t he_mem_grown(size_t capacity, size_t need);
 
 /* A growable list of ids. {0} is the empty list. */

@@ -7,8 +7,8 @@ static const he_parallel *host_of(const he_progress *progress)
                : NULL;
 }
 
-/* Runs the parts on the host's threads; without a host it runs them on this thread. `progress`, if
- * not NULL, gets a report between parts. */
+/* Runs the parts of a job on the threads of the host (parallel.h), or on the caller's thread if
+ * there is no host. `progress`, if not NULL, gets a report between parts. */
 static he_status run(const he_parallel *host, he_progress *progress, uint32_t parts, he_part part,
                      void *context, he_error *err)
 {
@@ -58,7 +58,9 @@ he_status he_run_ranges(he_progress *progress, size_t count, he_range work, void
 typedef struct lanes {
     he_range work;
     void *context;
-    size_t count, length, done; /* rows in all, rows of a lane, rows of each lane done so far */
+    /* `count`: rows of the job; `length`: rows of each lane; `done`: rows that each lane has
+     * done */
+    size_t count, length, done;
 } lanes;
 
 static he_status run_lane(void *context, uint32_t lane, he_error *err)

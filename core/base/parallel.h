@@ -38,8 +38,9 @@ typedef struct he_parallel {
 } he_parallel;
 
 enum {
-    HE_PART_ROWS = 16384, /* rows of a range: so many that the work takes far longer than giving it
-                             to a thread, and so few that it takes far less than a second */
+    /* rows of a range: so many that working on them takes far longer than giving them to a thread,
+     * and so few that it takes far less than a second */
+    HE_PART_ROWS = 16384,
     HE_MOST_LANES = 8
 };
 

@@ -32,17 +32,19 @@ typedef struct he_progress {
      * never freed. Returns false to cancel the work. */
     bool (*tell)(void *context, const char *phase, double done);
     void *context;
-    const struct he_parallel *parallel; /* threads for the work (parallel.h), or NULL */
+    /* the host that lends threads to the work (parallel.h), or NULL */
+    const struct he_parallel *parallel;
     const char *phase;
-    double span_from, span_to; /* begin and end of the span, as fractions of the whole work */
-    double from, to;           /* begin and end of the phase, as fractions of the whole work */
+    double span_from, span_to; /* where the span begins and ends, as fractions of the whole work */
+    double from, to;           /* where the phase begins and ends, as fractions of the whole work */
     double done;
     bool cancelled;
 } he_progress;
 
 void he_progress_init(he_progress *progress,
                       bool (*tell)(void *context, const char *phase, double done), void *context);
-/* Begins a span: the work until the next span begins ends at fraction `to` of the whole work. */
+/* Begins a span, which lasts until the next span begins; it ends at fraction `to` of the whole
+ * work. */
 void he_progress_span(he_progress *progress, double to);
 /* Begins the next phase, which ends at fraction `to` of its span.
  * Returns HE_CANCELLED if the work was cancelled. */
@@ -53,8 +55,8 @@ HE_NODISCARD he_status he_progress_phase(he_progress *progress, const char *name
 HE_NODISCARD he_status he_progress_step(he_progress *progress, uint64_t i, uint64_t count,
                                         he_error *err);
 
-/* Reports like he_progress_step, but only every HE_PROGRESS_STRIDE steps, for cheap steps in a
- * loop. */
+/* he_progress_at reports like he_progress_step, but only every HE_PROGRESS_STRIDE steps. It is
+ * meant for loops of cheap steps. */
 enum { HE_PROGRESS_STRIDE = 4096 };
 HE_NODISCARD static inline he_status he_progress_at(he_progress *progress, uint64_t i,
                                                     uint64_t count, he_error *err)

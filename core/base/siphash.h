@@ -20,7 +20,7 @@
 
 typedef struct he_siphash {
     uint64_t v[4];
-    unsigned char tail[8]; /* the bytes of the last word, while it is not complete */
+    unsigned char tail[8]; /* the last bytes added, as long as they do not fill a word of 8 bytes */
     uint64_t length;
 } he_siphash;
 

@@ -23,7 +23,7 @@
     X(IDS_EXHAUSTED, "ids_exhausted", "No ids are left in this mesh")                         \
     X(LIMIT, "limit_exceeded", "A configured limit was exceeded")                             \
     X(CANCELLED, "cancelled", "The work was cancelled")                                       \
-    /* refusals of input that is wrong by itself */                                           \
+    /* statuses for input that is wrong by itself */                                          \
     X(SYNTAX, "syntax", "The input is not well formed")                                       \
     X(BAD_VALUE, "bad_value", "A value is outside its allowed range")                         \
     X(NOT_FINITE, "not_finite", "A number is not finite")                                     \
@@ -31,11 +31,11 @@
     X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")           \
     X(BEYOND_FLOAT, "beyond_float", "A coordinate is too large for the floats of the format") \
     X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                        \
-    /* refusals because of the elements that the caller names */                              \
+    /* statuses for elements that the caller must not name */                                 \
     X(NO_SUCH_ELEMENT, "no_such_element", "There is no such element")                         \
     X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                          \
     X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                      \
-    /* refusals of shapes that a half-edge mesh cannot represent */                           \
+    /* statuses for shapes that a half-edge mesh cannot represent */                          \
     X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")              \
     X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                             \
     X(REPEATED_CORNER, "repeated_corner", "A face would use a vertex twice")                  \
@@ -44,7 +44,7 @@
     X(NOT_ORIENTABLE, "not_orientable", "The faces cannot be oriented consistently")          \
     X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")             \
     X(CLOSED_FAN, "closed_fan", "A closed fan would share its vertex with another fan")       \
-    /* refusals because of the elements around an edit */                                     \
+    /* statuses for edits that the elements around them forbid */                             \
     X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                          \
     X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                     \
     X(INTERIOR_VERTEX, "interior_vertex", "The vertex is surrounded by faces")                \
@@ -107,7 +107,8 @@ typedef struct he_error {
     uint32_t id;    /* id of that element */
     he_place place; /* unit of `at`: lines are counted from 1, bytes from 0 */
     uint64_t at;    /* position in the input at which the error was found */
-    char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value, but without `at` */
+    /* one plain sentence with the offending value; does not mention `at` */
+    char text[HE_ERROR_TEXT];
 } he_error;
 
 /* Returns the slug of a status, such as "boundary_edge", which clients see as `code`; never

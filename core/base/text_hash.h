@@ -6,9 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Hashes a string by FNV-1a with a final mixing step. Strings come from files, so an attacker may
- * choose them; without the seed he cannot choose many strings whose hashes collide and so make
- * searches in the table slow. The address of the hash table is a sufficient seed. */
+/* Hashes a string, together with a seed, by FNV-1a with a final mixing step. Strings come from
+ * files, so an attacker may choose them; as he does not know the seed, he cannot choose many
+ * strings whose hashes collide and so make searches in the table slow. The address of the hash
+ * table is a sufficient seed. */
 static inline uint64_t he_text_hash(uint64_t seed, const char *text, size_t length)
 {
     uint64_t h = seed * 0x9E3779B97F4A7C15;

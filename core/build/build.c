@@ -59,7 +59,8 @@ static he_status build_corners(const he_column *from, size_t halfedges, const ui
 }
 
 /* Makes the attributes of the mesh. If the soup may be emptied (`take`), all columns but those of
- * corners, whose rows get other numbers, are moved. Moving cannot fail, so it comes last. */
+ * corners, whose rows get other numbers, are moved instead of copied. Moving cannot fail, so it
+ * comes last. */
 static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
                                he_error *err)
 {
@@ -144,8 +145,8 @@ static void return_positions(he_soup *soup, he_content *k)
 static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_swings *swings,
                              he_content *k, he_error *err)
 {
-    /* The spare array becomes `next`, because its memory has been written to before: the system
-     * clears each fresh page on first use. */
+    /* The array `spare` of he_swings becomes the array `next` of the mesh, because its memory has
+     * been written to before: the system clears each fresh page on first use. */
     k->next = swings->spare;
     swings->spare = NULL;
     he_status status = he_content_reserve_edges(k, swings->edges, err);

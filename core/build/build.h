@@ -12,11 +12,11 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* Limits on a soup; 0 means that only the limits of every mesh apply. */
+/* Limits on the size of a soup; 0 means that there is no limit but those of every mesh. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
     uint64_t bytes;        /* memory of the soup */
-    he_progress *progress; /* progress of filling and building; NULL for none */
+    he_progress *progress; /* watch of filling and building (progress.h); may be NULL */
 } he_limits;
 
 typedef struct he_soup {
@@ -32,7 +32,7 @@ typedef struct he_soup {
      * columns are filled up with their default. */
     he_column **columns;
     size_t column_count, column_capacity;
-    he_materials materials; /* the mesh gets all of them, even those that no face uses */
+    he_materials materials; /* materials; the mesh gets all of them, even those that no face uses */
 } he_soup;
 
 void he_soup_init(he_soup *soup, const he_limits *limits);
@@ -50,7 +50,7 @@ HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices,
                                         he_error *err);
 /* Finds the face of a corner, by bisection. */
 uint32_t he_soup_face_of(const he_soup *soup, size_t corner);
-/* Finds the column of this domain and name, or makes it.
+/* Finds the column with the domain and name of `schema`, or makes it.
  * Returns HE_BAD_VALUE if a column of another type exists. */
 HE_NODISCARD he_status he_soup_column(he_soup *soup, const he_column_schema *schema,
                                       he_column **out, he_error *err);
@@ -67,14 +67,15 @@ typedef struct he_defect {
     he_kind kind; /* kind of the element at fault: HE_FACE or HE_VERTEX */
     uint32_t id;
     uint32_t corner;        /* corner of the face; HE_NONE if no single corner is at fault */
-    uint32_t vertex, other; /* ends of the edge at fault, or HE_NONE */
+    uint32_t vertex, other; /* the vertex, or both ends of the edge, at fault; else HE_NONE */
 } he_defect;
 
 enum { HE_REPORT_DEFECTS = 100 };
 
 typedef struct he_report {
-    he_defect defects[HE_REPORT_DEFECTS]; /* the first ones: of faces, then edges, then vertices */
-    uint64_t total;                       /* number of all defects */
+    /* the first defects: those of faces, then of edges, then of vertices */
+    he_defect defects[HE_REPORT_DEFECTS];
+    uint64_t total; /* number of all defects */
 } he_report;
 
 /* Writes one sentence that describes the defect for people. */
@@ -88,10 +89,10 @@ he_status he_report_fail(const he_report *report, he_error *err);
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
 
-/* Makes a mesh, which the caller owns. If the soup has defects, the call fails with the reason and
- * element of the first one, and `report` (which may be NULL) gets the first HE_REPORT_DEFECTS. The
- * soup is only read, unless `flags` has HE_BUILD_TAKE: then columns and positions are moved instead
- * of copied, and the soup is cleared on success.
+/* he_build makes a mesh, which the caller owns. If the soup has defects, the call fails with the
+ * reason and element of the first one, and `report` (which may be NULL) gets the first
+ * HE_REPORT_DEFECTS. The soup is only read, unless `flags` has HE_BUILD_TAKE: then columns and
+ * positions are moved instead of copied, and the soup is cleared on success.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the soup has more elements than there are ids.
  * Returns HE_CANCELLED if the work was cancelled. */

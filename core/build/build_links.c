@@ -10,7 +10,8 @@ typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;
     he_content *c;
-    uint32_t *swing; /* swing of each corner (swing.h); once edges are numbered, its half-edge */
+    /* swing of each corner (swing.h); once edges are numbered, the half-edge of each corner */
+    uint32_t *swing;
     uint32_t *first; /* first corner of each vertex */
     uint32_t lanes;
     uint32_t edges[HE_MOST_LANES]; /* number of the first edge of each lane (parallel.h) */
@@ -18,7 +19,8 @@ typedef struct linking {
 
 /* --- numbers of edges ------------------------------------------------------------------------- */
 
-/* Returns true if a corner is the first corner of its edge, by which the edge is numbered. */
+/* Returns true if a corner is the first corner of its edge. Edges are numbered in the order of
+ * their first corners. */
 static inline bool is_first(uint32_t corner, uint32_t mate)
 {
     return mate == HE_NONE || mate > corner;
@@ -160,8 +162,8 @@ static he_status link_faces(void *context, uint32_t part, size_t from, size_t to
 
 /* --- holes ------------------------------------------------------------------------------------ */
 
-/* Lists the `count` boundary half-edges. All are odd, because half-edge 2e has the face in which
- * edge e first appeared. */
+/* Lists the `count` boundary half-edges. All their ids are odd, because half-edge 2e has the face
+ * in which edge e first appeared. */
 static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
 {
     for (uint32_t h = 1; count > 0; h += 2) {

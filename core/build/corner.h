@@ -13,7 +13,8 @@ typedef struct he_corners {
 } he_corners;
 
 typedef struct he_corner {
-    uint32_t face, next, prev; /* the corner's face, and the corners after and before it there */
+    /* the corner's face, and the next and the previous corner of that face */
+    uint32_t face, next, prev;
 } he_corner;
 
 HE_NODISCARD he_status he_corners_init(const he_soup *soup, he_corners *out, he_error *err);

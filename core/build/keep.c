@@ -18,7 +18,7 @@ static bool holds_default(const he_column *column, size_t row)
 typedef struct joining {
     he_soup *soup;
     const uint32_t *into, *from;
-    bool *has_corners; /* for each vertex, true if a corner uses it */
+    bool *has_corners; /* true for each vertex that a corner uses */
 } joining;
 
 /* Returns true if vertex v has corners, and another value than the vertex to which it is joined. In
@@ -64,7 +64,8 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* Adds the corner column `takes` to the soup. It replaces the vertex column unless `stays`. */
+/* Adds the corner column `takes` to the soup. It replaces the vertex attribute `column`, unless
+ * that one `stays`. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {

@@ -51,8 +51,8 @@ static he_status check(const he_soup *proper, he_report *report, uint64_t *total
     return status;
 }
 
-/* Appends the defects of the valid faces (`rest`) to a report. Their face numbers are changed to
- * those in the whole soup. */
+/* Appends to `report` the defects in `rest`, which were found in a soup of the valid faces alone;
+ * their face numbers are changed to those in the whole soup. */
 static void append(const he_report *rest, const he_ids *from, he_report *report, uint64_t *total)
 {
     uint64_t told = 0;

@@ -32,13 +32,13 @@ static size_t bytes_of(const he_soup *soup)
            (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
 }
 
-/* The rows of one kind, in an array that grows. */
+/* A growing array of the rows of a soup of one kind: vertices, faces or corners. */
 typedef struct rows {
     void *array;
     size_t size; /* bytes of a row */
     size_t count, capacity;
-    uint64_t limit;   /* how many the soup may have; 0: as many as the structure */
-    uint64_t most;    /* how many the structure can have */
+    uint64_t limit;   /* how many rows the soup may have; 0: as many as `most` */
+    uint64_t most;    /* how many rows a mesh can have */
     const char *name; /* for messages */
 } rows;
 

@@ -55,7 +55,7 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
             he_report_add(report, total, face_defect(HE_TOO_FEW_CORNERS, f, HE_NONE, HE_NONE));
         }
         if (count == 0) {
-            continue; /* the array of corners may be NULL */
+            continue; /* a soup without corners may have no array of corners */
         }
         const uint32_t *corners = soup->corners + soup->starts[f];
         while (k < count && corners[k] < soup->vertex_count) {
@@ -80,17 +80,17 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
     return status;
 }
 
-/* A corner in the list of the smaller vertex of its edge, which is the edge to the next corner of
- * its face. `far` is the larger vertex; its top bit is set if the corner's half-edge runs from the
- * larger vertex to the smaller one. */
+/* A corner in the list of one end of its edge, which is the edge to the next corner of its face.
+ * The list is that of the end with the smaller id; `far` is the other end, and its top bit is set
+ * if the corner's half-edge leaves that end. */
 typedef struct filed {
     uint32_t far, corner;
 } filed;
 
 #define DOWNWARD 0x80000000u
 
-/* Sorts all corners by the smaller end of their edge (bucket sort): the entries of vertex v begin
- * at starts[v] and end before starts[v + 1]. */
+/* Sorts all corners by the end of their edge that has the smaller id (bucket sort): the entries of
+ * vertex v begin at starts[v] and end before starts[v + 1]. */
 static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entries, he_error *err)
 {
     const size_t faces = soup->face_count;
@@ -183,9 +183,9 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
 }
 
 /* Pairs the entries of a vertex of high degree; the entries of vertex v begin at starts[v] and end
- * before starts[v + 1]. `first` remembers for every far vertex the first entry that named it.
- * Values left by other vertices do not point to entries of this one, so the array needs no
- * clearing. */
+ * before starts[v + 1]. `first` remembers for every vertex at the far end of an edge the first
+ * entry that named it. Values left in `first` by earlier calls do not point to entries of this
+ * vertex, so the array needs no clearing. */
 static void pair_large(pairing *p, uint32_t low, const filed *entries, const uint32_t *starts,
                        uint32_t *first)
 {
@@ -206,7 +206,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Pairs or numbers the corners along each edge. It takes them in the order of the soup. */
+/* Pairs or numbers the corners along each edge, which are visited in the order of the soup. */
 static he_status visit_edges(pairing *p, he_error *err)
 {
     const he_soup *soup = p->soup;

@@ -13,10 +13,11 @@ void he_report_add(he_report *report, uint64_t *total, he_defect defect);
 HE_NODISCARD he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *total,
                                            he_error *err);
 
-/* Returns the index of the first corner of a face that repeats an earlier one, or `count` if none
- * does. A face of more than HE_SMALL_FACE corners needs `stamp`, an array of one word for each
- * vertex, and a `mark` that the caller uses for no other face; the search then takes time linear in
- * the corners. If the face is smaller, `stamp` may be NULL. */
+/* he_soup_find_repeat returns the index of the first corner in a face that is at the vertex of an
+ * earlier corner, or `count` if there is none. A face of more than HE_SMALL_FACE corners needs
+ * `stamp`, an array of one word for each vertex, and a `mark` that the caller uses for no other
+ * face; the search then takes time linear in the corners. If the face is smaller, `stamp` may be
+ * NULL. */
 enum { HE_SMALL_FACE = 16 };
 uint32_t he_soup_find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp,
                              uint32_t mark);

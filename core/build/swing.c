@@ -22,7 +22,7 @@ typedef struct swinging {
     uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *swing, *first;
     unsigned char *found; /* the flags that each part of the work has found */
-    size_t *matched;      /* number of corners that have a turn, in each part of the work */
+    size_t *matched;      /* number of corners that have a swing, in each part of the work */
     unsigned all;         /* the flags that at least one part of the work has found */
 } swinging;
 
@@ -113,8 +113,9 @@ static he_status file_corners(void *context, uint32_t lane, size_t from, size_t 
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-/* Returns the index in `filed` at which the corners of vertex v begin. It is kept under the vertex
- * before v, because sorting has advanced each entry of `places` to the end of its corners. */
+/* Returns the index in `filed` at which the corners of vertex v begin. `places` has that index in
+ * the entry of the vertex before v, because sorting has advanced each entry of `places` to the end
+ * of its corners. */
 static uint32_t begin_of(const swinging *t, size_t v)
 {
     return v == 0 ? 0 : t->places[(t->lanes - 1) * t->soup->vertex_count + v - 1];
@@ -129,7 +130,8 @@ static uint32_t end_of(const swinging *t, size_t v)
  * corner to its swing (the next corner counter-clockwise), or is `count` if it has none. */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
-    uint32_t entered = 0, met = 0; /* a bit for each corner that is a turn; corners reached */
+    /* `entered`: a bit for each corner that is the swing of another; `met`: corners reached */
+    uint32_t entered = 0, met = 0;
     for (uint32_t i = 0; i < count; i++) {
         entered |= follow[i] < count ? 1u << follow[i] : 0;
     }
@@ -178,7 +180,7 @@ typedef struct neighbours {
     uint32_t before[SMALL_VERTEX], behind[SMALL_VERTEX];
 } neighbours;
 
-/* Finds the swings around a vertex of few corners, and what is wrong there. If the turns form one
+/* Finds the swings around a vertex of few corners, and what is wrong there. If the swings form one
  * ring, nothing is wrong; only otherwise is the reason searched. No branch depends on the ids,
  * which may have no pattern. If two faces run along an edge in the same direction, two corners of
  * this vertex lead to the same other vertex. */
@@ -217,10 +219,10 @@ static inline void find_beside(const swinging *t, const uint32_t *filed, uint32_
     }
 }
 
-/* The swings of a vertex of high degree, whose corners are its entries in `filed`. `leads`
- * remembers for every vertex which entry leads to it, `follows` for each entry which one is next
- * around the vertex; `entered` has a bit for each entry that follows another. Values left by other
- * vertices do not point to entries of this one, so the arrays need no clearing. */
+/* The swings of a vertex of high degree, whose corners are its entries in `filed`. `leads` has for
+ * every other vertex the entry whose half-edge leads to it, `follows` for each entry the next entry
+ * around the vertex; `entered` has a bit for each entry that follows another. Values left by
+ * earlier vertices do not point to entries of this one, so the arrays need no clearing. */
 typedef struct hub_swings {
     uint32_t *leads, *follows;
     uint64_t *entered;
@@ -336,9 +338,9 @@ static he_status no_memory(const he_soup *soup, he_error *err)
 }
 
 /* Visits vertices a second time, on one thread: those with many corners, because they share the
- * arrays of hub_turns; with `all` every vertex, to report which have a closed fan beside another
- * fan. Vertices at the ends of invalid edges are not reported, because their fans are not defined.
- */
+ * arrays of hub_swings; with `all` every vertex, to report which have a closed fan beside another
+ * fan. Vertices at the ends of invalid edges are not reported, because their fans are not
+ * defined. */
 static he_status swing_again(swinging *t, bool all, he_report *report, uint64_t *total,
                              he_error *err)
 {
@@ -470,8 +472,8 @@ he_status he_soup_swing(const he_corners *corners, he_swings *out, he_report *re
         for (size_t i = 0; i < he_ranges(soup->vertex_count); i++) {
             matched += t.matched[i];
         }
-        /* An edge with two faces has two corners, both with a turn, so half of the turns are
-         * subtracted from the corners. */
+        /* Each corner of a face stands for one of its edges. An edge with two faces is thus counted
+         * twice, and gives two corners a swing: so half of the number of swings is subtracted. */
         *out = (he_swings){t.swing, t.first, t.filed, soup->corner_count - matched / 2};
         t.swing = t.first = t.filed = NULL;
     }

@@ -12,7 +12,7 @@
  *
  * Once the corners are sorted by vertex, one vertex after another is checked, in a few words that
  * lie together in memory: which of its edges have two faces, that no edge has three faces or two in
- * the same direction, and that the turns around the vertex reach all its corners. */
+ * the same direction, and that the swings around the vertex reach all its corners. */
 #ifndef HE_BUILD_SWING_H
 #define HE_BUILD_SWING_H
 
@@ -20,7 +20,7 @@
 
 typedef struct he_swings {
     uint32_t *swing; /* the next corner around the vertex of each corner; HE_NONE at a boundary */
-    uint32_t *first; /* first corner of each vertex, HE_NONE if it has none */
+    uint32_t *first; /* first corner of each vertex, HE_NONE if the vertex has none */
     uint32_t *spare; /* a word for each corner, memory that the caller may use for anything */
     size_t edges;
 } he_swings;

@@ -15,7 +15,8 @@ static int exponent_of(double half)
 {
     int exponent = 0;
     double part = frexp(half, &exponent);
-    return part == 0.5 ? exponent - 1 : exponent; /* `half` may itself be a power of two */
+    /* if `part` is 0.5, `half` is itself a power of two */
+    return part == 0.5 ? exponent - 1 : exponent;
 }
 
 /* Rounds a number to the nearest multiple of 2^exponent. A number so large that it must be such a
@@ -27,8 +28,8 @@ static double snapped(double x, int exponent)
     return own > exponent + 52 ? x : ldexp(rint(ldexp(x, -exponent)), exponent);
 }
 
-/* The frame contains the isolated vertices whose distance from the centre of the surface's box is
- * at most this many times half of the box's longest side. */
+/* The frame (draw_arrays.h) contains the isolated vertices whose distance from the centre of the
+ * box around the surface is at most this many times half of the box's longest side. */
 static const double FAR = 4096;
 
 static void include(he_box *box, he_vec3 p)
@@ -80,7 +81,8 @@ he_frame he_frame_of(const he_mesh *m)
     }
     int e = exponent_of(half), most = 0;
     (void)frexp(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)), &most);
-    /* A box may be flat along the axis of its largest coordinate, which must be scaled, too. */
+    /* A box may be flat along the axis of its largest coordinate; so the scale is limited, because
+     * that coordinate must not overflow. */
     e = e < most - 900 ? most - 900 : e;
     e = e < -1022 ? -1022 : e;
     he_vec3 origin = {snapped(center.x, e - 2), snapped(center.y, e - 2), snapped(center.z, e - 2)};
@@ -96,10 +98,11 @@ static he_vec3 place(const he_draw_arrays *d, uint32_t halfedge)
                        he_vec3_scale(d->frame.origin, d->frame.scale));
 }
 
-/* --- faces that are fans --- */
+/* --- faces that are drawn as fans of triangles --- */
 
 /* A triangle counts as degenerate if its doubled area is at most this fraction of the sum of its
- * squared sides. planar_loop.c has an equal limit, so that both files agree on which ones are. */
+ * squared sides. planar_loop.c has an equal limit, so that both files agree on which triangles are
+ * degenerate. */
 static const double THIN = 1e-12;
 
 /* Returns true if the triangle of the origin, u and v turns counter-clockwise as seen from
@@ -167,7 +170,7 @@ static uint32_t apex_of_quad(const he_draw_arrays *d, uint32_t first)
     return he_vec3_dot(other, other) < CLEARLY * he_vec3_dot(across, across) ? h[1] : h[0];
 }
 
-/* --- faces that are no fan --- */
+/* --- faces that are not drawn as fans --- */
 
 static uint32_t side(uint32_t a, uint32_t b, uint32_t n, unsigned bit)
 {
@@ -207,7 +210,7 @@ static he_status cut(he_draw_arrays *d, uint32_t face, he_error *err)
     return HE_OK;
 }
 
-/* --- both kinds of faces --- */
+/* --- faces of both kinds, drawn as fans or not --- */
 
 void he_draw_arrays_clear(he_draw_arrays *drawing)
 {
@@ -223,7 +226,7 @@ static he_status prepare(he_draw_arrays *d, uint32_t face, uint64_t *most, he_er
     uint32_t first = d->mesh->c.face_halfedge[face], degree;
     uint32_t fourth = next[next[next[first]]];
     if (fourth == first || next[fourth] == first) {
-        return HE_OK; /* triangles and quadrilaterals are always drawn as fans */
+        return HE_OK; /* the face is a triangle or quadrilateral, which is always drawn as a fan */
     }
     he_vec3 normal = normal_of(d, first, &degree);
     if (is_fan(d, first, normal)) {

@@ -14,13 +14,13 @@
  * A side whose bit is clear is a diagonal. Sides that are edges run as the face does.
  *
  * A vertex's row depends on that vertex and the frame (he_frame). A face's triangles depend on the
- * face, the order of its corners from the stored half-edge, their positions unless it is a
+ * face, the order of its corners from the stored half-edge, their positions unless the face is a
  * triangle, and the frame. So an edit changes only the rows of elements that it touches. The caller
  * that keeps the array of triangles decides where in it they are: see draw_slots.h.
  *
  * A face whose corners are all visible from its first one is drawn as the fan of that corner; a
  * quadrilateral is cut along the diagonal that flips no triangle, or the shorter one if neither
- * does; others are cut as triangulation.h says. */
+ * does; all other faces are cut as triangulation.h says. */
 #ifndef HE_DRAW_DRAW_ARRAYS_H
 #define HE_DRAW_DRAW_ARRAYS_H
 
@@ -47,7 +47,7 @@ he_frame he_frame_of(const he_mesh *m);
 enum { HE_DRAWN_DEAD = 0, HE_DRAWN_USED = 1, HE_DRAWN_ISOLATED = 2 };
 enum {
     HE_DRAWN_SIDES = 29, /* the first of the three bits that mark sides as edges */
-    HE_DRAWN_ROW = 4     /* words of a row, in both arrays */
+    HE_DRAWN_ROW = 4     /* number of words in a row of either array */
 };
 
 typedef struct he_draw_arrays {
@@ -61,7 +61,7 @@ typedef struct he_draw_arrays {
 /* Prepares to draw all faces. Borrows the mesh, which must not change while it is drawn; `frame`
  * must keep its vertices with edges within the unit ball. he_draw_arrays_clear frees the drawing.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits. */
 HE_NODISCARD he_status he_draw_arrays_init(he_draw_arrays *drawing, const he_mesh *m,
                                            const he_frame *frame, he_error *err);
 /* Prepares like he_draw_arrays_init, but to draw only some live faces, which must be in rising
@@ -73,14 +73,14 @@ HE_NODISCARD he_status he_draw_arrays_init_faces(he_draw_arrays *drawing, const 
                                                  size_t count, uint64_t most, he_error *err);
 void he_draw_arrays_clear(he_draw_arrays *drawing);
 
-/* Writes the row of any issued vertex. */
+/* Writes the row of vertex `id`, which may be deleted. */
 void he_draw_arrays_vertex(const he_draw_arrays *drawing, uint32_t id, float out[HE_DRAWN_ROW]);
 
-/* The position of a walk over the triangles of a face. {0} is after the last one. */
+/* The position of a walk over the triangles of a face. {0} is a walk that has ended. */
 typedef struct he_draw_arrays_walk {
-    uint32_t face, left; /* the face, and how many of its triangles are left */
-    uint32_t apex, at; /* half-edges: the one that leaves the fan's apex, and the outer side of the
-                          next triangle */
+    uint32_t face, left; /* the face, and how many of its triangles the walk has not reached */
+    /* half-edges: `apex` leaves the apex of the fan, `at` is the outer side of the next triangle */
+    uint32_t apex, at;
     const uint32_t *cut; /* the next triangle if the face is not drawn as a fan, else NULL */
 } he_draw_arrays_walk;
 

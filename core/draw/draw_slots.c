@@ -212,8 +212,8 @@ static void forget_front(he_ids *list, size_t count)
     }
 }
 
-/* Forgets the oldest steps if `more` changes would be too many. It forgets more steps than it must,
- * so that it has nothing to do the next times. */
+/* Forgets the oldest steps (updates of the slots) if `more` new changes would be too many to
+ * remember. It forgets more steps than it must, so that the next calls have nothing to do. */
 static void forget_steps(he_draw_slots *s, size_t more)
 {
     size_t most = rows_of(s) / 2 + HE_DRAW_SLOT_CHANGES, gone = 0;
@@ -397,8 +397,8 @@ static bool is_triangle(const he_mesh *m, uint32_t face)
     return m->c.next[m->c.next[m->c.next[first]]] == first;
 }
 
-/* Adds the moved vertices and the faces around them to those touched. Triangles are left out, as
- * only larger faces may be cut in another way after a move. */
+/* Adds the moved vertices and the faces around them to the touched elements. Triangles are left
+ * out, as only larger faces may be cut in another way after a move. */
 static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *err)
 {
     he_status status = he_ids_sort(&t->moved, err);
@@ -475,7 +475,8 @@ static void commit(he_draw_slots *s, const he_mesh *m, const he_touched *t, cons
 {
     issue_faces(s, m->c.faces.issued);
     s->vertices = m->c.vertices.issued;
-    /* Every run is freed before any is taken, so that freed runs can be used again at once. */
+    /* All runs of slots that faces give up are freed before any new run is taken, so that freed
+     * runs can be used again at once. */
     for (size_t i = 0; i < t->faces.count; i++) {
         uint32_t face = t->faces.ids[i], before = r->length[2 * i];
         if (before > 0) {

@@ -26,15 +26,16 @@
 
 enum {
     HE_DRAW_SLOT_BINS = 64,
-    HE_DRAW_SLOT_CHANGES =
-        4096 /* changed rows that are remembered at least, however small the mesh */
+    /* at least so many changed rows are remembered, however small the mesh is */
+    HE_DRAW_SLOT_CHANGES = 4096
 };
 
 /* A flag in a word of he_draw_slots.owner: the slot has no face. */
 #define HE_DRAW_SLOT_DEAD ((uint32_t)1 << 31)
 
-/* One update of the slots from a revision to a later one. Its changes are the entries of
- * `changed_vertices` and `changed_slots` from the end of the step before up to these two ends. */
+/* One update of the slots from a revision to a later one. Its changes are entries of
+ * `changed_vertices` and `changed_slots` in he_draw_slots: they begin where those of the step
+ * before end, and end before the indices `vertices` and `slots`. */
 typedef struct he_draw_slot_step {
     uint64_t revision; /* revision after the step */
     size_t vertices, slots;
@@ -44,15 +45,16 @@ typedef struct he_draw_slot_step {
 typedef struct he_draw_slots {
     uint64_t layout, revision;
     he_frame frame;
-    uint32_t vertices;    /* rows of vertices, one for each id issued */
-    uint32_t count, dead; /* number of slots, and of dead slots among them */
-    uint32_t *owner; /* face of each slot; in a dead one HE_DRAW_SLOT_DEAD and a link of a list */
+    uint32_t vertices;    /* number of rows of vertices, as many as ids issued */
+    uint32_t count, dead; /* number of all slots, and number of dead slots */
+    /* face of each slot; if the slot is dead, HE_DRAW_SLOT_DEAD and a link to another freed run */
+    uint32_t *owner;
     uint32_t *first; /* first slot of each face, HE_NONE if the face is dead */
     size_t owner_capacity, first_capacity;
     uint32_t faces; /* entries of `first` */
-    uint32_t
-        bin[HE_DRAW_SLOT_BINS]; /* linked lists of freed runs by length; bin 0 has the long ones */
-    uint64_t filled;            /* one bit for each list that is not empty */
+    /* first freed run of the linked list for each length; bin 0 is the list of long runs */
+    uint32_t bin[HE_DRAW_SLOT_BINS];
+    uint64_t filled; /* a bit for each list in `bin`, set if the list is not empty */
 
     uint64_t known; /* the revision since which all changes are remembered */
     he_ids changed_vertices, changed_slots;
@@ -62,7 +64,7 @@ typedef struct he_draw_slots {
 
 /* Makes a new layout of a mesh, with the runs of slots in the order of faces.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits. */
 HE_NODISCARD he_status he_draw_slots_new(const he_mesh *m, uint64_t layout, uint64_t revision,
                                          he_draw_slots **out, he_error *err);
 void he_draw_slots_free(he_draw_slots *slots);
@@ -82,11 +84,12 @@ HE_NODISCARD he_status he_touched_add(he_touched *touched, const he_mesh *m, con
 void he_touched_clear(he_touched *touched);
 
 /* Updates the slots to `m`, which is at `revision` and differs only in the elements of `touched`
- * from the mesh they were made or last updated for. Sorts the lists of `touched`. On HE_LIMIT,
- * HE_NO_MEMORY and HE_IDS_EXHAUSTED the slots are as they were, but may remember fewer changes.
+ * from the mesh for which the slots were made or last updated. Sorts the lists of `touched`. On
+ * HE_LIMIT, HE_NO_MEMORY and HE_IDS_EXHAUSTED the slots are as they were, but may remember fewer
+ * changes.
  * Returns HE_LIMIT if the update takes more than `most` steps.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits.
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits.
  * Returns HE_UNSUPPORTED if the layout has ended. */
 HE_NODISCARD he_status he_draw_slots_advance(he_draw_slots *slots, const he_mesh *m,
                                              he_touched *touched, uint64_t revision, uint64_t most,
@@ -95,8 +98,9 @@ HE_NODISCARD he_status he_draw_slots_advance(he_draw_slots *slots, const he_mesh
 /* Lists, in rising order, the rows of vertices and triangles that may differ from those at revision
  * `since`; if a face has a changed slot, all its slots are listed. The caller clears both lists,
  * also after a failure.
- * Returns HE_UNSUPPORTED if the changes are not remembered, or are more than half of all rows.
- * Returns HE_LIMIT if more than `most` changes, repeats included, were made since then.
+ * Returns HE_UNSUPPORTED if the changes are not remembered, or if they are more than half of all
+ * rows.
+ * Returns HE_LIMIT if more than `most` changes, repeats included, were made since that revision.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_draw_slots_changed(const he_draw_slots *slots, uint64_t since,
                                              uint64_t most, he_ids *vertices, he_ids *triangles,

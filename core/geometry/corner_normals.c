@@ -14,7 +14,7 @@ typedef struct corner {
 
 typedef struct fan {
     corner *corners; /* the corners, counter-clockwise around the vertex */
-    he_vec3 *sums;   /* weighted sum of normals, one for each group */
+    he_vec3 *sums;   /* weighted sum of the normals of each group */
     size_t count, capacity;
     double crease;
 } fan;
@@ -43,8 +43,8 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, they
- * are computed. */
+/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, the
+ * normals needed are computed. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {
@@ -81,11 +81,12 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
 
 /* Groups the corners around a vertex that no crease separates: the normals of neighbouring faces of
  * a group differ by at most the crease angle. Returns the number of groups. A boundary half-edge
- * comes before the corners of its fan, and a vertex on the boundary stores one, so only a closed
- * fan continues from its last corner to the first. */
+ * comes before the corners of its fan, and a vertex on the boundary stores a boundary half-edge, so
+ * only a closed fan continues from its last corner to the first. */
 static uint32_t find_groups(fan *f)
 {
-    const corner *last = NULL, *leader = NULL; /* the latest and the first corner with a normal */
+    /* the last and the first corner so far whose face has a normal */
+    const corner *last = NULL, *leader = NULL;
     uint32_t group = 0;
     bool closed = true;
     for (size_t i = 0; i < f->count; i++) {

@@ -6,7 +6,7 @@
 
 static const he_corner_box EMPTY = {{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
 
-/* --- the order of the corners --- */
+/* --- the order of corners along the Z curve --- */
 
 typedef struct keyed {
     uint64_t key;
@@ -110,7 +110,7 @@ static bool fill_order(he_corner_tree *t, const uint32_t *corners)
     return true;
 }
 
-/* --- the boxes of the nodes --- */
+/* --- the boxes of the tree's nodes --- */
 
 static void include(he_corner_box *box, const he_corner_box *other)
 {
@@ -235,11 +235,11 @@ void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
  * of a determinant. */
 static const double ABOUT = 4e-12;
 
-/* A side of the triangle, from `at` to `at` + `along`, and the corner of a box that lies furthest
- * to its left. */
+/* A side of the triangle, from `at` to `at` + `along`, and which corner of any box lies furthest to
+ * the left of the side. */
 typedef struct side {
     double at[2], along[2];
-    bool high[2]; /* is the furthest corner at the box's maximum? */
+    bool high[2]; /* true on an axis if that corner is at the maximum of the box */
 } side;
 
 typedef struct triangle {

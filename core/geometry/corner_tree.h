@@ -14,9 +14,9 @@
  *
  * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: testing
  * all of them takes less time than building and searching the tree (`make bench-space` measures
- * A search of the list finds the corner that comes first along the Z curve, as a search of the tree
- * would. Only in a list made of at most HE_CORNER_UNSORTED corners it finds the first corner in the
- * order of the list instead. */
+ * both). A search of the list finds the corner that comes first along the Z curve, as a search of
+ * the tree would. Only in a list made of at most HE_CORNER_UNSORTED corners it finds the first
+ * corner in the order of the list instead. */
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
@@ -38,16 +38,16 @@ typedef struct he_corner_box {
 typedef struct he_corner_tree {
     const he_planar_loop *flat;
     void *memory;         /* one block that contains the arrays below */
-    he_corner_box *boxes; /* one box for each node; only in a tree */
+    he_corner_box *boxes; /* the box of each node of the tree; a list has none */
     /* Coordinates of the corners in a list, in its order, filled up with infinity to whole
      * batches. */
     double *x, *y;
-    uint32_t *place; /* for each corner of the loop, its index in `order`, or HE_NONE */
+    uint32_t *place; /* index in `order` of each corner of the loop, or HE_NONE */
     /* The corners in the order of the Z curve, HE_NONE for each that was removed; or, in a plain
      * list, the corners in any order and without gaps. */
     uint32_t *order;
     uint32_t count;  /* number of entries of `order` */
-    uint32_t made;   /* number of corners when the tree was made */
+    uint32_t made;   /* number of corners when the tree or list was made */
     uint32_t leaves; /* number of leaves; 0 for a list */
 } he_corner_tree;
 

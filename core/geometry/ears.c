@@ -32,25 +32,27 @@ static void take_out(ring r, uint32_t i)
 /* --- ears --- */
 
 typedef enum state {
-    CANDIDATE, /* turns left; not known yet whether it is an ear */
-    PIERCED,   /* turns left, with a corner in its triangle */
+    CANDIDATE, /* a corner that turns left; not known yet whether it is an ear */
+    PIERCED,   /* a corner that turns left, with another corner in its triangle */
     FLAT,      /* does not turn left */
-    TAKEN      /* would be an ear, but its diagonal is an edge */
+    TAKEN      /* a corner that would be an ear, but its diagonal is an edge */
 } state;
 
 typedef struct ears {
     const he_mesh *m;
     const he_planar_loop *f;
-    bool avoid; /* avoid diagonals that exist as edges */
-    ring loop;  /* the loop that is left, without a node of its own */
+    bool avoid; /* true if diagonals that exist as edges must be avoided */
+    ring loop;  /* the corners that are not cut off yet, in a ring without a node of its own */
     ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; each begins at node n + state */
-    /* Lists of PIERCED corners, by the corner that lies in their triangle. Each list begins at n
-     * plus that corner; one at 2n has those whose corner is no longer in the tree. */
+    /* Lists of PIERCED corners, by the corner that lies in their triangle. Each list begins at node
+     * n plus that corner; the list at node 2n has the PIERCED corners whose other corner is no
+     * longer in the tree. */
     ring watch;
     uint8_t *state;
     he_corner_tree tree; /* corners that have never turned left */
-    uint32_t left, at,
-        last;       /* corners left; the candidate to try next; where the last triangle is */
+    /* `left`: number of corners left; `at`: candidate to try next; `last`: a corner of the triangle
+     * that remains at the end */
+    uint32_t left, at, last;
     uint32_t taken; /* number of corners in state TAKEN */
     uint64_t most;  /* number of steps after which triangles are no longer tested for being empty */
     he_triangulation_work *work;
@@ -79,7 +81,7 @@ static void leave_tree(ears *e, uint32_t corner)
 }
 
 /* Updates the state of a corner whose neighbour has changed. A corner that turns left is inserted
- * into the list of candidates behind `before`. */
+ * into the list of candidates behind the corner `before`. */
 static void look_at(ears *e, uint32_t i, uint32_t before)
 {
     take_out(e->kinds, i);
@@ -189,7 +191,7 @@ static void cut_off(ears *e, uint32_t i, uint32_t *corners)
     }
     e->left--;
     /* The corners a and c, on both sides of the corner i that was cut off, take the place of i in
-     * the list. */
+     * the list of candidates. */
     look_at(e, c, i);
     take_out(e->kinds, a);
     look_at(e, a, e->kinds.prev[i]);

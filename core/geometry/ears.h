@@ -9,8 +9,8 @@
  *
  * If the triangle contains corners, the one nearest to a - c does not turn left, so it is enough to
  * test corners that do not turn left: only these are kept in a tree of boxes (corner_tree.h). A
- * corner whose triangle contains one of them is PIERCED: it is listed under that one, and is tried
- * again only when that one has been cut off or turns left.
+ * corner whose triangle contains one of them is PIERCED: it is listed under that corner, and is
+ * tried again only when that corner has been cut off or turns left.
  *
  * A simple polygon has an ear until it is used up, and each corner is tried at most three times. A
  * search of the tree takes logarithmic time in most polygons, but not in all. After HE_EAR_STEPS

@@ -26,8 +26,8 @@ static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
     return count;
 }
 
-/* Returns true if a half-edge is in a list: both its ends have a large degree, and its target has
- * the smaller id. */
+/* Returns true if a half-edge is in a list of its origin's neighbours: both its ends have a large
+ * degree, and its target has the smaller id. */
 static bool is_listed(const he_mesh *m, const uint32_t *rank, uint32_t h)
 {
     uint32_t from = m->c.origin[h], to = m->c.origin[h ^ 1u];
@@ -53,7 +53,7 @@ static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t c
     return total;
 }
 
-/* Puts each vertex into the lists of its neighbours, in rising order. */
+/* Puts each vertex of large degree into the lists of its neighbours, in rising order. */
 static void fill_lists(const he_mesh *m, const he_edge_lookup *j)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
@@ -90,7 +90,7 @@ he_status he_edge_lookup_make(const he_mesh *m, he_edge_lookup *out, he_error *e
     return HE_OK;
 }
 
-/* --- pairs that were joined later --- */
+/* --- pairs of vertices that were joined after the lookup was made --- */
 
 /* Returns the key of a pair of vertices. It is never 0, since the larger id is not 0. */
 static uint64_t key_of(he_vertex a, he_vertex b)

@@ -14,10 +14,13 @@ enum { HE_EDGE_LOOKUP_DEGREE = 32 };
 
 /* An index of edges. {0} is empty. */
 typedef struct he_edge_lookup {
-    uint32_t *rank;   /* rank of a vertex among those of large degree, or HE_NONE */
-    uint32_t *starts; /* where the list of each rank begins, and where the last one ends */
-    uint32_t *lists;  /* for each rank, the neighbours of large degree with smaller ids */
-    uint64_t *noted;  /* hash table of pairs that were joined later; 0 is a free slot */
+    uint32_t *rank; /* rank of a vertex among those of large degree, or HE_NONE */
+    /* index in `lists` where the list of each rank begins; at the end, where the last list ends */
+    uint32_t *starts;
+    uint32_t *lists; /* a list for each rank: the neighbours of large degree with smaller ids */
+    /* hash table of pairs of vertices that were joined after the lookup was made; 0 is a free
+     * slot */
+    uint64_t *noted;
     size_t noted_count, noted_slots;
 } he_edge_lookup;
 

@@ -43,22 +43,22 @@ HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_progress *progress
                                          he_error *err);
 
 /* Returns the angle between a half-edge and the one before it, in [0, pi]; so a reflex corner gives
- * the smaller angle. At a hole it is the angle between the two boundary edges. Returns 0 if one of
- * the two edges has no length. */
+ * the smaller angle. At a boundary half-edge it is the angle between two boundary edges. Returns 0
+ * if one of the two edges has no length. */
 double he_corner_angle(const he_mesh *m, he_halfedge h);
 
 /* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
     he_vec3 normal;   /* unit vector, or zero if the face is degenerate */
-    he_vec3 centroid; /* mean of the corners, where face_poke puts its vertex */
+    he_vec3 centroid; /* mean of the corners' positions, where face_poke puts a vertex */
     double area;
     uint32_t degree;
     bool degenerate;
 } he_face_shape;
 
 he_face_shape he_face_measure(const he_mesh *m, he_face f);
-/* Each of these functions finds one property of a face. he_face_normal returns false, with zero,
- * for a degenerate face. */
+/* Each of these functions finds one property of a face. he_face_normal finds zero and returns false
+ * if the face is degenerate. */
 bool he_face_normal(const he_mesh *m, he_face f, he_vec3 *out);
 double he_face_area(const he_mesh *m, he_face f);
 he_vec3 he_face_centroid(const he_mesh *m, he_face f);
@@ -74,10 +74,10 @@ typedef enum he_weight {
  * its faces are degenerate, or if their normals cancel out. */
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
-/* Find the normals of the whole mesh, into an array of one entry for each issued row, in linear
- * time. The rows of deleted elements, and of elements without a normal, are zero. `progress`, which
- * may be NULL, can cancel the work and lends threads to he_face_normals. On failure the array is
- * half written.
+/* These functions find the normals of all faces or vertices of a mesh, into an array of one entry
+ * for each issued row, in linear time. The rows of deleted elements, and of elements without a
+ * normal, are zero. `progress`, which may be NULL, can cancel the work and lends threads to
+ * he_face_normals. On failure the array is half written.
  * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_CORRUPT if links do not close. */
 HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_progress *progress, he_vec3 *out,

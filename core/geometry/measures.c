@@ -58,7 +58,8 @@ static void add(total *t, double x)
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
-    total of[WINDOWS]; /* the true total of window i is this times 2^(LEAST + WINDOW i) */
+    /* a total for each window: of[i] times 2^(LEAST + WINDOW i) is the true total */
+    total of[WINDOWS];
 } sums;
 
 /* Adds x times 2^exponent to the total of its window. */
@@ -74,7 +75,8 @@ static void add_scaled(sums *s, double x, int exponent)
     add(&s->of[window], ldexp(part, above - window * WINDOW));
 }
 
-/* Returns the sum of all totals divided by `divisor`, or the largest double if it is too large. */
+/* Returns the sum of all totals divided by `divisor`, or the largest double if that is too large
+ * for a double. */
 static double sum_of(sums *s, const total *plain, double divisor)
 {
     add_scaled(s, plain->sum, 0);
@@ -102,7 +104,8 @@ static he_vec3 find_base(const he_mesh *m)
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (m->c.vertex_halfedge[v] < HE_DEAD) {
             he_vec3 p = m->c.position[v];
-            double square = he_vec3_dot(p, p); /* may be infinite: then another vertex is taken */
+            /* squared distance; if it is infinite, another vertex is taken */
+            double square = he_vec3_dot(p, p);
             if (square < least || !any) {
                 least = square;
                 base = p;
@@ -131,7 +134,8 @@ static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector,
 he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
 {
     sums area = {0}, volume = {0};
-    total plain_area = {0, 0}, plain_volume = {0, 0}; /* sums of terms of ordinary size */
+    /* sums of the terms that are neither very large nor very small */
+    total plain_area = {0, 0}, plain_volume = {0, 0};
     uint32_t budget = he_ring_budget(m);
     bool closed = m->c.boundary_halfedges == 0 && m->c.faces.live > 0;
     he_vec3 base = closed ? find_base(m) : (he_vec3){0, 0, 0};

@@ -70,8 +70,8 @@ bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *
 /* A triangle of ordinary size. Most faces of most meshes are such triangles, and loops over the
  * whole mesh handle them without a call and with few square roots. */
 typedef struct triangle {
-    uint32_t a, b, c; /* corners, from the stored half-edge on */
-    he_vec3 u, v;     /* a to b, a to c */
+    uint32_t a, b, c; /* vertices of the corners, from the stored half-edge on */
+    he_vec3 u, v;     /* vectors from a to b and from a to c */
     he_vec3 vector;   /* u x v: twice the area vector */
     double square;    /* squared length of `vector` */
 } triangle;
@@ -151,15 +151,16 @@ typedef struct faces {
     he_vec3 *out;
 } faces;
 
-/* Returns true if all faces are triangles. Every face has at least three corners (I7), so they are
- * if the mean is three. */
+/* Returns true if all faces are triangles. Every face has at least three corners (I7), so all are
+ * triangles if the mean number of corners is three. */
 static bool are_triangles(const he_content *c)
 {
     return 2 * (uint64_t)c->edges.live - c->boundary_halfedges == 3 * (uint64_t)c->faces.live;
 }
 
 typedef struct triple {
-    uint32_t a, b, c; /* vertices; all HE_NONE if the general function is needed */
+    /* vertices of a triangle; all HE_NONE if only the general function can handle it */
+    uint32_t a, b, c;
 } triple;
 
 static inline triple find_triple(const he_content *c, uint32_t f, bool triangles)
@@ -177,7 +178,7 @@ static inline triple find_triple(const he_content *c, uint32_t f, bool triangles
         }
     }
     /* The origin of a twin shares a cache line with the origin of its half-edge, so targets are
-     * read there, and the third half-edge is not read. */
+     * read as origins of twins, and the third half-edge is not read. */
     triple t = {c->origin[h], c->origin[h ^ 1u], c->origin[i ^ 1u]};
     return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
 }
@@ -276,8 +277,9 @@ static void add_to(he_vec3 *sum, he_vec3 normal, double weight)
     *sum = he_vec3_add(*sum, he_vec3_scale(normal, weight));
 }
 
-/* Adds a triangle's share to the normals of its three corners. `half` is half the unit of area, 0
- * if a double cannot hold it. Returns false if the share would vanish in that unit. */
+/* Adds a triangle's share to the normals of its three corners. `half` is half the unit of area (see
+ * area_unit_of_all), 0 if a double cannot hold it. Returns false if the share would vanish in that
+ * unit. */
 static bool share_triangle(const triangle *t, he_weight weight, double half, he_vec3 *out)
 {
     if (weight == HE_WEIGHT_AREA) {

@@ -11,7 +11,7 @@ static int sign(double x)
     return (x > 0) - (x < 0);
 }
 
-/* --- expansions: components in rising order of size, none of them zero --- */
+/* --- expansions: sums of doubles, in rising order of size, none of them zero --- */
 
 enum { MOST = 192 }; /* most components that the determinant of three-by-three differences needs */
 
@@ -148,7 +148,7 @@ int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
     double size = (fabs(vxwy) + fabs(wxvy)) * fabs(u.z) + (fabs(wxuy) + fabs(uxwy)) * fabs(v.z) +
                   (fabs(uxvy) + fabs(vxuy)) * fabs(w.z);
     if (size == 0) {
-        return 0; /* a difference is 0 only between equal numbers */
+        return 0; /* exact: a difference of doubles is 0 only if they are equal */
     }
     return fabs(determinant) > ERROR3 * size ? sign(determinant) : exact3(a, b, c, d, size);
 }
@@ -160,7 +160,7 @@ int he_orient2(he_vec2 a, he_vec2 b, he_vec2 c)
         return sign(left - right);
     }
     if (left == 0 && right == 0) {
-        return 0; /* a difference is 0 only between equal numbers */
+        return 0; /* exact: a difference of doubles is 0 only if they are equal */
     }
     expansion e = {.count = 0};
     const pair one = {0, 1};

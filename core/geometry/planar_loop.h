@@ -24,8 +24,8 @@ HE_NODISCARD he_status he_planar_loop_init(he_planar_loop *flat, const he_mesh *
                                            he_halfedge first, he_error *err);
 void he_planar_loop_clear(he_planar_loop *flat);
 
-/* A triangle or loop has no area if its doubled area, relative to its squared sides, is below
- * this. */
+/* A triangle or loop has no area if its doubled area, relative to its squared sides, is below this
+ * limit. */
 #define HE_PLANAR_LOOP_THIN 1e-12
 
 /* Returns true if the triangle of corners a, b, c turns counter-clockwise, by more than

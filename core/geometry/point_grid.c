@@ -1,4 +1,4 @@
-/* point_grid.c - finds points within a tolerance of another by a hash table of cells.
+/* point_grid.c - finds the points within a tolerance of a given point, by a hash table of cells.
  *
  * The constant NEAR is the tolerance, a quarter of a cell, with a margin for the rounding of the
  * division. For coordinates so large that the margin is too small (2^43 cells from 0), both
@@ -16,8 +16,8 @@
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
-/* The number of slots that are cleared between two reports of progress, because writing to fresh
- * memory is slow. */
+/* The number of slots that are cleared between two reports of progress; it is small because writing
+ * to fresh memory is slow. */
 enum { STRETCH = 16 * HE_PROGRESS_STRIDE };
 
 he_status he_point_grid_make(he_point_grid *out, const he_point_grid_points *points, size_t most,

@@ -16,7 +16,7 @@
 #include "mesh/mesh.h"
 
 typedef struct he_point_grid_slot {
-    uint32_t hash, number; /* hash and number + 1 of a kept point; 0 in a free slot */
+    uint32_t hash, number; /* hash of a kept point, and its number + 1; both are 0 in a free slot */
 } he_point_grid_slot;
 
 /* A grid of kept points. {0} is empty. */
@@ -32,7 +32,7 @@ typedef struct he_point_grid {
 typedef struct he_point_grid_points {
     const he_vec3 *at; /* positions of the points; borrowed while the grid is used */
     double tolerance;
-    /* A random number. It and the address of the table keep a file from choosing points that all
+    /* A random number. The slot of a point depends on it, so a file cannot choose points that all
      * fall into one slot. */
     uint64_t seed;
 } he_point_grid_points;

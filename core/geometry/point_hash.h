@@ -19,7 +19,7 @@ static inline uint64_t he_point_hash_add(uint64_t h, double value)
 }
 
 /* Returns the hash of a point: equal for equal coordinates, and 0 and -0 are equal. A client that
- * does not know the seed cannot choose many points with one hash. */
+ * does not know `seed`, a random number, cannot choose many points with one hash. */
 static inline uint32_t he_point_hash(uint64_t seed, he_vec3 p)
 {
     uint64_t h = he_point_hash_add(he_point_hash_add(he_point_hash_add(seed, p.x), p.y), p.z);

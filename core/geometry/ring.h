@@ -1,4 +1,5 @@
-/* ring.h - one walk around a face, from which geometry.h takes its area, normal and centroid. */
+/* ring.h - walks once around a face and sums up what geometry.h needs for its area, normal and
+ * centroid. */
 #ifndef HE_GEOMETRY_RING_H
 #define HE_GEOMETRY_RING_H
 
@@ -11,13 +12,14 @@ typedef struct he_ring {
     /* The sum of |u|^2 |v|^2 over the triangles of the fan, u and v being two sides of each: how
      * large the terms of `vector` were before they cancelled. */
     double reach;
-    uint32_t degree; /* 0 if the links are broken */
+    uint32_t degree; /* number of corners; 0 if the links are broken */
 } he_ring;
 
 /* The squared relative error of a product of differences, with a margin. */
 #define HE_RING_NOISE (64 * DBL_EPSILON * DBL_EPSILON)
 
-/* Returns how many half-edges a walk over the whole mesh may visit. */
+/* Returns how many half-edges a walk over the whole mesh may visit; more mean that links are
+ * broken. */
 uint32_t he_ring_budget(const he_mesh *m);
 /* Walks around the loop of half-edge `first`. `budget` is the number of half-edges that may still
  * be visited. */

@@ -9,7 +9,8 @@
 
 #define HE_PI 3.14159265358979323846
 
-/* Between these two bounds, products of four lengths neither overflow nor lose their digits. */
+/* Between HE_LEAST_PRODUCT and HE_MOST_PRODUCT, products of four lengths neither overflow nor lose
+ * their digits. */
 #define HE_LEAST_PRODUCT 1e-250
 #define HE_MOST_PRODUCT  1e250
 

@@ -6,26 +6,29 @@
 
 /* A corner in the chain of an interval. One corner may be in two chains. */
 typedef struct link {
-    /* `up` and `down` are its neighbours in the chain; HE_NONE at the ends. */
+    /* `up` and `down` are the links above and below this one in the chain; HE_NONE at the ends. */
     uint32_t corner, up, down;
 } link;
 
 typedef struct interval {
-    uint32_t lower, upper;      /* sides, by the corner where they begin in the loop */
-    uint32_t bottom, top, last; /* links: the ends of the chain, and the corner visited last */
-    uint32_t parent, child[2];  /* neighbours in the tree: intervals below, above */
+    /* sides of the loop; a side is named by the corner where it begins */
+    uint32_t lower, upper;
+    /* links: `bottom` and `top` end the chain, `last` has the corner visited last */
+    uint32_t bottom, top, last;
+    /* neighbours in the tree: child[0] leads to intervals below, child[1] to those above */
+    uint32_t parent, child[2];
 } interval;
 
 typedef struct sweep {
     const he_planar_loop *f;
-    uint32_t *rank; /* for each corner, its place in the order of visits */
+    uint32_t *rank; /* place of each corner in the order in which corners are visited */
     /* The interval that each side of the loop bounds; HE_NONE while the sweep line does not cross
      * the side. */
     uint32_t *within;
     interval *intervals;
     link *links;
     uint32_t interval_count, link_count, root;
-    uint32_t *corners, made; /* the triangles so far: their corners, and how many triangles */
+    uint32_t *corners, made; /* `made`: number of triangles cut so far; `corners`: their corners */
     uint64_t *steps;
 } sweep;
 
@@ -135,7 +138,8 @@ static uint32_t find_below(sweep *s, uint32_t corner)
     return found;
 }
 
-/* Inserts an interval just above the interval `below`, or below all others if that is HE_NONE. */
+/* Inserts an interval just above the interval `below`, or below all others if `below` is
+ * HE_NONE. */
 static uint32_t add_interval(sweep *s, uint32_t below)
 {
     interval *of = s->intervals;
@@ -184,7 +188,8 @@ static void join_links(sweep *s, uint32_t lower, uint32_t upper)
     s->links[upper].down = lower;
 }
 
-/* Cuts the triangle of a visited corner and of two links, the upper one first. */
+/* Adds the triangle of a visited corner and the corners of the links `upper` and `lower`. Returns
+ * false if that triangle does not turn left. */
 static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
 {
     uint32_t a = s->links[upper].corner, b = s->links[lower].corner;
@@ -199,8 +204,8 @@ static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
     return true;
 }
 
-/* Adds a corner as the new top of an interval's chain: a corner on the upper side, or at its
- * end. */
+/* Adds a corner as the new top of an interval's chain: a corner on the upper side, or at the end of
+ * that side. */
 static void add_top(sweep *s, interval *of, uint32_t corner)
 {
     uint32_t top = of->top;
@@ -221,7 +226,7 @@ static void add_bottom(sweep *s, interval *of, uint32_t corner)
     join_links(s, of->bottom, bottom);
 }
 
-/* --- events at corners; each returns false if it cannot occur in a simple polygon --- */
+/* --- handlers of events at corners; false: a simple polygon has no such event --- */
 
 static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
 {
@@ -326,7 +331,7 @@ static bool meet(sweep *s, uint32_t corner)
                     : (onward ? split(s, corner) : merge(s, corner));
 }
 
-/* --- sorting the triangles so that each cuts a corner off --- */
+/* --- sorting the triangles so that each cuts a corner off the rest of the loop --- */
 
 /* Returns the middle one of three corners. */
 static uint32_t middle_of(const uint32_t t[3])
@@ -345,9 +350,9 @@ static uint32_t span_of(const uint32_t t[3])
     return high - low;
 }
 
-/* Sorts the triangles so that each cuts a corner off. A triangle spans a range of corners, in which
- * lie the triangles that cut off what is between them; so triangles of small spans come first.
- * Returns false if they are no triangulation. `room` has n + 2 words. */
+/* Sorts the triangles so that each cuts a corner off. A triangle spans a range of corners; the
+ * triangles that cut off the corners inside that range have smaller spans, so triangles of small
+ * spans come first. Returns false if they are no triangulation. `room` has n + 2 words. */
 static bool put_in_order(const he_planar_loop *f, const uint32_t *from, uint32_t *to,
                          uint32_t *room)
 {

@@ -2,7 +2,7 @@
 
 #include "geometry/orient.h"
 
-/* --- tests in a plane --- */
+/* --- intersection tests in a plane --- */
 
 /* Projects a point by dropping one axis. Coordinates stay as they are, so nothing is rounded. */
 static he_vec2 flat(he_vec3 p, int axis)
@@ -142,14 +142,14 @@ static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
 }
 
 /* Returns true if two triangles in one plane that share the side opposite to corners i and k
- * overlap. They do so if they are on the same side of it. */
+ * overlap. They do so if they are on the same side of that common side. */
 static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 {
     he_vec2 p = f->a[(i + 1) % 3], q = f->a[(i + 2) % 3];
     return he_orient2(p, q, f->a[i]) == he_orient2(p, q, f->b[k]);
 }
 
-/* --- tests in space --- */
+/* --- intersection tests in space --- */
 
 /* Two triangles, and on which side of each one's plane the corners of the other are. */
 typedef struct meeting {
@@ -180,9 +180,9 @@ static bool side_meets(const meeting *m, int of, int i)
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* Computes on which sides of the plane of t[1 - of] the corners of t[of] are; those in the set
- * `shared` lie in the plane. Returns true if all others are on one side and none is in the plane,
- * as for nearly all neighbours. */
+/* Computes on which sides of the plane of t[1 - of] the corners of t[of] are; corners in the set
+ * `shared`, which both triangles have, lie in the plane. Returns true if all other corners are on
+ * one side and none is in the plane, as for nearly all neighbours. */
 static bool is_beside(meeting *m, int of, unsigned shared)
 {
     const he_vec3 *plane = m->t[1 - of];

@@ -7,7 +7,7 @@
 #include <float.h>
 #include <string.h>
 
-/* --- state that several loops share --- */
+/* --- state that the triangulations of several loops share --- */
 
 /* Progress is reported after this many steps, which take less than a millisecond. */
 enum { STEPS_UNTOLD = 1 << 15 };
@@ -187,7 +187,7 @@ out:
     return status;
 }
 
-/* --- short and long loops --- */
+/* --- triangulation of short and of long loops --- */
 
 void he_triangulation_clear(he_triangulation *triangulation)
 {
@@ -268,8 +268,8 @@ static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_wo
     return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
 }
 
-/* Takes the triangulation from the mesh's cache. `found` is set to false if it is not there, or if
- * it would double an edge. */
+/* Takes the triangulation from the mesh's cache. `found` is set to false if the cache does not have
+ * it, or if it would double an edge. */
 static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
                            he_triangulation_work *work, he_triangulation *plan, bool *found,
                            he_error *err)

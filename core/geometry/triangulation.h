@@ -37,7 +37,7 @@ enum { HE_EXACT_CORNERS = 64 };
 typedef struct he_triangulation {
     /* The loop in its plane; without x and y if the triangulation is from the cache. */
     he_planar_loop flat;
-    uint32_t *corners; /* three a triangle, counter-clockwise, for flat.n - 2 triangles */
+    uint32_t *corners; /* three for each of the flat.n - 2 triangles, counter-clockwise */
     bool degenerate;   /* some triangle has no area in the plane, or is flipped */
     uint64_t steps;    /* number of steps that this triangulation took */
 } he_triangulation;
@@ -49,8 +49,9 @@ typedef struct he_triangulation_work {
     uint64_t steps;               /* steps taken, also for loops that were refused */
     uint64_t searched;            /* how many of `steps` were spent searching for edges */
     const he_edge_lookup *lookup; /* index of edges; NULL: edges are searched around their ends */
-    he_edge_lookup own; /* the index, once it is worth making, with the caller's diagonals */
-    uint64_t sorted;    /* value of `searched` when the index was made */
+    /* index of edges that is made when it is worth its cost; has the caller's diagonals, too */
+    he_edge_lookup own;
+    uint64_t sorted; /* value of `searched` when the index was made */
     /* The watch that progress is reported to, as `done` of `of`; the caller counts both. `told` is
      * the value of `steps` at the last report. */
     he_progress *progress;
@@ -72,7 +73,8 @@ void he_triangulation_work_clear(he_triangulation_work *work);
 
 /* --- functions for ears.c --- */
 
-/* Returns true if an edge of the mesh joins corners i and k. Counts the steps of the search. */
+/* Returns true if an edge of the mesh joins the corners i and k of a loop. Counts the steps of the
+ * search. */
 bool he_diagonal_exists(const he_mesh *m, const he_planar_loop *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work);
 /* Reports progress; must be called between two cuts.

@@ -87,16 +87,16 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
     }
 }
 
-/* The rows of which a value is made, and their weights. */
+/* The rows from whose values the value of another row is made, and their weights. */
 typedef struct mixture {
     const uint32_t *rows;
-    const double *weights; /* NULL: all rows have equal weights */
+    const double *weights; /* weight of each row; NULL if all weights are equal */
     size_t n;
-    uint32_t nearest; /* the row whose value is copied if the rule is not interpolate */
+    uint32_t nearest; /* the row whose value is copied if the column's rule is copy */
 } mixture;
 
 /* Sets row `to`, in every column of a kind of element, to the value that the column's rule makes of
- * the rows in `of`. */
+ * the rows that `of` names. */
 static void carry(he_mesh *m, he_kind kind, uint32_t to, const mixture *of)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {

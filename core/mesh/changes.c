@@ -1,4 +1,5 @@
-/* changes.c - finds the net effect of deltas on elements: he_changes of delta.h. */
+/* changes.c - finds the net effect of deltas (records of edits) on elements: he_changes of
+ * delta.h. */
 #include "mesh/delta.h"
 
 #include "mesh/column.h"
@@ -6,8 +7,8 @@
 
 #include <string.h>
 
-/* A record that changed one word. Sorting by `key` brings all records of a word together, in the
- * order in which they were written. */
+/* A record of a delta that changed one word of a column. Sorting by `key` brings all records of a
+ * word together, in the order in which they were written. */
 typedef struct word_record {
     uint64_t key; /* column, word and row */
     uint32_t before, after;
@@ -18,8 +19,8 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->column << 40 | (uint64_t)r->word << 32 | r->row;
 }
 
-/* Sorts records by key and keeps the order of equal keys: a few records, as of a local edit, by
- * insertion; many by radix sort, without the bytes that all keys share. */
+/* Sorts records by key and keeps the order of equal keys: a few records, such as those of a local
+ * edit, by insertion; many by radix sort, which skips the bytes that are equal in all keys. */
 static void sort_few(word_record *records, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
@@ -126,9 +127,9 @@ typedef struct word_change {
     uint32_t column, row, before, after;
 } word_change;
 
-/* Adds the element of a changed word to the lists of changes; `attribute` is the column of the
- * word, NULL if it is no attribute. Elements that were created or deleted are recorded as modified,
- * too; keep_modified drops them at the end. */
+/* Adds the element to which a changed word belongs to the lists of changes; `attribute` is the
+ * column of the word, NULL if the word is no attribute value. Elements that were created or deleted
+ * are recorded as modified, too; keep_modified drops them at the end. */
 static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
                            const word_change *change, he_error *err)
 {
@@ -176,16 +177,16 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* What a slot of attribute columns had before the first change. */
+/* What a slot for an attribute column had before the first change. */
 typedef struct attribute_slot {
     const he_column *before; /* the first column in the slot; NULL if the slot was free */
-    bool has_changed;        /* a column was added or dropped */
-    /* The first column was taken out and put back, so it is the one in the mesh now. */
+    bool has_changed;        /* a column was added to the slot or dropped from it */
+    /* `before` is NULL because the first column was dropped and put back: the mesh owns it now. */
     bool is_unknown;
 } attribute_slot;
 
-/* Returns the label of a row; "" if the value is no index of a label, which can happen in a damaged
- * store and is reported by he_check. */
+/* Returns the label of component i of a row; "" if the value is no index of a label, which can
+ * happen in a damaged store and is reported by he_check. */
 static const char *label_of(const he_column *column, const unsigned char *row, uint32_t i)
 {
     uint32_t index;
@@ -207,18 +208,18 @@ static bool same_labels(const he_column *a, const he_column *b, size_t row)
     return same;
 }
 
-/* The records of all parts that changed words. They are sorted by key, and records with one key are
- * in the order in which they took effect. */
+/* The records that changed words, of all parts of deltas. They are sorted by key, and records with
+ * one key are in the order in which they took effect. */
 typedef struct words {
     word_record *records;
     size_t count;
-    attribute_slot *slots; /* one for each slot of attribute columns */
+    attribute_slot *slots; /* what is known about each slot for an attribute column */
     size_t slot_count;
 } words;
 
 /* Notes what a record that added or dropped a column says about the column's slot. The delta owns
- * the column if it is not in the mesh now. A slot beyond those of the mesh belongs to a content
- * that was replaced. */
+ * the column if it is not in the mesh now. A slot number above those of the mesh belongs to a
+ * content that was replaced. */
 static void note_slot(words *w, const he_change_part *part, const he_record *r)
 {
     if (r->row >= w->slot_count) {
@@ -234,8 +235,8 @@ static void note_slot(words *w, const he_change_part *part, const he_record *r)
 }
 
 /* Returns true if the column in the slot was added or dropped by an earlier record. Words written
- * to it afterwards need not be noted, because the first column and the present one are compared as
- * a whole. */
+ * to the slot afterwards need not be noted, because the first column and the present one are
+ * compared as a whole. */
 static bool is_written_later(const words *w, uint32_t slot)
 {
     return slot < w->slot_count && w->slots[slot].has_changed;
@@ -300,8 +301,8 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
 }
 
 /* Returns the attribute column to which words with this column number belong. Returns NULL for
- * links and positions, and for a column without labels that was dropped, which is reported as a
- * whole. */
+ * links and positions, and for a column without labels that was dropped: such a column is reported
+ * as a whole. */
 static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32_t column)
 {
     if (column < HE_COL_ATTRIBUTE) {

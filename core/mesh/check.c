@@ -12,9 +12,9 @@ typedef struct checker {
     const he_mesh *m;
     he_problem *problems;
     size_t capacity, total;
-    uint64_t *in_face; /* a bit for each half-edge: it was reached from its face */
-    uint64_t *in_ring; /* a bit for each half-edge: it was reached by turning around its origin */
-    /* A word for each vertex: one more than the last face or vertex that met it. */
+    uint64_t *in_face; /* a bit for each half-edge, set if the walk around its face reached it */
+    uint64_t *in_ring; /* a bit for each half-edge, set if the walk around its origin reached it */
+    /* A word for each vertex: 1 + the id of the face or vertex whose walk reached it last. */
     uint32_t *stamp;
 } checker;
 
@@ -316,8 +316,8 @@ he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, s
 he_status he_check_with_progress(const he_mesh *mesh, he_progress *progress, he_problem *problems,
                                  size_t capacity, size_t *total, he_error *err)
 {
-    /* The passes run in this order. If the first one finds a bad link, the others are skipped,
-     * because they follow links. */
+    /* The passes of the check, in the order in which they run. If check_links finds a bad link, the
+     * others are skipped, because they follow links. */
     static void (*const passes[])(checker * c) = {check_links,    check_halfedges, check_faces,
                                                   check_vertices, check_rows,      check_materials};
     enum { PASSES = sizeof passes / sizeof *passes };

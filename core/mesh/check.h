@@ -19,7 +19,7 @@ typedef struct he_problem {
 
 /* Writes up to `capacity` broken invariants to `problems`, and the number of all broken invariants,
  * which may exceed `capacity`, to *total; 0 means that the mesh is valid. With capacity 1 the check
- * stops at the first one.
+ * stops at the first broken invariant.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity,
                                 size_t *total, he_error *err);

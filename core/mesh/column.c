@@ -28,7 +28,7 @@ const char *he_rule_name(he_rule rule)
     return rules[rule];
 }
 
-/* Returns the schema of a column; the name is borrowed from it. */
+/* Returns the schema of a column; its name is borrowed from the column. */
 static he_column_schema schema_of(const he_column *column)
 {
     return (he_column_schema){column->name, column->domain, column->type, column->components,

@@ -29,7 +29,7 @@ typedef struct he_labels he_labels;
 
 /* The schema of an attribute: what its values mean, without the values. */
 typedef struct he_column_schema {
-    const char *name; /* UTF-8, ends in NUL, of 1 to HE_COLUMN_NAME - 1 bytes */
+    const char *name; /* UTF-8 of 1 to HE_COLUMN_NAME - 1 bytes, ended by NUL */
     he_kind domain;
     he_type type;
     uint32_t components; /* 1 to HE_COLUMN_COMPONENTS */
@@ -44,10 +44,10 @@ struct he_column {
     uint32_t components;
     uint32_t row_bytes;                          /* bytes of a row: components * size of the type */
     unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default value of a row */
-    /* The strings that values index; NULL if the column is not categorical. */
+    /* The strings of which each value is an index; NULL if the column is not categorical. */
     he_labels *labels;
     unsigned char *data;
-    size_t rows;     /* rows in memory; every row beyond has the default value */
+    size_t rows;     /* number of rows in memory; every row beyond has the default value */
     size_t capacity; /* number of rows that fit into the memory allocated */
 };
 
@@ -71,7 +71,7 @@ HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, 
 size_t he_rows_grown(size_t capacity, size_t rows);
 /* Allocates memory for `rows` rows in all. */
 HE_NODISCARD he_status he_column_reserve(he_column *column, size_t rows, he_error *err);
-/* Appends rows with the default value until the column has `rows` rows more. */
+/* Appends `rows` rows with the default value. */
 HE_NODISCARD he_status he_column_extend(he_column *column, size_t rows, he_error *err);
 /* Returns the value of any row; for a row that is not in memory, the default. */
 static inline const unsigned char *he_column_value(const he_column *column, size_t row)

@@ -31,7 +31,7 @@ static size_t block_count(uint32_t issued)
     return (size_t)issued / BLOCK_ROWS + 1;
 }
 
-/* Makes the blocks of a table. A row is live if its link is not dead: links[row * stride]. */
+/* Makes the blocks of a table. A row is live unless its link, links[row * stride], is dead. */
 static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
 {
     block *blocks = he_mem_array(NULL, block_count(issued), sizeof *blocks);
@@ -75,7 +75,7 @@ static uint32_t rank_halfedge(const block *edges, uint32_t h)
  * of a block from the lowest up, so that no branch depends on which rows are live. */
 typedef struct walk {
     const block *blocks;
-    uint64_t left; /* bits of the present block that are not visited */
+    uint64_t left; /* bits of the present block that are not visited yet */
     size_t at;
     uint32_t row, fresh;
 } walk;
@@ -96,7 +96,8 @@ static bool walk_on(walk *w)
     return true;
 }
 
-/* The content whose live rows are moved, the one into which, and their new ids. */
+/* A move of the live rows of the content `from` into the content `to`; `ranks` gives their new
+ * ids. */
 typedef struct moving {
     const he_content *from;
     he_content *to;
@@ -140,7 +141,7 @@ static void move_faces(const moving *m, size_t at)
     }
 }
 
-/* Moves a table of `issued` rows, block by block. */
+/* Moves the live rows of a table that has `issued` rows; `move` moves those of one block. */
 static he_status move_table(const moving *m, uint32_t issued,
                             void (*move)(const moving *m, size_t at), he_progress *progress,
                             he_error *err)
@@ -177,8 +178,8 @@ static void move_row(const he_column *from, size_t row, he_column *to, size_t fr
     }
 }
 
-/* Copies the values of live rows to a new column. The column has `per` rows for each row of the
- * table (2 for half-edges, which have the table of edges). */
+/* Copies the values of live rows to a new column. A column has `per` rows for each row of its table
+ * of elements: 2 for half-edges, whose table is that of edges, else 1. */
 static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
                       he_column *to)
 {
@@ -268,7 +269,8 @@ static he_status make_room(const he_content *from, he_content *to, he_error *err
     return status;
 }
 
-/* Lists the new id of each row, HE_NONE for deleted ones. Returns NULL if memory is out. */
+/* Lists the new id of each row, HE_NONE for the rows of deleted elements. Returns NULL if memory is
+ * out. */
 static uint32_t *map_rows(const block *blocks, uint32_t issued)
 {
     uint32_t *map = he_mem_array(NULL, issued, sizeof *map);

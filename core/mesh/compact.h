@@ -8,14 +8,16 @@
  * Half-edge 2e + s becomes 2 * edge[e] + s. {0} is empty. */
 typedef struct he_maps {
     uint32_t *vertex, *edge, *face;
-    uint32_t vertices, edges, faces; /* number of entries of each array */
+    /* number of entries of the array `vertex`, `edge` and `face` */
+    uint32_t vertices, edges, faces;
 } he_maps;
 
 void he_maps_clear(he_maps *maps);
 
 /* Removes the rows of deleted elements: live elements keep their order and get the ids 0, 1, 2...
- * Counts, links and attributes are otherwise unchanged; memory shrinks to fit. The delta records
- * one replacement. `maps` may be NULL; otherwise the caller clears it.
+ * Counts, links and attributes are otherwise unchanged; memory shrinks to fit. The delta (the
+ * record of the edit) says only that the whole content was replaced. `maps` may be NULL; otherwise
+ * the caller clears it.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_compact(he_mesh *mesh, he_maps *maps, he_error *err);

@@ -1,4 +1,5 @@
-/* content.h - copying, growing and replaying he_content; for core/mesh and core/stored only. */
+/* content.h - copies, grows and replays the content of a mesh (he_content); only core/mesh and
+ * core/stored use it. */
 #ifndef HE_MESH_CONTENT_H
 #define HE_MESH_CONTENT_H
 
@@ -9,17 +10,17 @@ void he_content_clear(he_content *content); /* frees everything in a content */
 HE_NODISCARD he_status he_content_copy(const he_content *content, he_progress *progress,
                                        he_content *out, he_error *err);
 size_t he_content_bytes(const he_content *content);
-/* Returns the bytes of the rows of a content that were issued, without spare capacity. */
+/* Returns the bytes of all issued rows of a content, without spare capacity. */
 size_t he_content_rows_bytes(const he_content *content);
 
-/* Allocates memory in the link and position columns (not in the attributes) for this many rows in
- * all. */
+/* These functions allocate memory for `rows` rows of a kind of element in all, in the columns of
+ * links and positions but not of attributes. */
 HE_NODISCARD he_status he_content_reserve_vertices(he_content *c, size_t rows, he_error *err);
 HE_NODISCARD he_status he_content_reserve_edges(he_content *c, size_t rows, he_error *err);
 HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_error *err);
 
-/* Returns the table of rows of a kind of element; NULL for the mesh. Half-edges have no table of
- * their own: they have two rows for each row of the edges. */
+/* Returns the table of rows of a kind of element; NULL for HE_MESH_KIND. Half-edges have no table
+ * of their own: they have two rows for each row of the edges. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
 /* Applies the records of a delta between the positions `from` and `to` to a content: forwards, or
@@ -36,7 +37,7 @@ void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t 
 HE_NODISCARD he_status he_content_forward(he_content *c, const he_delta *delta, void **objects,
                                           const uint32_t issued[HE_KIND_COUNT], size_t *refused,
                                           he_error *err);
-/* Issues rows, as those of deleted elements, until the content has issued as many as `issued` says
+/* Issues dead rows (rows of deleted elements) until the content has issued as many as `issued` says
  * for each kind.
  * Returns HE_NO_MEMORY if memory is out; some of the rows may then be issued. */
 HE_NODISCARD he_status he_content_issue(he_content *c, const uint32_t issued[HE_KIND_COUNT],

@@ -26,7 +26,7 @@ static void raise(uint32_t *mark, uint32_t row)
 }
 
 /* Computes how many rows of each kind are issued at the end of a span: an edit writes links to
- * every row it issues, so the highest row number counts. */
+ * every row it issues, so the highest number of a written row is that of the last issued row. */
 static void marks_after(const he_content *c, const he_delta *delta, span s,
                         uint32_t marks[HE_KIND_COUNT])
 {

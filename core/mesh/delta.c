@@ -104,8 +104,8 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
-/* The number of records that are folded between two reports of progress; each fold takes a few
- * cache misses. */
+/* The number of records that are folded (combined by he_delta_fold) between two reports of
+ * progress; folding a record takes a few cache misses. */
 enum { FOLD_STRIDE = 16 * HE_PROGRESS_STRIDE };
 
 /* Combines all records of one word (he_delta_fold in delta.h). A hash table with open addressing

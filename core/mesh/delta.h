@@ -4,9 +4,9 @@
  * changed from `before` to `after`: every column, links and doubles alike, is seen as rows of
  * words. Others say that a column was added or dropped, that a material was set, replaced or
  * removed, or that the whole content was replaced. Such a record names an object: the column,
- * material or content of the side of the change that the mesh is not at; the delta owns that
- * object. Lineage records (this element came from that one, this one merged into that one) change
- * nothing.
+ * material or content from before or after the change, whichever the mesh does not hold now; the
+ * delta owns that object. Lineage records (this element came from that one, this one merged into
+ * that one) change nothing.
  *
  * Applied backwards a delta undoes its edit, applied forwards it does it again, bit for bit. Rows
  * that the edit issued stay issued when it is undone: they are dead then, and only a redo revives
@@ -29,17 +29,17 @@ typedef enum he_col {
     HE_COL_VERTEX_HALFEDGE,
     HE_COL_FACE_HALFEDGE,
     HE_COL_POSITION,
-    /* The constants from here to HE_COL_REPLACED are not columns: records with them say something
-     * else. */
+    /* The constants from here to HE_COL_REPLACED name no columns: records with them say something
+     * other than that a word changed. */
     HE_COL_PARENT, /* `row` is the new element, `before` the one it came from, `word` the kind */
     /* `row` is the deleted element, `before` the one it was merged into, `word` the kind */
     HE_COL_MERGED,
-    HE_COL_COLUMN_ADDED, /* `row` is the slot of the column, `before` the index of the object */
+    HE_COL_COLUMN_ADDED, /* `row` is the slot of the column, `before` its index in `objects` */
     HE_COL_COLUMN_DROPPED,
-    /* `row` is the slot of the material, `before` the index of the object, `after` the mark of the
+    /* `row` is the slot of the material, `before` its index in `objects`, `after` the mark of the
      * material that was in the slot before the edit, 0 if none was */
     HE_COL_MATERIAL,
-    /* `before` is the index of the object, a content; `row` is 1 if ids name other elements than
+    /* `before` is the index in `objects` of the content; `row` is 1 if ids name other elements than
      * before */
     HE_COL_REPLACED,
     HE_COL_ATTRIBUTE
@@ -75,14 +75,15 @@ typedef struct he_savepoint {
 } he_savepoint;
 
 he_delta *he_delta_new(void); /* makes an empty delta; NULL if memory is out */
-/* Allocates memory in a delta for this many more records and objects. */
+/* Allocates memory in a delta for `records` more records and `objects` more objects. */
 HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t objects,
                                         he_error *err);
 void he_delta_free(he_delta *delta);
 /* Removes the records of a delta but keeps the memory. */
 void he_delta_empty(he_delta *delta);
 /* Returns the memory of a delta: the capacity of its records, but only the rows (not the capacity)
- * of its columns and contents, so that a delta read back from storage counts as much as before. */
+ * of its columns and contents, so that a delta read back from storage counts as much as before it
+ * was stored. */
 size_t he_delta_bytes(const he_delta *delta);
 /* Frees the capacity of a delta beyond its records; if memory is out, the capacity stays. */
 void he_delta_trim(he_delta *delta);
@@ -130,9 +131,9 @@ void he_object_free(uint32_t column, void *object);
 /* Returns the bytes of memory of an object that a record with this `column` names. */
 size_t he_object_bytes(uint32_t column, const void *object);
 
-/* Issues rows, as those of deleted elements, until the mesh has issued as many as `issued` says for
- * each kind; if it has issued more, nothing changes. A replay needs this for ids that were issued
- * and deleted before the revision at which it starts.
+/* Issues dead rows (rows of deleted elements) until the mesh has issued as many as `issued` says
+ * for each kind; if it has issued more, nothing changes. A replay needs this for ids that were
+ * issued and deleted before the revision at which it starts.
  * Returns HE_NO_MEMORY if memory is out; some of the rows may then be issued. */
 HE_NODISCARD he_status he_mesh_issue(he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT],
                                      he_error *err);
@@ -145,10 +146,10 @@ void he_delta_rollback(he_mesh *mesh, he_savepoint to);
 /* The net effect of records on elements. Each list is sorted and has no repeats. An element is
  * modified if it exists before and after the records and one of its published links or values
  * differs: a vertex's position, attributes or stored half-edge; an edge's ends, faces or
- * attributes; a face's corners, stored half-edge, corner or own attributes. `parents` has pairs
- * (new element, element it came from), and `merged` has pairs (deleted element, element it was
- * merged into), in the order in which the edit recorded them. A pair is left out if its first
- * element is not in `created`, or not in `deleted`. */
+ * attributes; a face's corners, stored half-edge, attributes or attributes of corners. `parents`
+ * has pairs (new element, element it came from), and `merged` has pairs (deleted element, element
+ * it was merged into), in the order in which the edit recorded them. A pair is left out if its
+ * first element is not in `created`, or not in `deleted`. */
 typedef struct he_changes {
     he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];

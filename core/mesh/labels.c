@@ -5,9 +5,9 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* The text is one block of NUL-ended strings. The hash table, with open addressing, has the index
- * of each string plus 1. A file may name a million groups, so adding a string must take constant
- * time. */
+/* The labels are strings: `text` is one block of them, each ended by NUL. `slots` is a hash table
+ * with open addressing, which has the index of each string plus 1. A file may name a million
+ * groups, so adding a string must take constant time. */
 struct he_labels {
     atomic_uint references;
     char *text;

@@ -1,5 +1,5 @@
-/* layout.h - the fields behind mesh.h. Only core/ includes this. Code that reads a mesh uses
- * walk.h, code that writes one uses write.h. */
+/* layout.h - the members of he_mesh, which mesh.h does not show. Only core/ includes this header.
+ * Code that reads a mesh uses walk.h, code that writes one uses write.h. */
 #ifndef HE_MESH_LAYOUT_H
 #define HE_MESH_LAYOUT_H
 
@@ -7,8 +7,9 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* The counts of a table of rows, of which each belongs to an element. `issued` only grows, except
- * in he_compact and when an edit that was never published is rolled back. */
+/* The numbers of rows of a table; each row belongs to one element. `issued`, how many were ever
+ * added, only grows, except in he_compact and when an edit that was never published is rolled
+ * back. */
 typedef struct he_rows {
     uint32_t issued, live, capacity;
 } he_rows;
@@ -32,11 +33,10 @@ size_t he_content_issued(const he_content *content, he_kind domain);
 
 struct he_mesh {
     he_content c;
-    he_delta *delta; /* the delta that records all writes; NULL: none does */
-    he_progress
-        *progress;   /* reports the progress of long work and may cancel it; NULL: none does */
-    bool expendable; /* see he_mesh_expend */
-    /* The caches of a mesh that is never edited (long_faces.h); NULL: it has none. */
+    he_delta *delta;       /* the delta that records all writes; NULL if no delta does */
+    he_progress *progress; /* receives the progress of long work and may cancel it; may be NULL */
+    bool expendable;       /* see he_mesh_expend */
+    /* The cache of a mesh that is never edited (long_faces.h); NULL if the mesh has none. */
     struct he_kept *kept;
 };
 

@@ -4,7 +4,7 @@
 
 #include <stdatomic.h>
 
-/* The cache of a mesh. Its pointer is set once, by the first thread that has made the
+/* The cache of a mesh. The pointer in it is set once, by the first thread that has made the
  * triangulations. */
 struct he_kept {
     _Atomic(he_long_faces *) long_faces;

@@ -12,20 +12,21 @@
 
 #include "mesh/mesh.h"
 
-/* Allows the mesh to have the cache.
+/* Allows a mesh to have the cache of long faces.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_long_faces_allow(he_mesh *mesh, he_error *err);
-/* Empties the cache. The caller must do this before the mesh changes, while no other thread reads
- * the mesh. The cache may be filled again afterwards. */
+/* Empties the cache of a mesh. The caller must do this before the mesh changes, while no other
+ * thread reads the mesh. The cache may be filled again afterwards. */
 void he_long_faces_forget(he_mesh *mesh);
-/* Frees the cache; called by he_mesh_free. */
+/* Frees the cache of a mesh; he_mesh_free calls it. */
 void he_long_faces_clear(he_mesh *mesh);
-/* Returns the bytes of the cache. */
+/* Returns the bytes of memory of the cache. */
 size_t he_long_faces_bytes(const he_mesh *mesh);
 
-/* A cached triangulation of one face, made with HE_ANY_DIAGONALS. Callers borrow it. */
+/* A cached triangulation of one face, made with the flag HE_ANY_DIAGONALS (triangulation.h).
+ * Callers borrow it. */
 typedef struct he_long_face {
-    uint32_t face, n; /* the face, and the number of its corners */
+    uint32_t face, n; /* id of the face, and its number of corners */
     bool degenerate;
     uint32_t *corners; /* three corners for each triangle, as in triangulation.h */
 } he_long_face;
@@ -45,7 +46,7 @@ bool he_long_faces_are_wanted(const he_mesh *mesh);
 void he_long_faces_put(const he_mesh *mesh, he_long_faces *all);
 
 /* Finds the triangulation of the face whose stored half-edge is `first`. Returns NULL if `first` is
- * not one, or its face is not in the cache. */
+ * not the stored half-edge of a face, or that face is not in the cache. */
 const he_long_face *he_long_faces_find(const he_mesh *mesh, he_halfedge first);
 
 #endif

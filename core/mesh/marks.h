@@ -23,8 +23,9 @@
  *
  *     F1   the edge is no feature and the origin, which is deleted, has a feature edge;
  *     F2   the edge is a feature and the origin is an end or a corner;
- *     F3   the side of a triangle beside the edge that is deleted is a feature;
- *     F4   the target would move and has a feature edge, unless the edge is one of exactly two.
+ *     F3   a triangle beside the edge would lose a side that is a feature;
+ *     F4   the target would move and has a feature edge, unless it has exactly two and the edge is
+ *          one of them.
  *
  * So a feature line can be simplified along itself, and vertices beside it can be collapsed onto
  * it. A vertex moves if its position changes: a new point that rounds to the old position is no
@@ -45,7 +46,7 @@ typedef struct he_marks {
     const he_column *locked[HE_KIND_COUNT]; /* indexed by HE_VERTEX, HE_EDGE, HE_FACE */
 } he_marks;
 
-/* Returns true if the column is a bool column of one component with that name. */
+/* Returns true if the column is called `name` and is a mark: bool, one component. */
 bool he_is_mark(const he_column *column, const char *name);
 /* Finds the mark with this domain and name. Returns NULL if the mesh has no such mark. */
 const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name);
@@ -73,8 +74,8 @@ static inline bool he_is_locked(const he_marks *marks, he_kind kind, uint32_t id
 /* Returns HE_LOCKED_ELEMENT if the element is locked. An id of HE_NONE is never locked. */
 HE_NODISCARD he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id,
                                            he_error *err);
-/* Returns HE_LOCKED_ELEMENT if an edge or face around the origin of a half-edge is locked; looks
- * counter-clockwise, beginning at the half-edge. */
+/* Returns HE_LOCKED_ELEMENT if an edge or face around the origin of a half-edge is locked; the
+ * search goes counter-clockwise, beginning at the half-edge. */
 HE_NODISCARD he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks,
                                                  he_halfedge first, he_error *err);
 

@@ -24,7 +24,7 @@
 enum {
     HE_MATERIALS = 4096,
     HE_MATERIAL_NAME = 1023
-}; /* most rows of a table; most bytes of a name */
+}; /* maximum of slots in a table, and of bytes in a material's name */
 
 typedef struct he_look {
     double base_color[4];
@@ -39,7 +39,7 @@ extern const he_look he_plain_look;
 /* A material. All code may read the members, which never change. */
 typedef struct he_material {
     atomic_uint references; /* private */
-    /* Hash (FNV-1a) of the name and the numbers, as little-endian bytes; never 0. */
+    /* Hash (FNV-1a) of the name and of the numbers of the look, as little-endian bytes; never 0. */
     uint32_t mark;
     he_look look;
     size_t length;
@@ -53,7 +53,7 @@ typedef struct he_material {
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_material_new(const char *name, size_t length, const he_look *look,
                                        he_material **out, he_error *err);
-/* Adds a reference and returns `material`; takes NULL. */
+/* Adds a reference to `material`, which may be NULL, and returns it. */
 he_material *he_material_retain(he_material *material);
 void he_material_release(he_material *material);
 size_t he_material_bytes(const he_material *material); /* returns 0 for NULL */
@@ -75,11 +75,11 @@ typedef struct he_materials {
 } he_materials;
 
 void he_materials_clear(he_materials *materials);
-/* Copies the materials of a table, each to the slot it has.
+/* Copies the materials of a table; each keeps its slot.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_materials *out,
                                          he_error *err);
-/* Copies the materials of a table, without the free slots between them. */
+/* Copies the materials of a table one after another, without the free slots between them. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
 /* Returns the number of materials, without free slots. */
@@ -91,7 +91,7 @@ bool he_materials_equal(const he_materials *a,
 size_t he_materials_find(const he_materials *materials, const char *name, size_t length);
 /* Returns the first free slot, or the slot after the last. */
 size_t he_materials_free_slot(const he_materials *materials);
-/* Allocates memory in a table for this many slots.
+/* Allocates memory in a table for `slots` slots in all.
  * Returns HE_LIMIT if that is more than HE_MATERIALS.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_reserve(he_materials *materials, size_t slots, he_error *err);

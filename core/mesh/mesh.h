@@ -82,7 +82,7 @@ typedef struct he_face {
 #define HE_NONE UINT32_MAX
 /* The value of every link in the row of a deleted element. */
 #define HE_DEAD (UINT32_MAX - 1u)
-/* Most rows of a table; half-edge 2e + 1 must be below HE_DEAD. */
+/* Most rows of a table: half-edge 2e + 1 of the last edge must have an id below HE_DEAD. */
 #define HE_MAX_ROWS (UINT32_MAX / 2u - 1u)
 
 typedef struct he_vec3 {
@@ -111,9 +111,9 @@ bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
  * dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
-/* Makes all long work with this mesh report its progress to `progress`, which may cancel the work:
- * it then fails with HE_CANCELLED. NULL removes it. No other thread may use the mesh, and the
- * watch must exist until it is removed. */
+/* Makes all long work with this mesh report its progress to the watch `progress` (progress.h),
+ * which may cancel the work: it then fails with HE_CANCELLED. NULL removes the watch. No other
+ * thread may use the mesh, and the watch must exist until it is removed. */
 void he_mesh_set_progress(he_mesh *mesh, he_progress *progress);
 /* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. An
  * edit that is cancelled then leaves the mesh half edited, because a rollback would take about as
@@ -130,10 +130,10 @@ uint32_t he_mesh_edges(const he_mesh *mesh);
 uint32_t he_mesh_faces(const he_mesh *mesh);
 uint32_t he_mesh_boundary_halfedges(const he_mesh *mesh);
 uint32_t he_mesh_count(const he_mesh *mesh, he_kind kind);
-/* Returns the high-water mark: how many ids of this kind were ever issued. */
+/* Returns the high-water mark of a kind: how many ids of elements of that kind were ever issued. */
 uint32_t he_mesh_issued(const he_mesh *mesh, he_kind kind);
 bool he_mesh_is_live(const he_mesh *mesh, he_kind kind, uint32_t id);
-/* Returns the first live id at or after `from`, HE_NONE if there is none. */
+/* Returns the first live id of a kind at or after `from`, HE_NONE if there is none. */
 uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from);
 /* Returns HE_OK if the element is live; an error names the element.
  * Returns HE_NO_SUCH_ELEMENT if the id was never issued.

@@ -5,12 +5,12 @@
 
 #include <assert.h>
 
-/* The objects (columns, materials, contents) that crossing one delta took out of the copy, in the
- * order of the delta's objects. */
+/* The objects (columns, materials, contents) that the copy of a mesh lost when it crossed one delta
+ * (replay.h), in the order of the delta's objects. */
 typedef struct other_side {
     uint64_t key;
     void **objects;
-    uint32_t *columns; /* for each object, the column of the record that names it */
+    uint32_t *columns; /* the value of `column` in the record that names each object */
     size_t count;
     struct other_side *next;
 } other_side;
@@ -152,8 +152,8 @@ static other_side *find_side(const he_replay *replay, uint64_t key)
     return side;
 }
 
-/* Finds the objects that crossing a delta will exchange with those of the copy; *objects is NULL if
- * the delta names none. */
+/* Finds the objects that crossing a delta will put into the copy in exchange for others; *objects
+ * is NULL if the delta names none. */
 static he_status require_side(he_replay *replay, const he_crossing *crossing, void ***objects,
                               he_error *err)
 {
@@ -203,6 +203,7 @@ he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_err
     status = crossing->undo
                  ? back(c, crossing, objects, err)
                  : he_content_forward(c, crossing->delta, objects, crossing->issued, NULL, err);
-    assert(status != HE_CORRUPT); /* the copy is always at the point where the delta begins */
+    /* HE_CORRUPT cannot occur: the copy is in the state on which the delta was made */
+    assert(status != HE_CORRUPT);
     return status;
 }

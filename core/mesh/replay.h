@@ -9,11 +9,11 @@
  *     copy              <------- 42                          links, but keeps what 42 has issued
  *
  * A record of a word has both values, before and after the change. A column or content that was
- * replaced does not fit into a record: the delta owns it as an object, but only the one of the side
- * that the mesh is not at. So when a copy first crosses such a delta, the delta must own the
- * objects of the side that the copy goes to (`held`). From then on the copy keeps the objects that
- * a crossing has taken out of it. Crossings of one delta alternate between forwards and backwards,
- * because undo and redo of one edit do. */
+ * replaced does not fit into a record: the delta owns it as an object, but only the object from
+ * before or from after the edit, whichever the mesh does not hold now. So when a copy first crosses
+ * such a delta, the delta must own the objects that the copy needs afterwards (`held`). From then
+ * on the copy keeps the objects that a crossing has taken out of it. Crossings of one delta
+ * alternate between forwards and backwards, because undo and redo of one edit do. */
 #ifndef HE_MESH_REPLAY_H
 #define HE_MESH_REPLAY_H
 
@@ -26,7 +26,7 @@ typedef struct he_crossing {
     uint64_t key;
     const he_delta *delta;
     bool undo;              /* the delta is crossed backwards */
-    bool held;              /* the delta owns the objects of the side that the crossing leads to */
+    bool held;              /* the delta owns the objects that the copy needs after the crossing */
     const uint32_t *issued; /* how many ids of each kind the mesh has issued after the crossing */
 } he_crossing;
 
@@ -42,8 +42,8 @@ const he_mesh *he_replay_mesh(const he_replay *replay);
 size_t he_replay_bytes(const he_replay *replay);
 
 /* Moves the copy across one delta.
- * Returns HE_UNSUPPORTED if the needed side is neither kept from an earlier crossing nor `held`;
- * the copy is then as it was.
+ * Returns HE_UNSUPPORTED if the objects that the copy needs are neither kept from an earlier
+ * crossing nor `held` by the delta; the copy is then as it was.
  * Returns HE_NO_MEMORY if memory is out; the copy is then between two points, and the caller can
  * only free it. */
 HE_NODISCARD he_status he_replay_cross(he_replay *replay, const he_crossing *crossing,

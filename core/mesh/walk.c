@@ -60,9 +60,9 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     return false;
 }
 
-/* The number of steps around the first vertex after which the half-edges around the second vertex
- * are searched, too. Most vertices have fewer edges, so the second one is seldom read, which would
- * cost another cache miss. */
+/* A search for the half-edge between two vertices takes this many steps around the first vertex
+ * before it searches around the second one, too. Most vertices have fewer edges, so the second
+ * vertex is seldom read, which would cost another cache miss. */
 enum { ALONE = 8 };
 
 static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)

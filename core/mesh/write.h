@@ -21,13 +21,16 @@
  * for the links, positions and attributes of new rows itself. */
 typedef struct he_reservation {
     uint32_t vertices, edges, faces;
-    /* Rows of elements that the edit deletes. */
+    /* Upper bounds of the rows of elements that the edit deletes. */
     size_t deleted_vertices, deleted_edges, deleted_faces;
-    size_t links;     /* links written to rows that stay */
-    size_t positions; /* positions written to rows that stay */
-    /* Rows that stay and whose attributes are written; each row counts for all columns. */
+    /* upper bound of the links written to rows that are neither new nor deleted */
+    size_t links;
+    /* upper bound of the positions written to rows that are neither new nor deleted */
+    size_t positions;
+    /* Upper bound of the rows, neither new nor deleted, whose attributes are written; each row
+     * counts once for all columns. */
     size_t attributes;
-    size_t lineage; /* records of parents and of merges */
+    size_t lineage; /* upper bound of the records of he_note_parent and he_note_merged */
 } he_reservation;
 
 /* The most records that COMMIT makes for a row that it issues or deletes, without attributes. More
@@ -165,8 +168,8 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
 /* Writes a value of row_bytes bytes to a row of the attribute column in this slot. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
-/* Writes dead links to a row. A row has them when it is issued, until the caller writes its
- * links. */
+/* These functions write dead links to a row. A row that was just issued has dead links until the
+ * caller writes its links. */
 static inline void he_clear_vertex(he_content *c, uint32_t v)
 {
     c->position[v] = (he_vec3){0, 0, 0};
@@ -183,8 +186,8 @@ static inline void he_clear_face(he_content *c, uint32_t f)
     c->face_halfedge[f] = HE_DEAD;
 }
 
-/* Issues rows with the default value in every attribute column, until it has as many as its domain;
- * he_reserve must have allocated memory for them. */
+/* Appends rows with the default value to every attribute column, until the column has as many rows
+ * as its domain; he_reserve must have allocated memory for these rows. */
 void he_issue_values(he_mesh *m);
 static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
 {
@@ -254,8 +257,8 @@ static inline void he_attributes_copy(he_mesh *m, he_kind kind, uint32_t to, uin
         he_values_copy(m, kind, to, from);
     }
 }
-/* Sets the attributes of row `to` to the mean of n rows, or copies the first row if the column's
- * rule is copy. */
+/* Sets the attributes of row `to` to the mean of the n rows in `from`, or copies the first row if
+ * the column's rule is copy. */
 void he_attributes_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
 /* Mixes the attributes of `row` with those of `other`: columns with the rule interpolate get the
  * value between `other` (t = 0) and `row` (t = 1); all other columns keep the value of `row`. */
@@ -285,18 +288,18 @@ static inline void he_attributes_move(he_mesh *m, he_kind kind, uint32_t to, uin
         he_values_move(m, kind, to, from);
     }
 }
-/* Returns true if the mesh has columns for this kind of element. A frequent edit can then skip the
- * calls above. */
+/* Returns true if the mesh has attribute columns for this kind of element. If it has none, an edit
+ * that is made often can skip the functions above that set attributes. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 
 /* Allocates the records that he_set_attribute needs for `rows` rows of one column.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err);
 
-/* These functions add or drop an attribute column, and record that. On success the mesh owns
- * `takes`, which must have as many rows as its domain has issued. The column gets the first free
- * slot. A slot may be used again, because the history is linear: a record that names a slot is only
- * applied while its column is there. */
+/* These functions add or drop an attribute column, and record it in the delta. On success the mesh
+ * owns `takes`, which must have as many rows as its domain has issued. The column gets the first
+ * free slot. A slot may be used again, because the history is linear: a record that names a slot is
+ * only applied while the column that it means is in the slot. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
 /* Puts a material into a slot of the mesh's table, in place of the one that is there; with NULL the
@@ -306,11 +309,11 @@ HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *er
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,
                                             he_error *err);
-/* Says how he_mesh_replace changes ids. It replaces the whole content of a mesh by that of `takes`,
- * which is freed on success. The delta keeps the old content; if no delta is recording, it is
- * freed. HE_KEEPS_IDS promises that every id issued before is issued in `takes` and names the same
- * element or a deleted one, and that columns keep their slots. Such a replacement can be undone and
- * redone among other edits, after he_delta_ready. */
+/* Says how he_mesh_replace changes ids. That function replaces the whole content of a mesh by that
+ * of `takes`, which is freed on success. The delta keeps the old content; if no delta is recording,
+ * it is freed. HE_KEEPS_IDS promises that every id issued before is issued in `takes` and names the
+ * same element or a deleted one, and that columns keep their slots. Such a replacement can be
+ * undone and redone among other edits, after he_delta_ready. */
 typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
 HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 

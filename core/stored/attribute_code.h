@@ -18,7 +18,7 @@ size_t he_labels_bytes(const he_labels *labels); /* NULL means no labels */
 unsigned char *he_labels_put(unsigned char *to, const he_labels *labels);
 size_t he_varint_bytes(uint64_t value);
 size_t he_material_code_bytes(const he_material *material);
-/* Writes all of a material except the characters of its name, which follow. */
+/* Writes all of a material except the characters of its name, which the caller writes next. */
 unsigned char *he_material_put_head(unsigned char *to, const he_material *material);
 
 /* Reads the head of an attribute and makes its column, without rows.

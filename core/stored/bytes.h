@@ -89,8 +89,8 @@ static inline bool he_take_u64(he_cursor *c, uint64_t *out)
 {
     return he_take_bytes(c, sizeof *out, out);
 }
-/* Reads a varint. Returns false at the end of the bytes, if the value is above `most`, or if it is
- * not coded in as few bytes as possible. */
+/* Reads a varint (a number in as many bytes as it needs, stored.h). Returns false at the end of the
+ * bytes, if the value is above `most`, or if it is not coded in as few bytes as possible. */
 static inline bool he_take_varint(he_cursor *c, uint64_t most, uint64_t *out)
 {
     uint64_t value = 0;

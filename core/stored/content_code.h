@@ -8,11 +8,15 @@
 #define HE_CONTENT_MAGIC UINT32_C(0x67646568) /* "hedg" */
 
 enum {
-    HE_CONTENT_START = 4 + 4 + 8,                  /* bytes of magic, version and header length */
-    HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4, /* with ten words of counts, the last one zero */
-    HE_CONTENT_SLOT = 1 + 8,                       /* bytes of the kind and length of a slot */
-    HE_CONTENT_ARRAYS = 7,                         /* number of arrays before the attributes' */
-    HE_PART_HEAD = 1 + 4                           /* bytes of the coding and length of a part */
+    HE_CONTENT_START = 4 + 4 + 8, /* bytes of magic, version and header length */
+    /* HE_CONTENT_START and the bytes of ten words of counts, the last one zero */
+    HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4,
+    /* bytes of the kind and the length that begin a slot */
+    HE_CONTENT_SLOT = 1 + 8,
+    /* number of arrays that come before those of attributes */
+    HE_CONTENT_ARRAYS = 7,
+    /* bytes of the coding and the length that stand before a part */
+    HE_PART_HEAD = 1 + 4
 };
 
 enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1, HE_SLOT_MATERIAL = 2 };

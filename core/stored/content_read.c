@@ -7,12 +7,14 @@
 #include "stored/stored.h"
 
 struct he_stored_reader {
-    uint64_t most, total; /* bytes that the content may have; bytes that it has, UINT64_MAX until
-                             the header is read */
-    uint64_t at;          /* bytes of the content read so far */
+    /* `most`: bytes that the content may have; `total`: bytes that it has, UINT64_MAX until the
+     * header is read */
+    uint64_t most, total;
+    uint64_t at; /* bytes of the content read so far */
     unsigned char *header;
-    size_t header_size, header_room; /* bytes of the header read so far; size of its buffer */
-    uint64_t header_wanted;          /* length of the header as far as it is known */
+    /* bytes of the header read so far, and size of the buffer `header` */
+    size_t header_size, header_room;
+    uint64_t header_wanted; /* length of the header as far as it is known */
     he_content c;
     size_t array;      /* number of the next array to fill: after HE_CONTENT_ARRAYS fixed ones come
                           those of the attributes */
@@ -409,7 +411,8 @@ he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mes
 {
     he_stored_reader *r;
     he_cursor c = he_cursor_over(bytes, size);
-    /* Each link takes at least one byte of the input, so this bounds the size of the content. */
+    /* Each link takes at least one byte of the input, so the content has at most four times as many
+     * bytes as the input. */
     he_status status = he_stored_reader_new(sizeof(uint32_t) * (uint64_t)size, &r, err);
     if (status != HE_OK) {
         return status;

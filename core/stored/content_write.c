@@ -6,7 +6,7 @@
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
-/* The kinds of pieces. `stage` of the writer is the kind of the next one. */
+/* The kinds of pieces. `stage` of the writer (he_stored_writer) is the kind of the next piece. */
 enum stage {
     HEADER,
     SLOT,
@@ -17,7 +17,7 @@ enum stage {
     MATERIAL,
     MATERIAL_NAME,
     PADDING,
-    ARRAYS, /* the first of HE_CONTENT_ARRAYS stages, one for each array */
+    ARRAYS, /* the first of HE_CONTENT_ARRAYS kinds: each array is a kind of piece */
     COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
     DONE
 };
@@ -321,8 +321,8 @@ size_t he_stored_writer_next(he_stored_writer *w, unsigned char *to, unsigned *c
 size_t he_stored_content_bound(const he_mesh *mesh)
 {
     uint64_t bytes = all_bytes(mesh), last = bytes % HE_STORED_PART;
-    last += last / sizeof(uint32_t) *
-            (HE_LINK_BYTES - sizeof(uint32_t)); /* as if all words of the last part were links */
+    /* A link may take more bytes than a word: all words of the last part count as links. */
+    last += last / sizeof(uint32_t) * (HE_LINK_BYTES - sizeof(uint32_t));
     last = last > HE_STORED_PART ? HE_STORED_PART : last;
     return (size_t)(bytes / HE_STORED_PART * (HE_PART_HEAD + HE_STORED_PART) + HE_PART_HEAD + last);
 }

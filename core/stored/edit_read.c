@@ -220,8 +220,8 @@ static bool same_head(const he_column *a, const he_column *b)
 }
 
 /* Reads the record of an attribute that was dropped. Checks that the mesh has this attribute,
- * unless the edit itself added or dropped one in its slot before: the slots of the mesh where it
- * did have their bits set in `named`. */
+ * unless the edit itself added or dropped an attribute in that slot before: `named` has a bit for
+ * each slot of the mesh, which is set if the edit did so. */
 static he_status take_dropped(he_cursor *c, const he_mesh *mesh, const uint64_t *named,
                               uint32_t *slot, he_error *err)
 {
@@ -380,8 +380,9 @@ static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
     return column->rows <= 1;
 }
 
-/* Checks the high-water marks after the edit, `issued`. Each may only rise, by no more than the
- * number of changes, unless the edit replaces the content: then they are those of the new one. */
+/* Checks `issued`, the high-water marks after the edit (how many ids of each kind were ever
+ * issued). Each may only rise, by no more than the number of changes, unless the edit replaces the
+ * content: then they are the marks of the new content. */
 static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
                              const uint32_t issued[HE_KIND_COUNT], he_error *err)
 {

@@ -68,7 +68,7 @@ static size_t next_of_slot(const he_delta *delta, size_t i)
 }
 
 /* Returns the column that record i added. It is in the mesh, unless record `next` of this delta
- * dropped it again: then that record has it. */
+ * dropped it again: then it is the object of that record. */
 static const he_column *added_column(const he_delta *delta, size_t i, size_t next,
                                      const he_mesh *after)
 {
@@ -77,7 +77,7 @@ static const he_column *added_column(const he_delta *delta, size_t i, size_t nex
 }
 
 /* Returns the material that record i put in its slot. It is in the mesh, unless a later record
- * replaced it: then that record has it. Returns NULL if record i emptied the slot. */
+ * replaced it: then it is the object of that record. Returns NULL if record i emptied the slot. */
 static const he_material *put_material(const he_delta *delta, size_t i, const he_mesh *after)
 {
     uint32_t slot = delta->records[i].row;

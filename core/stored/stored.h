@@ -91,7 +91,7 @@ HE_NODISCARD he_status he_stored_edit_forward(const unsigned char *bytes, size_t
                                               const uint32_t issued[HE_KIND_COUNT], he_mesh *mesh,
                                               he_delta **out, he_error *err);
 
-/* --- contents, part by part --- */
+/* --- contents, written and read part by part --- */
 
 enum { HE_STORED_PART = 1 << 16, HE_STORED_PART_ROOM = HE_STORED_PART + 8 };
 
@@ -99,15 +99,16 @@ enum { HE_CODING_PLAIN = 0, HE_CODING_LINKS = 1, HE_CODING_PACKED = 2 };
 
 /* The state of a writer between two parts. It owns no memory, so the caller may drop it at any
  * time. The mesh must not change meanwhile. The bytes are made in pieces, such as the head of an
- * attribute or an array, of which one part may contain several or a section. */
+ * attribute or an array, of which a part may contain several, or only a section of one. */
 typedef struct he_stored_writer {
     const he_mesh *mesh;
-    unsigned stage;            /* kind of the next piece */
-    size_t slot, label;        /* attribute or material, and label, of the next piece */
+    unsigned stage; /* kind of the next piece */
+    /* index of the attribute or material of the next piece, and of its label */
+    size_t slot, label;
     uint64_t header;           /* length of the header in bytes */
     uint64_t done;             /* bytes of all pieces made so far */
     const unsigned char *from; /* the bytes of the present piece that are not written yet */
-    size_t left;               /* how many of these there are */
+    size_t left;               /* how many bytes of the present piece are not written yet */
     int links;     /* how links of the present piece are coded: he_links of content_code.h */
     uint32_t row;  /* row of the next link to write */
     uint32_t last; /* the id in the last link written, if has_last */
