@@ -21,8 +21,8 @@ api_bench *bench_new_over(const st_journal *journal);
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 /* Makes a bench whose service requires the tokens in the text `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
-/* Makes a bench with rate limits for clients without a token. Such a client may use what the limit
- * allows in `burst` seconds at once. `file` is the text of a file of tokens; NULL: no token is
+/* Makes a bench with rate limits for clients without a token. Such a client may use at once as much
+ * as the limit allows in `burst` seconds. `file` is the text of a file of tokens; NULL: no token is
  * required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
 /* Sets the client address of all further requests; a new bench has the address 0. `is_beyond` means
@@ -53,7 +53,8 @@ typedef struct bench_reply {
     const char *route; /* path template of the route, "-" if no route matched */
     api_header headers[API_ANSWER_HEADERS];
     size_t header_count;
-    api_exchange *exchange; /* the exchange whose memory the headers are in */
+    /* the request and its answer in the service; it owns the memory of `headers` */
+    api_exchange *exchange;
 } bench_reply;
 
 /* Sends a request. `target` is path and query. `headers` are pairs of name and value, ended by
@@ -72,7 +73,7 @@ bench_reply bench_send_bytes(api_bench *b, const bench_request *request);
 /* Sends a request without parsing the body of the answer as JSON. Returns false if the service
  * could not allocate the exchange. */
 bool bench_try(api_bench *b, const bench_request *request, bench_reply *out);
-/* Returns "" if the answer has no such header. */
+/* Returns the value of a header of the answer; "" if the answer has no such header. */
 const char *bench_header(const bench_reply *r, const char *name);
 /* Returns a member of the answer's JSON; the member must be a string. */
 const char *bench_text(const bench_reply *r, const char *member);

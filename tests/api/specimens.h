@@ -26,10 +26,10 @@ typedef struct page {
 /* Appends formatted text. */
 void page_say(page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Appends an id, or null for PG_NONE. */
+/* Appends an id to the page, or `null` if the id is PG_NONE. */
 void page_say_id(page *p, unsigned id);
 
-/* Appends a JSON array of ids. */
+/* Appends `count` ids to the page as a JSON array. */
 void page_say_ids(page *p, const unsigned *ids, unsigned count);
 
 /* Appends a JSON array of the ids in a list. */
@@ -39,7 +39,8 @@ void page_say_list(page *p, const pg_list *list);
  * rounding. */
 bool page_same(const char *a, const char *e);
 
-/* Requires the status 200 and this text, as page_same() compares it. */
+/* Requires that the answer has the status 200 and the text `wanted`, as page_same() compares
+ * texts. */
 void page_expect(const bench_reply *r, const page *wanted);
 
 /* --- requests --- */

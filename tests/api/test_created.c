@@ -55,7 +55,8 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
     api_bench *b = bench_new();
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         meddling = true;
-        victim = (uint32_t)i; /* another one each time: the third mesh is a copy of the second */
+        /* the vertex differs in each step, because the third mesh is a copy of the second */
+        victim = (uint32_t)i;
         bench_reply r = bench_expect(201, bench_send(b, made[i][0], made[i][1], NULL, made[i][2]));
         meddling = false;
         assert_non_null(strstr(bench_header(&r, "ETag"), "-1-1-summary"));

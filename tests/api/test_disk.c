@@ -239,8 +239,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     char body[80];
     api_bench *b = begin();
     slow_journal_advance(&journal, UINT64_MAX);
-    /* The attribute of a small mesh is encoded while the mesh is locked, and not staged in
-     * advance. */
+    /* A change of an attribute is encoded for the journal: for a small mesh while the mesh is
+     * locked, and for a large one before that, which is called staging. */
     bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\"}")));
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     (void)snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE,
@@ -258,8 +258,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     assert_int_equal(journal.staged_edits, 1);
     assert_true(journal.record.staged_edit && journal.record.body == NULL);
     journal.staging = NULL;
-    /* The next edits set one value for all vertices. The first of them is a dry run, which stages
-     * nothing for the journal. */
+    /* The next edits set one value for all vertices. The first of them is a dry run, for which
+     * nothing may be staged. */
     bench_done(bench_expect(200, bench_send(b, "PUT", path, NULL,
                                             "{\"type\":\"double\",\"value\":2,\"dry_run\":true}")));
     assert_int_equal(journal.staged_edits, 1);

@@ -40,7 +40,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* A mesh without boundary, because some operations need one. */
+/* An OBJ file of a mesh without boundary, which some operations need. */
 static const char TETRAHEDRON[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\n"
                                   "g base\nf 1//1 3//1 2//1\n"
                                   "g sides\nf 1//1 2//1 4//1\nf 2//1 3//1 4//1\nf 3//1 1//1 4//1\n";

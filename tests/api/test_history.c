@@ -398,7 +398,8 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
             snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
             r = history_post(b, "undo", body);
             assert_true(r.status == 410 || r.status == 200);
-            if (r.status == 200) { /* 200 if another revision with equal content can be reached */
+            /* undo succeeds (200) if it can reach another revision with equal content */
+            if (r.status == 200) {
                 char *same = dump(b, 0);
                 assert_string_equal(same, dumps[oldest - 1]);
                 free(same);
@@ -575,7 +576,7 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     } rows[] = {
         {"undo", "{\"to_revision\":9}", 422, "no_such_revision"},
         {"redo", "{\"to_revision\":9}", 422, "no_such_revision"},
-        /* only a redo leads to that revision */
+        /* undo cannot lead to revision 3, only redo can */
         {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"},
         {"redo", "{\"to_revision\":1}", 409, "unreachable_revision"},
         {"undo", "{\"steps\":2}", 409, "nothing_to_undo"},

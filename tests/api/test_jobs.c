@@ -149,7 +149,8 @@ static void what_is_wrong_with_the_request_is_said_at_once(void **state)
     bench_reply_free(&r);
     r = expect(412, "POST", "/v1/meshes/m/copy", stale, NULL);
     bench_reply_free(&r);
-    send(200, "POST", "/v1/meshes/m/edits", POKE); /* works because no job has claimed the mesh */
+    /* the edit succeeds because no job has claimed the mesh */
+    send(200, "POST", "/v1/meshes/m/edits", POKE);
 }
 
 static void preconditions_are_asked_again_at_the_end(void **state)
@@ -441,7 +442,7 @@ static void what_is_estimated_above_a_second_becomes_a_job(void **state)
 {
     (void)state;
     char body[128];
-    unsigned side = 1800; /* 5 * side^2 vertices and corners */
+    unsigned side = 1800; /* the torus has 5 * side^2 vertices and corners */
     assert_true(5.0 * side * side > API_IMPORT_PER_SECOND * API_PATIENCE);
     snprintf(body, sizeof body, "{\"shape\":\"torus\",\"major_segments\":%u,\"minor_segments\":%u}",
              side, side);

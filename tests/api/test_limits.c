@@ -171,7 +171,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
     pass_seconds(10);
     bench_done(bench_expect(404, bench_send(b, "HEAD", "/v1/meshes/none", NULL, NULL)));
     pass_seconds(10);
-    api_charge(x, 200); /* counts the bytes of an answer */
+    api_charge(x, 200); /* api_charge() charges the client with the 200 bytes of an answer */
     expect(b, 429, "/v1/meshes");
     api_free(x);
     pass_seconds(10);
@@ -199,7 +199,8 @@ static void a_token_has_a_bucket_of_its_own_wherever_it_comes_from(void **state)
     expect(b, 200, "/v1/meshes");
     expect_code(bench_get(b, "/v1/meshes"), 429, "rate_limit",
                 "the token is limited to 1 requests a second");
-    expect(b, 200, "/v1/openapi.json"); /* a route that needs no token counts for the address */
+    /* a request to a route that needs no token counts for the address of the client */
+    expect(b, 200, "/v1/openapi.json");
     bench_use_token(b, "prueba");
     for (int i = 0; i < 4; i++) {
         expect(b, 200, "/v1/meshes");
@@ -236,7 +237,8 @@ static void a_reload_limits_at_once_and_forgets_no_debt(void **state)
     bench_change_tokens(b, ALICE " requests=3\n" BOB " requests=1\n");
     bench_done(bench_expect(200, bench_post(b, "/v1/admin/reload", NULL)));
     expect(b, 200, "/v1/meshes");
-    expect(b, 200, "/v1/meshes"); /* the reload counted before the new limit applied */
+    /* the request to reload was counted before the new limit began to apply */
+    expect(b, 200, "/v1/meshes");
     expect(b, 429, "/v1/meshes");
     bench_use_token(b, "test");
     expect(b, 200, "/v1/meshes");

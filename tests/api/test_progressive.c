@@ -388,8 +388,8 @@ static api_exchange *ask(api_bench *b, const char *query,
     return x;
 }
 
-/* Cancels the request in the n-th call and in all later ones, by returning false. The context
- * points to n; 0 means never. */
+/* Returns false, which cancels the request, in the n-th call and in all later ones. `context`
+ * points to n. If n is 0, it always returns true. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -409,7 +409,8 @@ static void it_can_be_given_up_at_any_time(void **state)
         int status = api_answer_of(x)->status;
         api_free(x);
         if (left > 0) {
-            assert_int_equal(status, 200); /* the request was finished before the n-th call */
+            /* the request was finished before count_down() was called n times */
+            assert_int_equal(status, 200);
             break;
         }
         assert_int_equal(status, 503);

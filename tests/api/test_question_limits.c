@@ -22,7 +22,7 @@ static void put(api_bench *b, const char *document)
     bench_reply_free(&r);
 }
 
-/* A mesh document of a cube with an isolated vertex, 8. */
+/* A mesh document of a cube and an isolated vertex, whose id is 8. */
 static const char cube[] =
     "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[5,5,5]],"
     "\"faces\":[[3,2,1,0],[4,5,6,7],[5,4,0,1],[6,5,1,2],[7,6,2,3],[4,7,3,0]]}";

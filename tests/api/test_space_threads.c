@@ -26,9 +26,9 @@ enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
 
 typedef struct reader {
     api_bench *b;
-    const char *question; /* the first member of the result that answers the question */
+    const char *question; /* body of the POST that asks the question */
     bool by_distance;
-    const char *strange; /* the first answer that was wrong */
+    const char *strange; /* what judge() says of the first wrong answer */
 } reader;
 
 /* Returns what is wrong with an answer, or NULL. Each edit raises the grid by 1, so at revision r

@@ -110,8 +110,8 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
-/* A journal for which, unlike for the journal in memory, the store encodes edits and writes meshes
- * in advance, so that the test can let the allocations for that fail, too. */
+/* The store encodes edits and meshes for this journal in advance, as for a journal on a disk and
+ * unlike for the journal in memory, so the test can let the allocations for that fail, too. */
 static slow_journal journal;
 
 /* Creates a mesh with steps to undo, steps to redo, and a deleted face. */
@@ -380,7 +380,7 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     } cases[] = {{"/v1/meshes/m", NULL, "*"},
                  {"/v1/meshes/m", "\"x\"", NULL},
                  {"/v1/meshes/absent", "*", NULL}};
-    /* this journal knows at once that an id is unknown */
+    /* a store with a journal in memory knows at once that a mesh id is unknown */
     const st_journal forgetful = st_journal_memory();
     api_bench *b = begin_over(&forgetful);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -49,7 +49,7 @@ typedef struct client_request {
     size_t length; /* number of bytes in the body; 0 if there is no body */
 } client_request;
 reply client_send_bytes(client *c, const client_request *request);
-/* Send a GET, and a POST with a JSON body. */
+/* client_get sends a GET, client_post a POST with a JSON body. */
 reply client_get(client *c, const char *path);
 /* Waits until the job at this path runs; fails the test if it has ended before. Among jobs that
  * wait, a short one may be run before a long one that came first. */

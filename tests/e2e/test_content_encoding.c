@@ -132,7 +132,7 @@ static void bombs_stay_small(void **state)
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
         refused(d, "POST /v1/meshes", &(coded_body){both[i], "model/obj", zeros, length},
-                422); /* because an OBJ file has no NUL bytes */
+                422); /* 422, because an OBJ file has no NUL bytes */
         refused(d, "POST /v1/meshes", &(coded_body){both[i], "application/json", zeros, length},
                 400);
         refused(d, "POST /v1/meshes/m/edits",

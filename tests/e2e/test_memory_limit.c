@@ -96,7 +96,7 @@ static bool make_group(group *g)
     return false;
 }
 
-/* Moves this process back to its former group; the daemon stays in the small one. */
+/* Moves this process back to its former control group; the daemon stays in the small group. */
 static void leave_group(const group *g)
 {
     char pid[32];

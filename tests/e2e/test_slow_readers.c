@@ -190,8 +190,8 @@ static void expect_all_closed(int sockets[IDLERS])
     }
 }
 
-/* Connections may be idle for an hour, so only the rule about the minimum rate of reading can close
- * these. */
+/* Options of a daemon that lets connections be idle for an hour, so that only its rule about the
+ * minimum rate of reading can close the connections of this test. */
 static const char *const impatient[] = {
     "--log", "off", "--body-grace", "1", "--min-rate", "4K", "--idle-timeout", "3600", NULL};
 
