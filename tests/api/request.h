@@ -13,8 +13,8 @@
 typedef struct api_bench api_bench;
 
 api_bench *bench_new(void);
-/* Makes a bench whose store writes to this journal; the store of bench_new() has a journal in
- * memory only. */
+/* Makes a bench whose store writes to `journal`; the store of bench_new() has a journal in memory
+ * only. */
 api_bench *bench_new_over(const st_journal *journal);
 /* Makes a bench with a memory budget `undo` for undo, and a limit `upload` on the bytes of an
  * uploaded mesh; `upload` 0 means the limit of bench_new(). */
@@ -26,20 +26,21 @@ api_bench *bench_new_guarded(const char *file);
  * required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
 /* Sets the client address of all further requests; a new bench has the address 0. `is_beyond` means
- * that this address has one connection more than it is allowed. */
+ * that the address has one connection more than it is allowed. */
 void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
 /* Sets the file of tokens that the next POST /v1/admin/reload will read. */
 void bench_change_tokens(api_bench *b, const char *file);
-/* Makes POST /v1/admin/backup answer with a file that contains this text. NULL: the answer says
- * that a store in memory has no backup. */
+/* Makes POST /v1/admin/backup answer with a file that contains `text`. If `text` is NULL, the
+ * answer says that a store in memory has no backup. */
 void bench_keep(api_bench *b, const char *text);
-/* Sends this token with all further requests that have no header Authorization; NULL: no token. */
+/* Sends `token` with all further requests that have no header Authorization; NULL: no token is
+ * sent. */
 void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 st_store *bench_store(api_bench *b);
-/* Runs the waiting jobs in order on the calling thread, at most `most` of them. Jobs run only
- * during this call. */
+/* Runs the waiting jobs in order on the calling thread, at most `most` of them. The bench runs no
+ * job at any other time. */
 void bench_run_jobs(api_bench *b, size_t most);
 /* Sets how many jobs may wait in the queue; a new bench lets BENCH_JOBS wait. */
 enum { BENCH_JOBS = 32 };

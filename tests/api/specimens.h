@@ -49,11 +49,11 @@ void page_expect(const bench_reply *r, const page *wanted);
 bench_reply specimen_get(api_bench *b, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Sends a GET and requires that the answer is this text. */
+/* Sends a GET and requires that the answer is the text `wanted`. */
 void page_expect_get(api_bench *b, const page *wanted, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Sends a POST and requires that the answer is this text. */
+/* Sends a POST and requires that the answer is the text `wanted`. */
 void page_expect_post(api_bench *b, const page *wanted, const char *target, const char *body);
 
 /* --- specimens --- */
@@ -64,14 +64,14 @@ void page_expect_post(api_bench *b, const page *wanted, const char *target, cons
 enum { SPECIMENS = 14 };
 extern const char *const specimens[SPECIMENS];
 
-/* Creates the mesh "m" in the API from these polygons. */
+/* Creates the mesh "m" in the API from the polygons of `pg`. */
 void specimen_put(api_bench *b, const pg_mesh *pg);
 
-/* Creates one specimen both as the mesh "m" in the API and as lists of polygons. The mesh has one
- * isolated vertex in addition to the vertices of the faces. */
+/* Creates one specimen twice: as the mesh "m" in the API, and as lists of polygons. The mesh has
+ * one isolated vertex in addition to the vertices of the faces. */
 api_bench *specimen_begin(const char *faces, pg_mesh *pg);
 
-/* Calls `try` for each specimen, with a new service that has this specimen as its only mesh. */
+/* Calls `try` for each specimen, with a new service in which the specimen is the only mesh. */
 void for_each_specimen(void (*try)(api_bench *b, const pg_mesh *pg));
 
 enum { VERTEX, HALFEDGE, EDGE, FACE, KINDS };

@@ -1,5 +1,5 @@
-/* stream.h - a listener to the events of a mesh, without a socket, and a copy of the mesh that
- * these events update. */
+/* stream.h - a listener to the events of a mesh, without a socket, and a copy of the mesh that is
+ * kept up to date by the events. */
 #ifndef TESTS_API_STREAM_H
 #define TESTS_API_STREAM_H
 

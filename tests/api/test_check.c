@@ -45,7 +45,7 @@ static double threshold(const bench_reply *r, const char *name)
     return cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, "thresholds"), name)->valuedouble;
 }
 
-/* Returns the first listed defect with this code. */
+/* Returns the first defect in the answer whose code is `code`. */
 static const cJSON *first(const bench_reply *r, const char *code)
 {
     const cJSON *defect;

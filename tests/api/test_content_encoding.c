@@ -490,8 +490,8 @@ static void expect_gave_way(api_exchange *x)
 }
 
 /* Slow uploads share a limited memory for the windows of their decoders. While one upload
- * continues, many others begin and then send nothing: the service must end those, and not the
- * upload that makes progress. */
+ * continues, many others begin and then send nothing: the service must end the idle uploads, and
+ * not the upload that makes progress. */
 static void slow_senders_give_way_to_others(void **state)
 {
     (void)state;

@@ -17,10 +17,11 @@ static int vertices_of(const bench_reply *summary)
     return cJSON_GetObjectItem(counts, "vertices")->valueint;
 }
 
-/* If set, the new mesh is changed after it is created and before the request that created it is
- * answered. The linker makes calls of st_create_from go to the wrapper in this file (Makefile). */
+/* If set, a second request changes the new mesh after the mesh was created and before the request
+ * that created it is answered. The linker makes calls of st_create_from go to the wrapper in this
+ * file (Makefile). */
 static bool meddling;
-static uint32_t victim; /* the vertex that the other request deletes */
+static uint32_t victim; /* the vertex of the new mesh that the second request deletes */
 
 st_status __real_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
                                 st_mesh **out);

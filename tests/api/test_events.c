@@ -121,8 +121,8 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
     bench_free(b);
 }
 
-/* Number of calls of the two functions that find what an edit changed. The linker makes these calls
- * go to the wrappers below (Makefile). */
+/* Number of calls of he_changes_find and he_changes_sum, which find what an edit changed. The
+ * linker makes these calls go to the wrappers below (Makefile). */
 static unsigned finds;
 
 he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
@@ -406,8 +406,8 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
     stream_require(b, &copy, "the history and an undo");
     stream_close(l);
-    /* This listener begins in the middle of the history and disconnects before it has read all of
-     * it. */
+    /* The listener `l` begins in the middle of the history and disconnects before it has read all
+     * of it. */
     l = stream_open(b, "/v1/meshes/m/events", "since=2", NULL);
     assert_string_equal(stream_next(l, true), "metadata");
     assert_string_equal(stream_next(l, true), "edit");

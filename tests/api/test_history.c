@@ -26,8 +26,8 @@ static uint64_t head_of(api_bench *b)
     return revision;
 }
 
-/* Returns every element with all its links and values, and the document of the mesh, at this
- * revision; revision 0 means the present one. */
+/* Returns every element with all its links and values, and the document of the mesh, at the
+ * revision `revision`; 0 means the present one. */
 static char *dump(api_bench *b, uint64_t revision)
 {
     static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
@@ -152,7 +152,7 @@ typedef struct model {
     uint64_t head;
     uint64_t done[MOST], undone[MOST];
     size_t done_count, undone_count;
-    /* for each revision, the last edit that is not undone; 1 if there is none */
+    /* for each revision, the newest edit in `done` at that time; 1 if there was none */
     uint64_t state[MOST];
     char *dumps[MOST];
 } model;

@@ -233,8 +233,8 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
-/* Requires that the request is refused because a job has claimed the mesh, and that the refusal
- * names this job. */
+/* Requires that the request is refused because the job `job` has claimed the mesh, and that the
+ * refusal names this job. */
 static void expect_named(const char *job, const char *method, const char *target, const char *body)
 {
     bench_reply r = expect(409, method, target, NULL, body);

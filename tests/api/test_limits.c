@@ -70,8 +70,8 @@ static void an_address_has_its_requests_and_then_waits(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"requests\";r=0;t=2");
     assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
     expect_code(r, 429, "rate_limit", "the address is limited to 2 requests a second");
-    /* The limit applies to every request, even to an unknown path or method, except to those for
-     * monitoring. */
+    /* The limit applies to every request, even to an unknown path or method, except to requests for
+     * monitoring such as /livez. */
     expect(b, 429, "/nowhere");
     expect(b, 429, "/v1/openapi.json");
     expect_code(bench_send(b, "BREW", "/v1/meshes", NULL, NULL), 429, "rate_limit", "2 requests");

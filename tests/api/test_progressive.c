@@ -218,7 +218,7 @@ static void assert_same(const level *l, const he_mesh *m)
     }
 }
 
-/* Requires that the mesh `id` has this revision and equals the decoded mesh. */
+/* Requires that the mesh `id` has the revision `revision` and equals the decoded mesh. */
 static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
 {
     st_store *store = bench_store(b);
@@ -468,7 +468,7 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     held = 0;
     api_bench *b = bench_new();
     make(b, "m", LARGE);
-    /* this first request makes a snapshot, which stays */
+    /* the first request makes a snapshot of the mesh, which stays in memory */
     bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive")));
     int never = 0;
     for (size_t i = 0; i < sizeof queries / sizeof *queries; i++) {

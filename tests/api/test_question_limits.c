@@ -617,9 +617,8 @@ static void a_read_that_outstays_the_worker_begins_anew(void **state)
     bench_free(b);
 }
 
-/* Requires that a request that repeats this question `times` times exhausts its budget after at
- * least `least` answers. The client waits up to a minute, so that the request does not become a
- * job. */
+/* Requires that a request that repeats `question` `times` times exhausts its budget after at least
+ * `least` answers. The client waits up to a minute, so that the request does not become a job. */
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
 {
     static const char *const patient[] = {"Prefer", "wait=60", NULL};

@@ -277,7 +277,7 @@ static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state
 }
 
 /* An answer that lists only the changes since a revision has an entity tag of its own. The service
- * must know this tag without making the answer. */
+ * must compute the tag without making the answer. */
 static void changed_rows_that_the_client_has_are_told_at_once(void **state)
 {
     (void)state;

@@ -58,8 +58,8 @@ static void expect_valid(api_bench *b, const bench_reply *created)
     bench_reply_free(&r);
 }
 
-/* Requires that the body is refused with this code, that the refusal names exactly `repairs`, and
- * that the body is accepted when these repairs are requested. */
+/* Requires that the body is refused with the error code `code`, that the refusal names exactly
+ * `repairs`, and that the body is accepted when these repairs are requested. */
 static void expect_mended(api_bench *b, const char *type, const char *body, const char *code,
                           const char *repairs)
 {

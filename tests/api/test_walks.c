@@ -18,9 +18,9 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     page_expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* A walk from a half-edge along its links. `letters` has the first letters of the links next, prev
- * and twin, and is followed `repeat` times, or until the condition `until` holds unless that is
- * NULL. */
+/* A walk that starts at the half-edge `from` and follows links. `letters` has the first letters of
+ * the links next, prev and twin; they are followed `repeat` times, or until the condition `until`
+ * holds unless that is NULL. */
 typedef struct step_walk {
     unsigned from;
     const char *letters;

@@ -316,8 +316,9 @@ static void a_full_disk_takes_removals(void **state)
 
 /* --- preconditions --- */
 
-/* Whether a write is in progress, and whether the mesh was removed during one. The linker makes
- * calls of the store's functions go to the wrappers below (Makefile), which set these variables. */
+/* `writing`: a write is in progress; `removed_under_lock`: the mesh was removed during a write. The
+ * linker makes calls of the store's functions go to the wrappers below (Makefile), which set these
+ * variables. */
 static bool writing, removed_under_lock;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -629,8 +630,8 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     assert_false(body.failed);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
     api_text_empty(&body);
-    /* Each operation of this list welds two vertices on the rim, for which it visits all elements
-     * around the hub. */
+    /* Each operation of the list in `body` welds two vertices on the rim, for which it visits all
+     * elements around the hub. */
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 1000; i++) {
         api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",

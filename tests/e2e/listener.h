@@ -31,7 +31,7 @@ void listener_close(listener *l);
  * stream and, if `patient` is false, also if no event has come. Fails the test if nothing comes for
  * ten minutes. */
 const char *listener_next(listener *l, bool patient);
-/* Waits until this many comments have come in the stream; the daemon sends them as heartbeats. */
+/* Waits until `comments` comments have come in the stream; the daemon sends them as heartbeats. */
 void listener_wait_idle(listener *l, size_t comments);
 /* listener_string returns a string, and listener_number a number, in the data of the latest event;
  * `name` is its name. Both fail the test if it is absent. */

@@ -67,8 +67,8 @@ static void unfold(reply *r, const char *coding)
     r->length = length;
 }
 
-/* Sends a whole request without reading meanwhile, and requires this status even if the daemon
- * closes the connection before it has read the whole body. */
+/* Sends a whole request without reading meanwhile, and requires an answer with the status `status`
+ * even if the daemon closes the connection before it has read the whole body. */
 static void refused(daemon_process *d, const char *target, const coded_body *body, int status)
 {
     char *request = malloc(body->length + 400);

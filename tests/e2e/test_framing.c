@@ -47,7 +47,7 @@ typedef struct answer {
     size_t head_length, body_length;
 } answer;
 
-/* The answers on a connection, one by one, without the interim ones (1xx). */
+/* The answers that came on a connection, without the interim ones (1xx). */
 typedef struct answers {
     char *bytes;
     size_t length;
@@ -93,7 +93,7 @@ static void cut(answers *all)
     all->whole = at == end;
 }
 
-/* Sends the bytes in pieces of this size, and reads meanwhile and afterwards until the server
+/* Sends the bytes in pieces of `piece` bytes, and reads meanwhile and afterwards until the server
  * closes the connection. */
 static answers exchange(const char *bytes, size_t length, size_t piece)
 {

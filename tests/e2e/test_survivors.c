@@ -216,7 +216,8 @@ static void jobs_that_had_not_ended_were_interrupted(void **state)
     end_and_begin();
     expect_job(waiting, told);
     free(told);
-    /* The job of this key was interrupted, so the repeated request must be executed. */
+    /* The job that had the idempotency key was interrupted, so the repeated request must be
+     * executed. */
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", "Idempotency-Key: k",
            again);
     told = await(again);
