@@ -286,7 +286,7 @@ static void write_response(api_out *out, const api_text *text)
     api_out_array_end(out);
 }
 
-/* Copies a member of an example, if it has it. */
+/* Copies a member of an example to the output, if the example has this member. */
 static void copy_member(const session *s, uint32_t row, const char *name, api_out *out)
 {
     uint32_t value = he_json_find(&s->file->json, row, name);

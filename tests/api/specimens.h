@@ -45,7 +45,7 @@ void page_expect(const bench_reply *r, const page *wanted);
 
 /* --- requests --- */
 
-/* Sends a GET to the target. */
+/* Sends a GET to the path and query that `format` and its arguments make. */
 bench_reply specimen_get(api_bench *b, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
@@ -75,7 +75,7 @@ api_bench *specimen_begin(const char *faces, pg_mesh *pg);
 void for_each_specimen(void (*try)(api_bench *b, const pg_mesh *pg));
 
 enum { VERTEX, HALFEDGE, EDGE, FACE, KINDS };
-/* A kind of elements: its words in the API, and the relations that it has, ended by NULL. */
+/* A kind of elements: the words for it in the API, and the relations that it has, ended by NULL. */
 typedef struct specimen_kind {
     const char *name, *plural;
     const char *relations[6];

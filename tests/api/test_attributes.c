@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-/* Returns the body of the answer, which the caller must free. */
+/* Requests `target` with a GET and returns the body of the answer, which the caller must free. */
 static char *read_all(api_bench *b, const char *target, const char *accept, size_t *length)
 {
     const char *const headers[] = {"Accept", accept, NULL};

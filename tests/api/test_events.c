@@ -511,7 +511,7 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
 static void too_many_listeners_are_503(void **state)
 {
     (void)state;
-    api_bench *b = bench_new(); /* allows 2 listeners of one mesh, 3 in total */
+    api_bench *b = bench_new(); /* the service allows 2 listeners of one mesh, and 3 in total */
     put_mesh(b);
     assert_int_equal(send(b, "PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     listener *first = stream_open(b, "/v1/meshes/m/events", "", NULL);

@@ -200,8 +200,8 @@ static int steps_to(const model *m, bool undo, uint64_t state)
     return -1;
 }
 
-/* Takes several undo or redo steps in the model and compares it with the answer `r`. Each step
- * makes a revision, which must read like the earlier revision with the same state. */
+/* Takes several undo or redo steps in the model `m` and compares the model with the answer `r`.
+ * Each step makes a revision, which must read like the earlier revision with the same state. */
 static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply r,
                        const he_mesh *before)
 {

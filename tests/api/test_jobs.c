@@ -75,7 +75,7 @@ static bench_reply job_in(const char *path, const char *state)
     return r;
 }
 
-/* Returns the member `inner` of the member `outer` of the job in the answer. */
+/* Returns the member `inner` of the member `outer` of the job that the answer shows. */
 static const cJSON *inside(const bench_reply *r, const char *outer, const char *inner)
 {
     const cJSON *found = cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, outer), inner);
@@ -555,7 +555,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "\"queued\""));
     assert_int_equal(wakes, 0);
     bench_run_jobs(bench, 1);
-    assert_int_equal(wakes, 1); /* the listener is not woken again until it has read */
+    assert_int_equal(wakes, 1); /* the listener is not woken again before it has read its events */
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "\"state\":\"done\""));

@@ -280,7 +280,7 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     expect_code(r, 429, "too_many_jobs_of_token",
                 "the token is limited to 2 jobs that wait or run");
-    /* a request that does not become a job is admitted */
+    /* the limit of jobs does not apply to a request that does not become a job */
     bench_done(bench_expect(200, bench_get(b, check)));
     bench_use_token(b, "prueba");
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));

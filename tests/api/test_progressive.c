@@ -427,7 +427,8 @@ static void every_allocation_may_fail(void **state)
     api_bench *b = bench_new();
     make(b, "m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
     int never = 0;
-    failing f = {.may_succeed = true}; /* shrinking a block of memory may fail */
+    /* if only the shrinking of a block of memory fails, the request succeeds */
+    failing f = {.may_succeed = true};
     while (failing_next(&f)) {
         api_exchange *x = ask(b, "splits=50", count_down, &never);
         int status = x == NULL ? 507 : api_answer_of(x)->status;

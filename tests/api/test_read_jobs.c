@@ -299,8 +299,9 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_done(r);
     assert_non_null(strstr(tag, "-3\""));
     bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
-    /* The entity tag of the changes must not match all rows, which a job reads. A `since` later
-     * than the newest revision is refused when the rows are read, whatever tag the client names. */
+    /* The entity tag of the changes must not match the answer with all rows, so a job begins. A
+     * `since` later than the newest revision is refused when the rows are read, whatever tag the
+     * client names. */
     bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
     const char *later = strchr(target, '?') + 1;
     memcpy(target + (later - target), "since=9", 7);

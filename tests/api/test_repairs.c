@@ -33,8 +33,8 @@ static bench_reply post_json(api_bench *b, const char *query, const char *body)
     return post(b, query, "application/json", body, strlen(body));
 }
 
-/* Builds the query "?repair=a,b" from the repairs that the refusal names; returns false if it names
- * none. */
+/* Builds the query "?repair=a,b" from the repairs that the refusal names; returns false if the
+ * refusal names none. */
 static bool named_repairs(const bench_reply *r, char query[120])
 {
     const cJSON *list = cJSON_GetObjectItem(r->json, "repair"), *one;

@@ -127,9 +127,10 @@ static struct {
     st_derived *place;
     bool held;
     int waited;
-    /* set to true when the second request comes, which cancels the first one; or NULL */
+    /* set to true when the second request comes, which cancels the first one; NULL: not set */
     bool *leaves;
-    bool *gives_up; /* set to true as soon as the second request waits, which cancels it; or NULL */
+    /* set to true as soon as the second request waits, which cancels it; NULL: not set */
+    bool *gives_up;
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static void open_gate(bool *which)

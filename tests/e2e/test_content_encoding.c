@@ -143,8 +143,8 @@ static void bombs_stay_small(void **state)
                 413);
         refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/obj", blanks, length}, 413);
         refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/x-off", blanks, length}, 413);
-        /* A bomb inside another bomb is decompressed only once, so the result is refused as no
-         * mesh. */
+        /* A bomb that is compressed twice is decompressed only once, and the result is refused
+         * because it is no mesh. */
         size_t folded;
         char *nested = coding_pack(both[1 - i], blanks, length, &folded);
         reply r = send_coded(c, "PUT", "/v1/meshes/b",

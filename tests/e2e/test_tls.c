@@ -337,7 +337,9 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 static int make_folder(void **state)
 {
     (void)state;
-    transport_choose(TRANSPORT_TCP); /* each test sets the options of its transport itself */
+    /* TRANSPORT in the environment does not matter here: each test sets the options of its
+     * transport */
+    transport_choose(TRANSPORT_TCP);
     folder_make(folder);
     snprintf(certificate, sizeof certificate, "%s/certificate.pem", folder);
     snprintf(key, sizeof key, "%s/key.pem", folder);
