@@ -15,8 +15,8 @@ typedef struct arrays {
     char *rows[2];
     uint32_t count[2];
     char frame[32];
-    /* The number of answers with all rows, the number of answers with changes only, and the number
-     * of bytes in the answers with changes only. */
+    /* `whole` counts the answers with all rows, `changes` the answers with changes only; `bytes` is
+     * the length of all answers with changes together. */
     uint64_t whole, changes, bytes;
 } arrays;
 
@@ -31,7 +31,7 @@ void arrays_assert_same(const arrays *a, const arrays *b);
  * for further triangles are zeros, and that each vertex has its row. */
 void arrays_check(const arrays *c, const he_mesh *m);
 
-/* Read little-endian numbers at any address, aligned or not. */
+/* arrays_u32 and arrays_u64 read a little-endian number at any address, aligned or not. */
 uint32_t arrays_u32(const char *p);
 uint64_t arrays_u64(const char *p);
 

@@ -91,7 +91,7 @@ void examples_lay_out(const char *json, size_t length, api_text *out)
 /* --- the session --- */
 
 typedef struct job {
-    /* id of the job as the examples file shows it, and its id in the present run */
+    /* `shown` is the id of the job in the examples file, `real` its id in the present run */
     char shown[NAME], real[NAME];
 } job;
 
@@ -202,8 +202,8 @@ static bench_reply send(const session *s, uint32_t row, bool async)
     }
     bool has_body = api_example_body(s->file, row, API_EXAMPLE_REQUEST, &body);
     api_text_add_char(&body, '\0');
-    /* A refusal is sent as application/problem+json whatever the client accepts, so the request may
-     * accept anything. */
+    /* A refusal is sent as application/problem+json whatever the header Accept says, so this
+     * request accepts any media type. */
     const char *headers[7] = {"Accept", accept[0] == '\0' || is_refusal(accept) ? "*/*" : accept};
     size_t used = 2;
     if (consumes[0] != '\0') {
@@ -225,7 +225,7 @@ static bench_reply send(const session *s, uint32_t row, bool async)
     return r;
 }
 
-/* Sends a request that comes before the session. */
+/* Sends a request of the list "before" in the examples file: it makes what the examples need. */
 static void prepare(session *s, uint32_t row)
 {
     static const char jobs[] = "/v1/jobs/";
@@ -251,7 +251,7 @@ static void prepare(session *s, uint32_t row)
 
 /* --- recording --- */
 
-/* Returns true if the text is an object or an array without blanks. */
+/* Returns true if the text is a JSON object or array that is written without blanks. */
 static bool is_plain_json(const api_text *text)
 {
     api_examples tree = {0};
@@ -286,7 +286,7 @@ static void write_response(api_out *out, const api_text *text)
     api_out_array_end(out);
 }
 
-/* Copies a member of an example, if it has it. */
+/* Copies a member of an example to the output, if the example has this member. */
 static void copy_member(const session *s, uint32_t row, const char *name, api_out *out)
 {
     uint32_t value = he_json_find(&s->file->json, row, name);

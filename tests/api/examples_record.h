@@ -15,7 +15,8 @@ void examples_record(const api_examples *file, api_text *out);
  * with one item or member on a line. */
 void examples_lay_out(const char *json, size_t length, api_text *out);
 
-/* Returns the row of the table of routes with this name; the test fails if there is none. */
+/* Returns the route whose name is `name`, a row of the table of routes; the test fails if there is
+ * none. */
 const api_route *examples_route(const char *name);
 
 #endif

@@ -100,7 +100,7 @@ static bench_reply ask(world *w, const char *name, const char *method, const cha
     return ask_with(w, method, target, headers, body);
 }
 
-/* A request with the token of this name, and the status that its answer must have. */
+/* A request with the token whose name is `name`, and the status that its answer must have. */
 typedef struct attempt {
     const char *name, *method, *target, *body;
     int status;
@@ -392,8 +392,8 @@ static void try_prefixes(world *w)
     must(w, &(attempt){"right", "GET", "/v1/meshes/also-right.m", NULL, 200});
 }
 
-/* Requires that the list of meshes, read page by page with the token of this name, consists of the
- * ids `wanted` in this order. */
+/* Requires that the list of meshes, read page by page with the token named `name`, consists of the
+ * ids `wanted` in their order. */
 static void try_list(world *w, const char *name, const char *wanted)
 {
     char target[TARGET] = "/v1/meshes?limit=1", ids[400] = "";

@@ -37,7 +37,7 @@ static void found(world *w, const char *what)
     }
 }
 
-/* Sends a GET, or a POST if `body` is not NULL, with the token of this name. */
+/* Sends a GET, or a POST if `body` is not NULL, with the token whose name is `token`. */
 static bench_reply ask(world *w, const char *token, const char *target, bool as_job,
                        const char *body)
 {
@@ -71,8 +71,8 @@ static void try_rates(world *w)
     if (refused(w, "free") > 0) {
         found(w, "a token without a limit is refused");
     }
-    /* The token "paced" may send one request a second, and even a slow machine sends these requests
-     * faster. */
+    /* The token "paced" may send one request a second. Even a slow machine sends the REQUESTS
+     * requests faster. */
     if (refused(w, "paced") == 0) {
         found(w, "a token has more requests than its rate");
     }
@@ -136,8 +136,9 @@ static void try_ends(world *w)
     }
 }
 
-/* The number of tokens in force besides those with limits. With so many, an unknown token often has
- * the same bucket in the hash table as a valid one, and the whole hashes must be compared. */
+/* The number of tokens in force besides the tokens with limits. They are so many that an unknown
+ * token often has the same bucket in the hash table as a valid one, so the whole hashes must be
+ * compared. */
 enum { OTHERS = 2000, GUESSES = 100 };
 
 static void try_guesses(world *w)

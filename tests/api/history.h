@@ -17,7 +17,7 @@ enum { TARGET = 200 };
 /* Sends a POST to a resource of the mesh, such as "edits". */
 bench_reply history_post(api_bench *b, const char *what, const char *body);
 
-/* Returns the number in a member of the answer. */
+/* Returns the number in the member `name` of the JSON object. */
 double history_number(const cJSON *object, const char *name);
 
 /* Returns the error code of an answer that is a problem document. */

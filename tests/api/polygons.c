@@ -50,8 +50,8 @@ static void link_halfedges(pg_mesh *pg)
         }
         pg->face_first[f] = find_halfedge(pg, pg->corners[f][0], pg->corners[f][1]);
     }
-    /* The next half-edge of a boundary half-edge is a boundary half-edge that starts at its target.
-     * At a bow-tie, a vertex with several fans of faces, several half-edges qualify: pg_learn_next
+    /* After a boundary half-edge h follows a boundary half-edge that starts where h ends. At a
+     * bow-tie, a vertex with several fans of faces, several half-edges qualify: pg_learn_next
      * records which one the API has chosen. */
     for (unsigned h = 0; h < pg->halfedges; h++) {
         for (unsigned k = 0; k < pg->halfedges && pg->face[h] == PG_NONE; k++) {
@@ -114,7 +114,7 @@ void pg_make(pg_mesh *pg, const char *faces, unsigned vertices)
     pg_make_corners(pg, corners, count, vertices);
 }
 
-/* --- choices that the API makes --- */
+/* --- half-edges that the API may choose --- */
 
 bool pg_is_isolated(const pg_mesh *pg, unsigned v)
 {
@@ -227,7 +227,7 @@ static unsigned read_off(const pg_mesh *pg, const char *kind, const char *what, 
     if (strcmp(what, "faces") == 0) {
         return pg->face[strcmp(kind, "face") == 0 ? h ^ 1u : h];
     }
-    return h; /* current half-edge in the relations outgoing, halfedges, loop and ring */
+    return h; /* the half-edges themselves are the relations outgoing, halfedges, loop and ring */
 }
 
 void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out)

@@ -13,33 +13,34 @@
 typedef struct api_bench api_bench;
 
 api_bench *bench_new(void);
-/* Makes a bench whose store writes to this journal; the store of bench_new() has a journal in
- * memory only. */
+/* Makes a bench whose store writes to `journal`; the store of bench_new() has a journal in memory
+ * only. */
 api_bench *bench_new_over(const st_journal *journal);
 /* Makes a bench with a memory budget `undo` for undo, and a limit `upload` on the bytes of an
  * uploaded mesh; `upload` 0 means the limit of bench_new(). */
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 /* Makes a bench whose service requires the tokens in the text `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
-/* Makes a bench with rate limits for clients without a token. Such a client may use what the limit
- * allows in `burst` seconds at once. `file` is the text of a file of tokens; NULL: no token is
+/* Makes a bench with rate limits for clients without a token. Such a client may use at once as much
+ * as the limit allows in `burst` seconds. `file` is the text of a file of tokens; NULL: no token is
  * required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
 /* Sets the client address of all further requests; a new bench has the address 0. `is_beyond` means
- * that this address has one connection more than it is allowed. */
+ * that the address has one connection more than it is allowed. */
 void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
 /* Sets the file of tokens that the next POST /v1/admin/reload will read. */
 void bench_change_tokens(api_bench *b, const char *file);
-/* Makes POST /v1/admin/backup answer with a file that contains this text. NULL: the answer says
- * that a store in memory has no backup. */
+/* Makes POST /v1/admin/backup answer with a file that contains `text`. If `text` is NULL, the
+ * answer says that a store in memory has no backup. */
 void bench_keep(api_bench *b, const char *text);
-/* Sends this token with all further requests that have no header Authorization; NULL: no token. */
+/* Sends `token` with all further requests that have no header Authorization; NULL: no token is
+ * sent. */
 void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 st_store *bench_store(api_bench *b);
-/* Runs the waiting jobs in order on the calling thread, at most `most` of them. Jobs run only
- * during this call. */
+/* Runs the waiting jobs in order on the calling thread, at most `most` of them. The bench runs no
+ * job at any other time. */
 void bench_run_jobs(api_bench *b, size_t most);
 /* Sets how many jobs may wait in the queue; a new bench lets BENCH_JOBS wait. */
 enum { BENCH_JOBS = 32 };
@@ -53,7 +54,8 @@ typedef struct bench_reply {
     const char *route; /* path template of the route, "-" if no route matched */
     api_header headers[API_ANSWER_HEADERS];
     size_t header_count;
-    api_exchange *exchange; /* the exchange whose memory the headers are in */
+    /* the request and its answer in the service; it owns the memory of `headers` */
+    api_exchange *exchange;
 } bench_reply;
 
 /* Sends a request. `target` is path and query. `headers` are pairs of name and value, ended by
@@ -72,7 +74,7 @@ bench_reply bench_send_bytes(api_bench *b, const bench_request *request);
 /* Sends a request without parsing the body of the answer as JSON. Returns false if the service
  * could not allocate the exchange. */
 bool bench_try(api_bench *b, const bench_request *request, bench_reply *out);
-/* Returns "" if the answer has no such header. */
+/* Returns the value of a header of the answer; "" if the answer has no such header. */
 const char *bench_header(const bench_reply *r, const char *name);
 /* Returns a member of the answer's JSON; the member must be a string. */
 const char *bench_text(const bench_reply *r, const char *member);

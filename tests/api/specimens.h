@@ -26,10 +26,10 @@ typedef struct page {
 /* Appends formatted text. */
 void page_say(page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Appends an id, or null for PG_NONE. */
+/* Appends an id to the page, or `null` if the id is PG_NONE. */
 void page_say_id(page *p, unsigned id);
 
-/* Appends a JSON array of ids. */
+/* Appends `count` ids to the page as a JSON array. */
 void page_say_ids(page *p, const unsigned *ids, unsigned count);
 
 /* Appends a JSON array of the ids in a list. */
@@ -39,20 +39,21 @@ void page_say_list(page *p, const pg_list *list);
  * rounding. */
 bool page_same(const char *a, const char *e);
 
-/* Requires the status 200 and this text, as page_same() compares it. */
+/* Requires that the answer has the status 200 and the text `wanted`, as page_same() compares
+ * texts. */
 void page_expect(const bench_reply *r, const page *wanted);
 
 /* --- requests --- */
 
-/* Sends a GET to the target. */
+/* Sends a GET to the path and query that `format` and its arguments make. */
 bench_reply specimen_get(api_bench *b, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Sends a GET and requires that the answer is this text. */
+/* Sends a GET and requires that the answer is the text `wanted`. */
 void page_expect_get(api_bench *b, const page *wanted, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Sends a POST and requires that the answer is this text. */
+/* Sends a POST and requires that the answer is the text `wanted`. */
 void page_expect_post(api_bench *b, const page *wanted, const char *target, const char *body);
 
 /* --- specimens --- */
@@ -63,18 +64,18 @@ void page_expect_post(api_bench *b, const page *wanted, const char *target, cons
 enum { SPECIMENS = 14 };
 extern const char *const specimens[SPECIMENS];
 
-/* Creates the mesh "m" in the API from these polygons. */
+/* Creates the mesh "m" in the API from the polygons of `pg`. */
 void specimen_put(api_bench *b, const pg_mesh *pg);
 
-/* Creates one specimen both as the mesh "m" in the API and as lists of polygons. The mesh has one
- * isolated vertex in addition to the vertices of the faces. */
+/* Creates one specimen twice: as the mesh "m" in the API, and as lists of polygons. The mesh has
+ * one isolated vertex in addition to the vertices of the faces. */
 api_bench *specimen_begin(const char *faces, pg_mesh *pg);
 
-/* Calls `try` for each specimen, with a new service that has this specimen as its only mesh. */
+/* Calls `try` for each specimen, with a new service in which the specimen is the only mesh. */
 void for_each_specimen(void (*try)(api_bench *b, const pg_mesh *pg));
 
 enum { VERTEX, HALFEDGE, EDGE, FACE, KINDS };
-/* A kind of elements: its words in the API, and the relations that it has, ended by NULL. */
+/* A kind of elements: the words for it in the API, and the relations that it has, ended by NULL. */
 typedef struct specimen_kind {
     const char *name, *plural;
     const char *relations[6];

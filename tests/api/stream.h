@@ -1,5 +1,5 @@
-/* stream.h - a listener to the events of a mesh, without a socket, and a copy of the mesh that
- * these events update. */
+/* stream.h - a listener to the events of a mesh, without a socket, and a copy of the mesh that is
+ * kept up to date by the events. */
 #ifndef TESTS_API_STREAM_H
 #define TESTS_API_STREAM_H
 
@@ -28,7 +28,8 @@ void stream_close(listener *l);
 /* Waits for the next event and returns its name, or "" at the end of the stream. If `patient` is
  * false, it does not wait: it also returns "" if no event is ready. */
 const char *stream_next(listener *l, bool patient);
-/* Return a member of the latest event's data; "" if the data has no text of that name. */
+/* stream_text returns a string, and stream_number a number, in the data of the latest event;
+ * `member` is its name. stream_text returns "" if the data has no such string. */
 const char *stream_text(const listener *l, const char *member);
 uint64_t stream_number(const listener *l, const char *member);
 

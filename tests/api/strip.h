@@ -9,7 +9,7 @@
 
 static const char OCTETS[] = "application/octet-stream";
 
-/* Sends a request and requires this status of the answer. */
+/* Sends a request and requires that the answer has the status `status`. */
 void strip_send(api_bench *b, int status, const char *method, const char *target, const char *body);
 
 /* Creates the strip as the mesh `id`. If `edited` is set, one face and one vertex are then

@@ -1,5 +1,5 @@
-/* The edit `append` adds another mesh to this one. The other mesh is found by its id, its present
- * state is used, and the edit is refused if the other mesh is not available. */
+/* The edit `append` adds a second mesh to the edited one. The second mesh is found by its id, its
+ * present state is used, and the edit is refused if it is not available. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"

@@ -51,7 +51,7 @@ static void elements_are_those_of_the_revision(void **state)
     assert_int_equal(history_number(counts, "faces"), 8);
     assert_int_equal(history_number(counts, "boundary_loops"), 1);
     bench_done(r);
-    /* Reading revision 3 must not have put its counts into the cache of the present summary. */
+    /* The counts of elements at revision 3 must not be cached as those of the present state. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(history_number(cJSON_GetObjectItem(r.json, "counts"), "faces"), 9);
     bench_done(r);

@@ -163,8 +163,8 @@ static void there_is_a_largest_number_of_attributes(void **state)
     bench_free(b);
 }
 
-/* Attributes and labels that an edit would add count toward the maximum, and an edit that exceeds
- * it changes nothing. */
+/* Attributes that an edit would add, and labels (names that stand for the numbers of an attribute),
+ * count toward their maximum. An edit that exceeds the maximum changes nothing. */
 static void an_edit_adds_no_more_attributes_or_labels(void **state)
 {
     (void)state;
@@ -189,7 +189,7 @@ static void an_edit_adds_no_more_attributes_or_labels(void **state)
     for (int i = 1; i < API_MAX_LABELS; i++) {
         api_text_add_format(&labels, ",\"%d\"", i);
     }
-    api_text_add(&labels, "]}", 3); /* the 3 bytes include the NUL */
+    api_text_add(&labels, "]}", 3); /* the 3 bytes are "]}" and its NUL */
     assert_false(labels.failed);
     strip_send(b, 201, "PUT", "/v1/meshes/n/attributes/faces/material", labels.bytes);
     strip_send(b, 413, "POST", "/v1/meshes/n/edits",

@@ -1,6 +1,6 @@
-/* Attributes: values are read back bit for bit as JSON and as octets, also from documents and
- * copies and after compact, undo and redo. Mistakes in a request are refused with a pointer to the
- * mistake. */
+/* Attributes: values are read back bit for bit, as JSON and as octets, also from a mesh document,
+ * from a copy of the mesh, and after compact, undo and redo. Mistakes in a request are refused with
+ * a pointer to the mistake. */
 #include "tests/api/strip.h"
 
 #include "tests/model/random.h"
@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-/* Returns the body of the answer, which the caller must free. */
+/* Requests `target` with a GET and returns the body of the answer, which the caller must free. */
 static char *read_all(api_bench *b, const char *target, const char *accept, size_t *length)
 {
     const char *const headers[] = {"Accept", accept, NULL};
@@ -93,7 +93,8 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
             size_t got;
             char *back = read_all(b, target, OCTETS, &got);
             assert_int_equal(got, length);
-            if (strcmp(mesh, "plain") == 0) { /* this mesh has no rows of deleted elements */
+            /* in the mesh "plain" no element was deleted, so all rows are read back */
+            if (strcmp(mesh, "plain") == 0) {
                 assert_memory_equal(back, body, length);
             }
             free(back);
@@ -102,7 +103,7 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
     }
 }
 
-/* Returns everything that can be read about a mesh except its id and its times. */
+/* Returns everything that can be read about a mesh except its id and the times of its changes. */
 static char *dump(api_bench *b, const char *mesh, size_t *length)
 {
     static char text[1 << 20];
@@ -168,8 +169,8 @@ static void documents_carry_every_value(void **state)
         strip_send(b, 201, "PUT", "/v1/meshes/three", two);
         char *three = read_all(b, "/v1/meshes/three/content", "application/json", &third);
         assert_string_equal(document, three);
-        /* The attributes of both meshes must have equal bits, because elements with equal ids
-         * correspond. */
+        /* The mesh "two", made from the document, has elements with the ids of those of "plain", so
+         * the attributes of the two meshes must have equal bits. */
         for (unsigned d = 0; i == 0 && d < 5; d++) {
             for (unsigned a = 0; a < 15; a++) {
                 snprintf(target, sizeof target, "/v1/meshes/plain/attributes/%s/a%u", domains[d],

@@ -249,8 +249,8 @@ static void *count(void *context, void *memory, size_t size)
     return block + 2;
 }
 
-/* Returns the peak of the memory that a request with this list of operations allocates, less what
- * stays allocated after its answer. */
+/* Returns the peak of the memory that a request with the list of operations `body` allocates, less
+ * what stays allocated after its answer. */
 static size_t peak_of(api_bench *b, const api_text *body)
 {
     most = held;

@@ -45,7 +45,7 @@ static double threshold(const bench_reply *r, const char *name)
     return cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, "thresholds"), name)->valuedouble;
 }
 
-/* Returns the first listed defect with this code. */
+/* Returns the first defect in the answer whose code is `code`. */
 static const cJSON *first(const bench_reply *r, const char *code)
 {
     const cJSON *defect;
@@ -128,7 +128,8 @@ static void thresholds_are_of_the_box_or_given(void **state)
     assert_true(threshold(&r, "merge") == 10 && threshold(&r, "flat") == 0.5 &&
                 threshold(&r, "small") == 20);
     assert_int_equal(total(&r, "zero_length_edge"), 12);
-    /* 4 of the 8 corners are within the merge distance of another one */
+    /* 4 of the 8 vertices of the cube count as duplicates: they are within the merge distance of
+     * an earlier vertex that is no duplicate itself */
     assert_int_equal(total(&r, "duplicate_position"), 4);
     assert_int_equal(total(&r, "small_component"), 1);
     bench_reply_free(&r);

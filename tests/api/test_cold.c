@@ -174,8 +174,8 @@ static size_t loads(const char *id)
     return kept_journal_facts(journal, id).opened;
 }
 
-/* Compares the headers of the answer to HEAD with those of the answer to GET, and requires that
- * HEAD did not load the mesh. */
+/* Requires that the answer to HEAD has the headers of the answer to GET, and that HEAD did not load
+ * the mesh. */
 static void expect_head(api_bench *b, const char *coding, size_t loaded)
 {
     const char *const headers[] = {"Accept-Encoding", coding, NULL};
@@ -259,8 +259,8 @@ static void a_cold_mesh_is_deleted_without_being_loaded(void **state)
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(list.json, "items")), 0);
     bench_done(list);
     b = restart(b);
-    /* After the deletion, the id can be given to another mesh, whose entity tags differ from those
-     * of the deleted one. */
+    /* After the deletion, a new mesh can have the id of the deleted mesh; the entity tags of the
+     * two meshes must differ. */
     bench_reply fresh =
         bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}"));
     assert_string_not_equal(bench_header(&fresh, "ETag"), tag);

@@ -49,8 +49,8 @@ static bench_reply get(api_bench *b, const char *target, const char *accept)
     return bench_send(b, "GET", target, HEADERS("Accept-Encoding", accept), NULL);
 }
 
-/* Sends a request with its body compressed and declared as of this type; the request itself has no
- * headers. */
+/* Sends `plain` with its body compressed by `coding`, and with headers for this coding and for the
+ * media type `type`; `plain` itself has no headers. */
 static bench_reply send_packed(api_bench *b, const char *coding, const char *type,
                                const bench_request *plain)
 {
@@ -411,8 +411,8 @@ static void what_is_not_the_coding_is_refused(void **state)
         assert_string_equal(bench_header(&r, "Accept-Encoding"), "gzip, zstd");
         refused(415, "unsupported_encoding", "\"supported\":[\"gzip\",\"zstd\",\"identity\"]", r);
     }
-    /* If the media type is wrong, the 415 must not have the header that a 415 about the content
-     * coding has. */
+    /* A 415 about the media type must not have the header Accept-Encoding, which a 415 about the
+     * content coding has. */
     bench_reply other = expect(
         415, bench_send(b, "POST", "/v1/meshes", HEADERS("Content-Type", "text/plain"), json));
     assert_string_equal(bench_header(&other, "Accept-Encoding"), "");
@@ -490,8 +490,8 @@ static void expect_gave_way(api_exchange *x)
 }
 
 /* Slow uploads share a limited memory for the windows of their decoders. While one upload
- * continues, many others begin and then send nothing: the service must end those, and not the
- * upload that makes progress. */
+ * continues, many others begin and then send nothing: the service must end the idle uploads, and
+ * not the upload that makes progress. */
 static void slow_senders_give_way_to_others(void **state)
 {
     (void)state;

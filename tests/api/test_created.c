@@ -17,10 +17,11 @@ static int vertices_of(const bench_reply *summary)
     return cJSON_GetObjectItem(counts, "vertices")->valueint;
 }
 
-/* If set, the new mesh is changed after it is created and before the request that created it is
- * answered. The linker makes calls of st_create_from go to the wrapper in this file (Makefile). */
+/* If set, a second request changes the new mesh after the mesh was created and before the request
+ * that created it is answered. The linker makes calls of st_create_from go to the wrapper in this
+ * file (Makefile). */
 static bool meddling;
-static uint32_t victim; /* the vertex that the other request deletes */
+static uint32_t victim; /* the vertex of the new mesh that the second request deletes */
 
 st_status __real_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
                                 st_mesh **out);
@@ -55,7 +56,8 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
     api_bench *b = bench_new();
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         meddling = true;
-        victim = (uint32_t)i; /* another one each time: the third mesh is a copy of the second */
+        /* the vertex differs in each step, because the third mesh is a copy of the second */
+        victim = (uint32_t)i;
         bench_reply r = bench_expect(201, bench_send(b, made[i][0], made[i][1], NULL, made[i][2]));
         meddling = false;
         assert_non_null(strstr(bench_header(&r, "ETag"), "-1-1-summary"));

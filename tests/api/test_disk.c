@@ -38,9 +38,9 @@ static void lose_newest(st_status why)
 
 /* --- changes of the mesh are lost before a write begins --- */
 
-/* If not ST_OK, the newest change is lost for this reason right before the next write begins. The
- * linker makes calls of st_write_begin go to the wrapper in this file (Makefile), in which the
- * journal reports the loss. */
+/* If not ST_OK, the newest change is lost right before the next write begins, with this status as
+ * the reason. The linker makes calls of st_write_begin go to the wrapper in this file (Makefile),
+ * in which the journal reports the loss. */
 static st_status loss_before;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -86,7 +86,8 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
 
 /* --- changes are lost between reading a mesh and committing the result --- */
 
-/* If not ST_OK, the newest change is lost for this reason before the next commit. */
+/* If not ST_OK, the newest change is lost right before the next commit, with this status as the
+ * reason. */
 static st_status loss_between;
 
 st_status __real_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
@@ -239,8 +240,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     char body[80];
     api_bench *b = begin();
     slow_journal_advance(&journal, UINT64_MAX);
-    /* The attribute of a small mesh is encoded while the mesh is locked, and not staged in
-     * advance. */
+    /* A change of an attribute is encoded for the journal: for a small mesh while the mesh is
+     * locked, and for a large one before that, which is called staging. */
     bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\"}")));
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     (void)snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE,
@@ -258,8 +259,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     assert_int_equal(journal.staged_edits, 1);
     assert_true(journal.record.staged_edit && journal.record.body == NULL);
     journal.staging = NULL;
-    /* The next edits set one value for all vertices. The first of them is a dry run, which stages
-     * nothing for the journal. */
+    /* The next edits set one value for all vertices. The first of them is a dry run, for which
+     * nothing may be staged. */
     bench_done(bench_expect(200, bench_send(b, "PUT", path, NULL,
                                             "{\"type\":\"double\",\"value\":2,\"dry_run\":true}")));
     assert_int_equal(journal.staged_edits, 1);
@@ -280,7 +281,7 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
 
 /* --- an answer that waits until its change is durable --- */
 
-/* The answers to the writes wait because the changes are not on the disk yet. Once these are
+/* The answers to the writes wait because the changes are not on the disk yet. Once the changes are
  * durable, the meshes can be evicted from memory, even if the answers have not been sent. */
 static void a_mesh_can_be_evicted_while_the_answer_that_made_it_waits(void **state)
 {
@@ -331,7 +332,7 @@ static void readiness_tells_how_the_disk_is(void **state)
     bench_free(b);
 }
 
-/* Requires that the page of metrics has this line. */
+/* Requires that the page of metrics has the line `line`. */
 static void expect_metric(const bench_reply *page, const char *line)
 {
     char whole[120];

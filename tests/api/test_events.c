@@ -40,7 +40,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* A mesh without boundary, because some operations need one. */
+/* An OBJ file of a mesh without boundary, which some operations need. */
 static const char TETRAHEDRON[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\n"
                                   "g base\nf 1//1 3//1 2//1\n"
                                   "g sides\nf 1//1 2//1 4//1\nf 2//1 3//1 4//1\nf 3//1 1//1 4//1\n";
@@ -121,8 +121,8 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
     bench_free(b);
 }
 
-/* Number of calls of the two functions that find what an edit changed. The linker makes these calls
- * go to the wrappers below (Makefile). */
+/* Number of calls of he_changes_find and he_changes_sum, which find what an edit changed. The
+ * linker makes these calls go to the wrappers below (Makefile). */
 static unsigned finds;
 
 he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
@@ -406,8 +406,8 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
     stream_require(b, &copy, "the history and an undo");
     stream_close(l);
-    /* This listener begins in the middle of the history and disconnects before it has read all of
-     * it. */
+    /* The listener `l` begins in the middle of the history and disconnects before it has read all
+     * of it. */
     l = stream_open(b, "/v1/meshes/m/events", "since=2", NULL);
     assert_string_equal(stream_next(l, true), "metadata");
     assert_string_equal(stream_next(l, true), "edit");
@@ -511,7 +511,7 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
 static void too_many_listeners_are_503(void **state)
 {
     (void)state;
-    api_bench *b = bench_new(); /* allows 2 listeners of one mesh, 3 in total */
+    api_bench *b = bench_new(); /* the service allows 2 listeners of one mesh, and 3 in total */
     put_mesh(b);
     assert_int_equal(send(b, "PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     listener *first = stream_open(b, "/v1/meshes/m/events", "", NULL);

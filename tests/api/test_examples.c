@@ -91,8 +91,8 @@ static void each_example_is_a_real_answer(void **state)
     api_examples_clear(&file);
 }
 
-/* Requires that `content`, a part of the OpenAPI document, shows the body of this recorded example
- * for this media type. */
+/* Requires that `content`, a part of the OpenAPI document, shows the body of the recorded example
+ * `example` for the media type `media`. */
 static void find_in(const cJSON *content, const char *media, const api_examples *file,
                     uint32_t example, api_example_part part)
 {

@@ -95,8 +95,8 @@ static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned t
     return PG_NONE;
 }
 
-/* Adds the area vector of a triangle of a face, half of the cross product of two sides, in the
- * coordinates of the mesh. */
+/* Adds to `sum` the area vector of a triangle, half of the cross product of two of its sides, in
+ * the coordinates of the mesh. */
 static void add_area(const pg_mesh *pg, const arrays *a, unsigned triangle, double sum[3])
 {
     const double *p = pg->position[corner_of(a, triangle, 0)];

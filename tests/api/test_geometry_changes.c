@@ -88,7 +88,8 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
         arg->number = p->flags & HE_RANGE && p->max < 1e6
                           ? p->min + (0.1 + 0.8 * md_unit(&w->r)) * (p->max - p->min)
                           : 0.05 + md_unit(&w->r);
-        if (p->flags & HE_WHOLE) { /* large numbers of steps would make the mesh large */
+        /* a large number, such as of subdivision steps, would make the mesh large */
+        if (p->flags & HE_WHOLE) {
             arg->number = p->max < 1e6 ? p->min : md_below(&w->r, 200);
         }
         break;
@@ -326,8 +327,8 @@ static void an_answer_lists_only_the_rows_that_an_edit_touched(void **state)
     end(&w);
 }
 
-/* The entity tag must contain the revision, the layout, and the revision `since` which the answer
- * lists changes. */
+/* The entity tag must contain the revision, the layout, and the earlier revision in ?since=, from
+ * which on the answer lists the changes. */
 static void tags_depend_on_the_revision_and_on_since(void **state)
 {
     (void)state;

@@ -26,8 +26,8 @@ static uint64_t head_of(api_bench *b)
     return revision;
 }
 
-/* Returns every element with all its links and values, and the document of the mesh, at this
- * revision; revision 0 means the present one. */
+/* Returns every element with all its links and values, and the document of the mesh, at the
+ * revision `revision`; 0 means the present one. */
 static char *dump(api_bench *b, uint64_t revision)
 {
     static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
@@ -152,7 +152,7 @@ typedef struct model {
     uint64_t head;
     uint64_t done[MOST], undone[MOST];
     size_t done_count, undone_count;
-    /* for each revision, the last edit that is not undone; 1 if there is none */
+    /* for each revision, the newest edit in `done` at that time; 1 if there was none */
     uint64_t state[MOST];
     char *dumps[MOST];
 } model;
@@ -200,8 +200,8 @@ static int steps_to(const model *m, bool undo, uint64_t state)
     return -1;
 }
 
-/* Takes several undo or redo steps in the model and compares it with the answer `r`. Each step
- * makes a revision, which must read like the earlier revision with the same state. */
+/* Takes several undo or redo steps in the model `m` and compares the model with the answer `r`.
+ * Each step makes a revision, which must read like the earlier revision with the same state. */
 static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply r,
                        const he_mesh *before)
 {
@@ -398,7 +398,8 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
             snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
             r = history_post(b, "undo", body);
             assert_true(r.status == 410 || r.status == 200);
-            if (r.status == 200) { /* 200 if another revision with equal content can be reached */
+            /* undo succeeds (200) if it can reach another revision with equal content */
+            if (r.status == 200) {
                 char *same = dump(b, 0);
                 assert_string_equal(same, dumps[oldest - 1]);
                 free(same);
@@ -575,7 +576,7 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     } rows[] = {
         {"undo", "{\"to_revision\":9}", 422, "no_such_revision"},
         {"redo", "{\"to_revision\":9}", 422, "no_such_revision"},
-        /* only a redo leads to that revision */
+        /* undo cannot lead to revision 3, only redo can */
         {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"},
         {"redo", "{\"to_revision\":1}", 409, "unreachable_revision"},
         {"undo", "{\"steps\":2}", 409, "nothing_to_undo"},

@@ -121,7 +121,8 @@ static void a_key_is_of_one_request(void **state)
                        (const char *const[]){"Idempotency-Key", "k", NULL}, "{}"));
     assert_int_equal(revision(b), now);
     /* Keys of edits belong to one mesh, and keys of requests that create a mesh belong to the
-     * store. A key with another name, or for another mesh, is independent of the key above. */
+     * store. So the key "K", and the key "k" for another mesh, are independent of the key "k" for
+     * the mesh m. */
     bench_done(bench_expect(
         200, keyed(b, "POST", "/v1/meshes/m/edits", "K", "{\"op\":\"face_poke\",\"face\":2}")));
     bench_done(bench_expect(201, keyed(b, "POST", "/v1/meshes?id=n", "k", "{\"shape\":\"cube\"}")));
@@ -264,7 +265,8 @@ static void a_job_that_came_to_nothing_gives_its_key_back(void **state)
     refused(503, "too_many_jobs", keyed_job(b, poke));
     bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 6);
-    /* A mesh may be deleted, which deletes its keys, while a job uses one of these keys. */
+    /* A mesh may be deleted, together with its idempotency keys, while a job still uses one of the
+     * keys. */
     bench_limit_jobs(b, 1);
     bench_done(bench_expect(202, bench_send(b, "POST", "/v1/meshes/m/edits",
                                             (const char *const[]){"Idempotency-Key", "other",

@@ -75,7 +75,7 @@ static bench_reply job_in(const char *path, const char *state)
     return r;
 }
 
-/* Returns the member `inner` of the member `outer` of the job in the answer. */
+/* Returns the member `inner` of the member `outer` of the job that the answer shows. */
 static const cJSON *inside(const bench_reply *r, const char *outer, const char *inner)
 {
     const cJSON *found = cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, outer), inner);
@@ -149,7 +149,8 @@ static void what_is_wrong_with_the_request_is_said_at_once(void **state)
     bench_reply_free(&r);
     r = expect(412, "POST", "/v1/meshes/m/copy", stale, NULL);
     bench_reply_free(&r);
-    send(200, "POST", "/v1/meshes/m/edits", POKE); /* works because no job has claimed the mesh */
+    /* the edit succeeds because no job has claimed the mesh */
+    send(200, "POST", "/v1/meshes/m/edits", POKE);
 }
 
 static void preconditions_are_asked_again_at_the_end(void **state)
@@ -232,8 +233,8 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
-/* Requires that the request is refused because a job has claimed the mesh, and that the refusal
- * names this job. */
+/* Requires that the request is refused because the job `job` has claimed the mesh, and that the
+ * refusal names this job. */
 static void expect_named(const char *job, const char *method, const char *target, const char *body)
 {
     bench_reply r = expect(409, method, target, NULL, body);
@@ -441,7 +442,7 @@ static void what_is_estimated_above_a_second_becomes_a_job(void **state)
 {
     (void)state;
     char body[128];
-    unsigned side = 1800; /* 5 * side^2 vertices and corners */
+    unsigned side = 1800; /* the torus has 5 * side^2 vertices and corners */
     assert_true(5.0 * side * side > API_IMPORT_PER_SECOND * API_PATIENCE);
     snprintf(body, sizeof body, "{\"shape\":\"torus\",\"major_segments\":%u,\"minor_segments\":%u}",
              side, side);
@@ -554,7 +555,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "\"queued\""));
     assert_int_equal(wakes, 0);
     bench_run_jobs(bench, 1);
-    assert_int_equal(wakes, 1); /* the listener is not woken again until it has read */
+    assert_int_equal(wakes, 1); /* the listener is not woken again before it has read its events */
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "\"state\":\"done\""));

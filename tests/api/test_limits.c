@@ -70,8 +70,8 @@ static void an_address_has_its_requests_and_then_waits(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"requests\";r=0;t=2");
     assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
     expect_code(r, 429, "rate_limit", "the address is limited to 2 requests a second");
-    /* The limit applies to every request, even to an unknown path or method, except to those for
-     * monitoring. */
+    /* The limit applies to every request, even to an unknown path or method, except to requests for
+     * monitoring such as /livez. */
     expect(b, 429, "/nowhere");
     expect(b, 429, "/v1/openapi.json");
     expect_code(bench_send(b, "BREW", "/v1/meshes", NULL, NULL), 429, "rate_limit", "2 requests");
@@ -171,7 +171,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
     pass_seconds(10);
     bench_done(bench_expect(404, bench_send(b, "HEAD", "/v1/meshes/none", NULL, NULL)));
     pass_seconds(10);
-    api_charge(x, 200); /* counts the bytes of an answer */
+    api_charge(x, 200); /* api_charge() charges the client with the 200 bytes of an answer */
     expect(b, 429, "/v1/meshes");
     api_free(x);
     pass_seconds(10);
@@ -199,7 +199,8 @@ static void a_token_has_a_bucket_of_its_own_wherever_it_comes_from(void **state)
     expect(b, 200, "/v1/meshes");
     expect_code(bench_get(b, "/v1/meshes"), 429, "rate_limit",
                 "the token is limited to 1 requests a second");
-    expect(b, 200, "/v1/openapi.json"); /* a route that needs no token counts for the address */
+    /* a request to a route that needs no token counts for the address of the client */
+    expect(b, 200, "/v1/openapi.json");
     bench_use_token(b, "prueba");
     for (int i = 0; i < 4; i++) {
         expect(b, 200, "/v1/meshes");
@@ -236,7 +237,8 @@ static void a_reload_limits_at_once_and_forgets_no_debt(void **state)
     bench_change_tokens(b, ALICE " requests=3\n" BOB " requests=1\n");
     bench_done(bench_expect(200, bench_post(b, "/v1/admin/reload", NULL)));
     expect(b, 200, "/v1/meshes");
-    expect(b, 200, "/v1/meshes"); /* the reload counted before the new limit applied */
+    /* the request to reload was counted before the new limit began to apply */
+    expect(b, 200, "/v1/meshes");
     expect(b, 429, "/v1/meshes");
     bench_use_token(b, "test");
     expect(b, 200, "/v1/meshes");
@@ -278,7 +280,7 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     expect_code(r, 429, "too_many_jobs_of_token",
                 "the token is limited to 2 jobs that wait or run");
-    /* a request that does not become a job is admitted */
+    /* the limit of jobs does not apply to a request that does not become a job */
     bench_done(bench_expect(200, bench_get(b, check)));
     bench_use_token(b, "prueba");
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));

@@ -168,8 +168,8 @@ static void do_something(api_bench *b, md_random *random, int turn)
     }
 }
 
-/* Stores a copy of each revision since `known`. The newest one must equal the mesh. Some of the
- * earlier revisions are read again and compared with the stored copy. */
+/* Stores a copy of each revision after the revision `known`. The copy of the newest one must equal
+ * the mesh. Some of the earlier revisions are read again and compared with their stored copies. */
 static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_t known)
 {
     st_mesh *mesh = stream_mesh(b);

@@ -13,7 +13,7 @@ static void put(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* Returns the answer to one question; it belongs to the reply `r`. */
+/* Returns the answer to one question, which is freed together with the reply `r`. */
 static const cJSON *ask(api_bench *b, const char *question, bench_reply *r)
 {
     char body[2048];
@@ -149,7 +149,8 @@ static void octets_are_doubles_and_null_is_nan(void **state)
         numbers += !isnan(value);
         assert_true(isnan(value) || fabs(value) < 1e-12);
     }
-    assert_int_equal(numbers, 1); /* the one vertex that is not on the boundary */
+    /* one vertex, which is not on the boundary, has a curvature; the others have none (NaN) */
+    assert_int_equal(numbers, 1);
     bench_reply_free(&r);
     r = bench_send(b, "POST", QUERY, octets,
                    "{\"queries\":[{\"measure\":\"normal\",\"of\":{\"faces\":[0,3]}}]}");

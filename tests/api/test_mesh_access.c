@@ -236,7 +236,8 @@ static void rows_that_read_content_say_so(void **state)
 
 /* --- two requests compute the layout of the arrays at the same time --- */
 
-/* If not NULL, another request computes the layout while this one does. */
+/* If not NULL, a second request on this bench computes the layout of the mesh while the first
+ * request computes it. */
 static api_bench *interrupted;
 static uint64_t others_layout;
 

@@ -22,8 +22,8 @@ static const cJSON *resolve(const cJSON *root, const char *reference)
     return json_member(json_member(json_member(root, "components"), group), name);
 }
 
-/* Follows every reference below `at`, adds their number to `*references`, and marks the schemas to
- * which they point. */
+/* Follows every reference "$ref" below `at`, adds their number to `*references`, and marks the
+ * schemas to which they point. */
 static void follow(const cJSON *root, cJSON *at, size_t *references)
 {
     cJSON *child;
@@ -122,7 +122,7 @@ static void bodies_take_what_their_schemas_list(void **state)
     bench_free(b);
 }
 
-/* Returns whether the list of exposed headers, separated by ", ", contains this one. */
+/* Returns whether the list of exposed headers, separated by ", ", contains the header `name`. */
 static bool is_exposed(const char *name)
 {
     size_t length = strlen(name);
@@ -135,7 +135,7 @@ static bool is_exposed(const char *name)
 }
 
 /* Requires that scripts in browsers may read each header that the document lists for an answer
- * (Access-Control-Expose-Headers). Returns the number of these headers. */
+ * (Access-Control-Expose-Headers). Returns how many headers the document lists there. */
 static unsigned expect_exposed(const cJSON *at)
 {
     unsigned count = 0;

@@ -88,8 +88,8 @@ static const unsigned char corners[36] = {[14] = 0x80, [15] = 0x3F, [30] = 0x80,
 #define OBJ "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
 #define MTL "newmtl red\nKd 1 0 0\n"
 
-/* Requires that the answer describes a mesh of three vertices and one face that was read in this
- * format; returns the answer. */
+/* Requires that the answer describes a mesh of three vertices and one face, read from a file in the
+ * format `format`; returns the answer. */
 static bench_reply expect_triangle(const char *format, bench_reply r)
 {
     r = bench_expect(201, r);

@@ -218,7 +218,7 @@ static void assert_same(const level *l, const he_mesh *m)
     }
 }
 
-/* Requires that the mesh `id` has this revision and equals the decoded mesh. */
+/* Requires that the mesh `id` has the revision `revision` and equals the decoded mesh. */
 static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
 {
     st_store *store = bench_store(b);
@@ -388,8 +388,8 @@ static api_exchange *ask(api_bench *b, const char *query,
     return x;
 }
 
-/* Cancels the request in the n-th call and in all later ones, by returning false. The context
- * points to n; 0 means never. */
+/* Returns false, which cancels the request, in the n-th call and in all later ones. `context`
+ * points to n. If n is 0, it always returns true. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -409,7 +409,8 @@ static void it_can_be_given_up_at_any_time(void **state)
         int status = api_answer_of(x)->status;
         api_free(x);
         if (left > 0) {
-            assert_int_equal(status, 200); /* the request was finished before the n-th call */
+            /* the request was finished before count_down() was called n times */
+            assert_int_equal(status, 200);
             break;
         }
         assert_int_equal(status, 503);
@@ -426,7 +427,8 @@ static void every_allocation_may_fail(void **state)
     api_bench *b = bench_new();
     make(b, "m", "{\"shape\":\"icosphere\",\"subdivisions\":2}");
     int never = 0;
-    failing f = {.may_succeed = true}; /* shrinking a block of memory may fail */
+    /* if only the shrinking of a block of memory fails, the request succeeds */
+    failing f = {.may_succeed = true};
     while (failing_next(&f)) {
         api_exchange *x = ask(b, "splits=50", count_down, &never);
         int status = x == NULL ? 507 : api_answer_of(x)->status;
@@ -467,7 +469,7 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     held = 0;
     api_bench *b = bench_new();
     make(b, "m", LARGE);
-    /* this first request makes a snapshot, which stays */
+    /* the first request makes a snapshot of the mesh, which stays in memory */
     bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive")));
     int never = 0;
     for (size_t i = 0; i < sizeof queries / sizeof *queries; i++) {

@@ -22,7 +22,7 @@ static void put(api_bench *b, const char *document)
     bench_reply_free(&r);
 }
 
-/* A mesh document of a cube with an isolated vertex, 8. */
+/* A mesh document of a cube and an isolated vertex, whose id is 8. */
 static const char cube[] =
     "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[5,5,5]],"
     "\"faces\":[[3,2,1,0],[4,5,6,7],[5,4,0,1],[6,5,1,2],[7,6,2,3],[4,7,3,0]]}";
@@ -617,9 +617,8 @@ static void a_read_that_outstays_the_worker_begins_anew(void **state)
     bench_free(b);
 }
 
-/* Requires that a request that repeats this question `times` times exhausts its budget after at
- * least `least` answers. The client waits up to a minute, so that the request does not become a
- * job. */
+/* Requires that a request that repeats `question` `times` times exhausts its budget after at least
+ * `least` answers. The client waits up to a minute, so that the request does not become a job. */
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
 {
     static const char *const patient[] = {"Prefer", "wait=60", NULL};

@@ -169,7 +169,7 @@ static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_
     static const struct {
         const char *target, *accept, *body;
     } cases[] = {
-        /* builds the tree of bounding boxes */
+        /* the first question builds the tree of bounding boxes */
         {QUERY, json, "{\"queries\":[{\"closest\":[2,0,0]}]}"},
         {QUERY, json, "{\"queries\":[{\"self_intersections\":{}}]}"},
         {QUERY, json, "{\"queries\":[{\"measure\":\"area\",\"of\":{\"faces\":\"all\"}}]}"},

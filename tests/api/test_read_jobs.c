@@ -40,7 +40,9 @@ static api_bench *bench_of_sphere(void)
 /* A request that reads; `accept` NULL: the client accepts anything. */
 typedef struct reading {
     const char *method, *target, *body, *accept;
-    bool linked; /* the job has a link to the answer, because that is not JSON or is a whole mesh */
+    /* the job shows a link to its answer and not the answer, which is not JSON or is a whole
+     * mesh */
+    bool linked;
 } reading;
 
 static const reading readings[] = {
@@ -177,7 +179,7 @@ static void what_is_refused_is_refused_before_there_is_a_job(void **state)
     static const char octets[] = "application/octet-stream", lines[] = "application/x-ndjson";
     static const struct {
         reading read;
-        const char *said; /* text that the problem must contain */
+        const char *said; /* text that the problem document of the refusal must contain */
     } cases[] = {
         {{"GET", "/v1/meshes/none/geometry", NULL, NULL, false}, "none"},
         {{"GET", "/v1/meshes/m?none=1", NULL, NULL, false}, "none"},
@@ -275,7 +277,7 @@ static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state
 }
 
 /* An answer that lists only the changes since a revision has an entity tag of its own. The service
- * must know this tag without making the answer. */
+ * must compute the tag without making the answer. */
 static void changed_rows_that_the_client_has_are_told_at_once(void **state)
 {
     (void)state;
@@ -297,8 +299,9 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_done(r);
     assert_non_null(strstr(tag, "-3\""));
     bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
-    /* The entity tag of the changes must not match all rows, which a job reads. A `since` later
-     * than the newest revision is refused when the rows are read, whatever tag the client names. */
+    /* The entity tag of the changes must not match the answer with all rows, so a job begins. A
+     * `since` later than the newest revision is refused when the rows are read, whatever tag the
+     * client names. */
     bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
     const char *later = strchr(target, '?') + 1;
     memcpy(target + (later - target), "since=9", 7);
@@ -319,7 +322,8 @@ static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **st
         bench_reply now = bench_expect(200, send(b, r, false));
         snprintf(tag, sizeof tag, "%s", bench_header(&now, "ETag"));
         bench_done(now);
-        bool slots = strstr(r->target, "geometry") != NULL; /* its entity tag is partly random */
+        /* the entity tag of the arrays of a mesh is partly random */
+        bool slots = strstr(r->target, "geometry") != NULL;
         if (tag[0] == '\0' || !present || slots) {
             continue;
         }

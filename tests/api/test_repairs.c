@@ -33,8 +33,8 @@ static bench_reply post_json(api_bench *b, const char *query, const char *body)
     return post(b, query, "application/json", body, strlen(body));
 }
 
-/* Builds the query "?repair=a,b" from the repairs that the refusal names; returns false if it names
- * none. */
+/* Builds the query "?repair=a,b" from the repairs that the refusal names; returns false if the
+ * refusal names none. */
 static bool named_repairs(const bench_reply *r, char query[120])
 {
     const cJSON *list = cJSON_GetObjectItem(r->json, "repair"), *one;
@@ -58,8 +58,8 @@ static void expect_valid(api_bench *b, const bench_reply *created)
     bench_reply_free(&r);
 }
 
-/* Requires that the body is refused with this code, that the refusal names exactly `repairs`, and
- * that the body is accepted when these repairs are requested. */
+/* Requires that the body is refused with the error code `code`, that the refusal names exactly
+ * `repairs`, and that the body is accepted when these repairs are requested. */
 static void expect_mended(api_bench *b, const char *type, const char *body, const char *code,
                           const char *repairs)
 {
@@ -442,8 +442,8 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* Cancels the request in the n-th call and in all later ones, by returning false. The context
- * points to n; 0 means never. */
+/* Returns false, which cancels the request, in the n-th call and in all later ones. `context`
+ * points to n. If n is 0, it always returns true. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -482,7 +482,8 @@ static int upload_broken(api_bench *b, const char *text, size_t length, int *lef
     assert_int_equal(step, API_READY);
     int status = api_answer_of(x)->status;
     if (status == 422) {
-        /* without cJSON, whose allocations would fail, too */
+        /* searches the text instead of parsing it, because the allocations of cJSON would fail,
+         * too */
         const char *said = strstr(api_answer_of(x)->bytes, "\"total\":");
         assert_non_null(said);
         *total = (int)strtol(said + strlen("\"total\":"), NULL, 10);
@@ -502,7 +503,7 @@ static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
         int left = n;
         status = upload_broken(b, text, length, &left, &total);
         if (left > 0) {
-            break; /* the request was finished before the n-th call */
+            break; /* the request was finished before count_down() was called n times */
         }
         assert_int_equal(status, 503);
         given_up++;

@@ -12,7 +12,7 @@
 static int snapshots;
 
 /* The linker makes calls of the functions below go to the wrappers in this file (Makefile), which
- * count them. */
+ * count these calls. */
 st_status __real_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __wrap_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __real_st_snapshot_held(st_mesh *mesh, st_snapshot **out);

@@ -26,9 +26,9 @@ enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
 
 typedef struct reader {
     api_bench *b;
-    const char *question; /* the first member of the result that answers the question */
+    const char *question; /* body of the POST that asks the question */
     bool by_distance;
-    const char *strange; /* the first answer that was wrong */
+    const char *strange; /* what judge() says of the first wrong answer */
 } reader;
 
 /* Returns what is wrong with an answer, or NULL. Each edit raises the grid by 1, so at revision r
@@ -127,9 +127,10 @@ static struct {
     st_derived *place;
     bool held;
     int waited;
-    /* set to true when the second request comes, which cancels the first one; or NULL */
+    /* set to true when the second request comes, which cancels the first one; NULL: not set */
     bool *leaves;
-    bool *gives_up; /* set to true as soon as the second request waits, which cancels it; or NULL */
+    /* set to true as soon as the second request waits, which cancels it; NULL: not set */
+    bool *gives_up;
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static void open_gate(bool *which)

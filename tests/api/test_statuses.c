@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-/* A request of a sequence, in which each request sees the effects of those before it. */
+/* One request of a sequence. Each request finds the meshes as the requests before it left them. */
 typedef struct step {
     const char *method, *target;
     int status;
@@ -305,7 +305,7 @@ static bool holds(const int *statuses, int status)
     return false;
 }
 
-/* Sends a request and requires this status of the answer. */
+/* Sends `request` and requires that the answer has the status `status`. */
 static void take(api_bench *b, int status, const bench_request *request)
 {
     const char *method = request->method;

@@ -18,9 +18,9 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     page_expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* A walk from a half-edge along its links. `letters` has the first letters of the links next, prev
- * and twin, and is followed `repeat` times, or until the condition `until` holds unless that is
- * NULL. */
+/* A walk that starts at the half-edge `from` and follows links. `letters` has the first letters of
+ * the links next, prev and twin; they are followed `repeat` times, or until the condition `until`
+ * holds unless that is NULL. */
 typedef struct step_walk {
     unsigned from;
     const char *letters;
@@ -28,7 +28,8 @@ typedef struct step_walk {
     const char *until;
 } step_walk;
 
-/* Requests a walk and requires that the answer equals the walk along the links of `pg`. */
+/* Requests a walk and requires that the answer equals the walk along the links of the polygon mesh
+ * `pg`. */
 static void try_path(api_bench *b, const pg_mesh *pg, const step_walk *walk)
 {
     const unsigned from = walk->from, repeat = walk->repeat;
@@ -126,8 +127,8 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
     traverse(b, &wanted, "{\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u}", v, depth);
 }
 
-/* Compares a breadth-first walk with that through the polygons. A depth of PG_NONE means that the
- * request has no depth, a limit of 0 that it has no limit. */
+/* Compares the answer about a breadth-first walk with that walk in the polygon mesh `pg`. A depth
+ * of PG_NONE means that the request has no depth, a limit of 0 that it has no limit. */
 static void try_flood(api_bench *b, const pg_mesh *pg, const pg_flood *flood)
 {
     pg_list ids, depths;

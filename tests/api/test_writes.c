@@ -110,8 +110,8 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
-/* A journal for which, unlike for the journal in memory, the store encodes edits and writes meshes
- * in advance, so that the test can let the allocations for that fail, too. */
+/* The store encodes edits and meshes for this journal in advance, as for a journal on a disk and
+ * unlike for the journal in memory, so the test can let the allocations for that fail, too. */
 static slow_journal journal;
 
 /* Creates a mesh with steps to undo, steps to redo, and a deleted face. */
@@ -316,8 +316,9 @@ static void a_full_disk_takes_removals(void **state)
 
 /* --- preconditions --- */
 
-/* Whether a write is in progress, and whether the mesh was removed during one. The linker makes
- * calls of the store's functions go to the wrappers below (Makefile), which set these variables. */
+/* `writing`: a write is in progress; `removed_under_lock`: the mesh was removed during a write. The
+ * linker makes calls of the store's functions go to the wrappers below (Makefile), which set these
+ * variables. */
 static bool writing, removed_under_lock;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -380,7 +381,7 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     } cases[] = {{"/v1/meshes/m", NULL, "*"},
                  {"/v1/meshes/m", "\"x\"", NULL},
                  {"/v1/meshes/absent", "*", NULL}};
-    /* this journal knows at once that an id is unknown */
+    /* a store with a journal in memory knows at once that a mesh id is unknown */
     const st_journal forgetful = st_journal_memory();
     api_bench *b = begin_over(&forgetful);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -629,8 +630,8 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     assert_false(body.failed);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
     api_text_empty(&body);
-    /* Each operation of this list welds two vertices on the rim, for which it visits all elements
-     * around the hub. */
+    /* Each operation of the list in `body` welds two vertices on the rim, for which it visits all
+     * elements around the hub. */
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 1000; i++) {
         api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",

@@ -33,8 +33,8 @@ typedef struct client client; /* a libcurl handle, which keeps its connection */
 
 client *client_new(const daemon_process *d);
 void client_free(client *c);
-/* Makes the client trust the certificate in this file, and no other one, if the daemon speaks TLS.
- * The file name must stay valid. */
+/* Makes the client trust the certificate in the file `certificate`, and no other one, if the daemon
+ * speaks TLS. The file name must stay valid. */
 void client_trust(client *c, const char *certificate);
 /* Sends a request with a body of text. `headers` are lines "Name: value", ended by NULL; the
  * pointer may be NULL. `body` NULL: no body. A body without a Content-Type is sent as
@@ -49,10 +49,10 @@ typedef struct client_request {
     size_t length; /* number of bytes in the body; 0 if there is no body */
 } client_request;
 reply client_send_bytes(client *c, const client_request *request);
-/* Send a GET, and a POST with a JSON body. */
+/* client_get sends a GET, client_post a POST with a JSON body. */
 reply client_get(client *c, const char *path);
-/* Waits until the job at this path runs; fails the test if it has ended before. Among jobs that
- * wait, a short one may be run before a long one that came first. */
+/* Waits until the job at the path `job` runs; fails the test if it has ended before. Among jobs
+ * that wait, a short one may be run before a long one that came first. */
 void client_await_running(client *c, const char *job);
 reply client_post(client *c, const char *path, const char *json);
 

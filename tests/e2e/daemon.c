@@ -197,8 +197,7 @@ static int status_of(int waited)
     return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }
 
-/* Sends a signal to the daemon and waits until it has ended; its log is complete when this
- * returns. */
+/* Sends a signal to the daemon and waits until it has ended; the daemon's log is then complete. */
 static int end(daemon_process *d, int signal)
 {
     int waited = 0;

@@ -29,11 +29,11 @@ const char *
 daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121", "https://...", "unix:PATH" */
 int daemon_port(const daemon_process *d);
 int daemon_pid(const daemon_process *d);
-/* Return the most memory that the daemon ever held, in bytes, and the seconds of processor time
- * that it has used. */
+/* daemon_peak returns the most memory that the daemon ever held, in bytes; daemon_cpu returns the
+ * seconds of processor time that it has used. */
 size_t daemon_peak(const daemon_process *d);
 double daemon_cpu(const daemon_process *d);
-/* Waits until the daemon has written `text` to standard error this many times. Returns all that it
+/* Waits until the daemon has written `text` to standard error `times` times. Returns all that it
  * has written so far, ended by NUL, which the caller must free. Fails the test if the daemon ends
  * before. */
 char *daemon_wait_log(daemon_process *d, const char *text, int times);

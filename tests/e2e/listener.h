@@ -23,7 +23,7 @@ typedef struct listener {
 /* Requests `target` and reads the head of the answer. `last` is the Last-Event-ID, or NULL;
  * `buffer` is the size of the receive buffer, 0 for the system's default. */
 listener *listener_open(const daemon_process *d, const char *target, const char *last, int buffer);
-/* Opens a stream whose request has this token. */
+/* Opens a stream whose request has the token `token`. */
 listener *listener_open_as(const daemon_process *d, const char *target, const char *token);
 void listener_close(listener *l);
 
@@ -31,9 +31,10 @@ void listener_close(listener *l);
  * stream and, if `patient` is false, also if no event has come. Fails the test if nothing comes for
  * ten minutes. */
 const char *listener_next(listener *l, bool patient);
-/* Waits until this many comments have come in the stream; the daemon sends them as heartbeats. */
+/* Waits until `comments` comments have come in the stream; the daemon sends them as heartbeats. */
 void listener_wait_idle(listener *l, size_t comments);
-/* Return a member of the latest event's data; fail the test if it is absent. */
+/* listener_string returns a string, and listener_number a number, in the data of the latest event;
+ * `name` is its name. Both fail the test if it is absent. */
 const char *listener_string(const listener *l, const char *name);
 double listener_number(const listener *l, const char *name);
 

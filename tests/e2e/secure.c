@@ -32,7 +32,8 @@ typedef struct parcel {
 } parcel;
 
 typedef struct relay {
-    int inside, outside; /* the socket to the test, and the socket to the daemon */
+    /* `inside` is the socket to the test, `outside` the socket to the daemon */
+    int inside, outside;
     gnutls_session_t session;
     parcel out, in;
     bool is_left; /* the test has closed its socket */

@@ -67,8 +67,8 @@ static void unfold(reply *r, const char *coding)
     r->length = length;
 }
 
-/* Sends a whole request without reading meanwhile, and requires this status even if the daemon
- * closes the connection before it has read the whole body. */
+/* Sends a whole request without reading meanwhile, and requires an answer with the status `status`
+ * even if the daemon closes the connection before it has read the whole body. */
 static void refused(daemon_process *d, const char *target, const coded_body *body, int status)
 {
     char *request = malloc(body->length + 400);
@@ -132,7 +132,7 @@ static void bombs_stay_small(void **state)
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
         refused(d, "POST /v1/meshes", &(coded_body){both[i], "model/obj", zeros, length},
-                422); /* because an OBJ file has no NUL bytes */
+                422); /* 422, because an OBJ file has no NUL bytes */
         refused(d, "POST /v1/meshes", &(coded_body){both[i], "application/json", zeros, length},
                 400);
         refused(d, "POST /v1/meshes/m/edits",
@@ -143,8 +143,8 @@ static void bombs_stay_small(void **state)
                 413);
         refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/obj", blanks, length}, 413);
         refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/x-off", blanks, length}, 413);
-        /* A bomb inside another bomb is decompressed only once, so the result is refused as no
-         * mesh. */
+        /* A bomb that is compressed twice is decompressed only once, and the result is refused
+         * because it is no mesh. */
         size_t folded;
         char *nested = coding_pack(both[1 - i], blanks, length, &folded);
         reply r = send_coded(c, "PUT", "/v1/meshes/b",

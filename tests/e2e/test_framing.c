@@ -1,6 +1,6 @@
 /* Malformed requests, each sent at once, in pieces, and behind well-formed requests on one
  * connection. The well-formed requests must be answered in order, then the malformed one with its
- * problem, and after a framing fault nothing more. */
+ * problem document, and after a framing fault nothing more. */
 #include "tests/e2e/client.h"
 #include "tests/framing_cases.h"
 
@@ -47,7 +47,7 @@ typedef struct answer {
     size_t head_length, body_length;
 } answer;
 
-/* The answers on a connection, one by one, without the interim ones (1xx). */
+/* The answers that came on a connection, without the interim ones (1xx). */
 typedef struct answers {
     char *bytes;
     size_t length;
@@ -93,7 +93,7 @@ static void cut(answers *all)
     all->whole = at == end;
 }
 
-/* Sends the bytes in pieces of this size, and reads meanwhile and afterwards until the server
+/* Sends the bytes in pieces of `piece` bytes, and reads meanwhile and afterwards until the server
  * closes the connection. */
 static answers exchange(const char *bytes, size_t length, size_t piece)
 {
@@ -109,7 +109,8 @@ static answers exchange(const char *bytes, size_t length, size_t piece)
         if ((wait.revents & POLLOUT) != 0) {
             size_t now = length - sent < piece ? length - sent : piece;
             ssize_t n = send(fd, bytes + sent, now, MSG_NOSIGNAL | MSG_DONTWAIT);
-            sent = n > 0 ? sent + (size_t)n : length; /* after an error the answer is still read */
+            /* if the daemon refuses further bytes, its answer is still read */
+            sent = n > 0 ? sent + (size_t)n : length;
         }
         if ((wait.revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
             char buffer[16384];

@@ -36,7 +36,7 @@ static int stop(void **state)
     return daemon_stop(server);
 }
 
-/* Returns all half-edges with their links and all positions at this revision; revision 0 means the
+/* Returns all half-edges with their links and all positions at the revision `revision`; 0 means the
  * present one. */
 static char *dump(uint64_t revision)
 {

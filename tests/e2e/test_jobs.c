@@ -140,7 +140,8 @@ static void a_full_queue_refuses(void **state)
     assert_true(taken >= 1);
     reply_free(&r);
     client_free(c);
-    assert_int_equal(daemon_stop(d), 0); /* stops while one job runs and another one waits */
+    /* the daemon stops while one job runs and another one waits */
+    assert_int_equal(daemon_stop(d), 0);
 }
 
 static void a_long_edit_is_busy_readable_and_undone(void **state)

@@ -193,8 +193,8 @@ static void a_level_says_no_more_than_asked_beside_the_requests(void **state)
     free(log);
 }
 
-/* Sends a request with this header. If `trace_id` is not NULL, the answer must belong to this
- * trace. */
+/* Sends a request with the header line `header`. If `trace_id` is not NULL, the answer must belong
+ * to the trace with this id. */
 static void ask_in_trace(client *c, const char *header, const char *trace_id, char flag, char *span)
 {
     char answered[128], expected[64];

@@ -34,7 +34,8 @@ static int remove_folder(void **state)
     (void)state;
     (void)snprintf(command, sizeof command, "rm -rf '%s'", folder);
     (void)unlink(file);
-    return system(command); /* a restore leaves a folder in it, so rmdir would not do */
+    /* rmdir would not do, because the test of --restore leaves a folder in this folder */
+    return system(command);
 }
 
 static void expect_run(const char *const *arguments, int status, const char *says)

@@ -14,8 +14,8 @@
 
 #include <cmocka.h>
 
-/* On a busy machine a read of a million quads takes long, so these tests raise the time limit of
- * reads. */
+/* Options that raise the time limit of reads, because on a busy machine a read of a million quads
+ * takes long. */
 #define PATIENT "--read-seconds", "600"
 
 static double counted(client *c, const char *member)

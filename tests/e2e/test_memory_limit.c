@@ -47,8 +47,9 @@ static bool write_text(const char *folder, const char *name, const char *text)
     return file != NULL && fclose(file) == 0 && good;
 }
 
-/* Finds the control group of this process: in version 1 with the `key` ":memory:", in version 2
- * with "0::". The group is a folder below `mount`. */
+/* Finds the control group of this process, a folder below `mount`. In the list of the process's
+ * groups, the line of this group contains `key`: ":memory:" in version 1 of control groups, "0::"
+ * in version 2. */
 static bool find_parent(const char *key, const char *mount, char out[PATH_BYTES])
 {
     char line[PATH_BYTES];
@@ -96,7 +97,7 @@ static bool make_group(group *g)
     return false;
 }
 
-/* Moves this process back to its former group; the daemon stays in the small one. */
+/* Moves this process back to its former control group; the daemon stays in the small group. */
 static void leave_group(const group *g)
 {
     char pid[32];
@@ -119,7 +120,7 @@ static void end_group(const group *g)
     assert_int_equal(rmdir(g->own), 0);
 }
 
-/* Requires that the daemon's first log lines contain these words about its memory budget. */
+/* Requires that the daemon's first log lines contain `words`, which are about its memory budget. */
 static void expect_budget(daemon_process *d, client *c, const char *words)
 {
     char *log = daemon_wait_log(d, "listening on", 1);

@@ -120,9 +120,9 @@ static void what_happens_is_counted(void **state)
     client *c = client_new(d);
     reply before = read_page(c);
     let_things_happen(c);
-    /* Once a second the daemon opens a file of /proc to read its use of memory. Either page may
-     * count that as an open file, so a single new stream would not always raise the number of open
-     * files; two do. */
+    /* Once a second the daemon opens a file of /proc to read its use of memory. The page `before`
+     * or the page `after` may count that as an open file, so a single event stream would not always
+     * raise the number of open files; two do. */
     listener *streams[2];
     for (size_t i = 0; i < 2; i++) {
         streams[i] = listener_open(d, "/v1/meshes/m/events", NULL, 0);
@@ -198,7 +198,7 @@ static void exceed_connections(const daemon_process *d)
     assert_int_equal(client_raw_status(answer), 503);
     free(answer);
     close(fds[1]);
-    /* waits until the daemon closes it because of its incomplete request */
+    /* waits until the daemon closes the first connection because of its incomplete request */
     while (read(fds[0], &byte, 1) > 0) {
     }
     close(fds[0]);
@@ -232,7 +232,7 @@ static void what_is_refused_and_what_is_set_is_on_the_page(void **state)
     assert_int_equal(status, 429);
     exceed_connections(d);
     reply r = client_get(c, "/metrics");
-    while (r.status == 503) { /* waits until those connections are closed */
+    while (r.status == 503) { /* waits until the connections of exceed_connections() are closed */
         reply_free(&r);
         r = client_get(c, "/metrics");
     }

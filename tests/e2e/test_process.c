@@ -112,7 +112,8 @@ static void an_address_in_use_is_named_and_healthcheck_finds_its_daemon(void **s
     (void)state;
     daemon_process *d = daemon_start(NULL);
     const char *address = strstr(daemon_url(d), "127");
-    address = address == NULL ? daemon_url(d) : address; /* the path if it is a Unix socket */
+    /* "127.0.0.1:PORT", or the path of a Unix socket */
+    address = address == NULL ? daemon_url(d) : address;
     char output[4096];
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", address, "--store", "memory"), output, sizeof output), 1);
@@ -190,7 +191,8 @@ static void a_terminal_is_told_what_to_open_and_spared_the_log(void **state)
     daemon_process *d = daemon_start_on_terminal(NULL);
     char hint[400];
     const char *url = daemon_url(d);
-    if (transport_get() == TRANSPORT_UNIX) { /* a browser cannot open the socket */
+    /* a browser cannot open a Unix socket, so the daemon suggests curl */
+    if (transport_get() == TRANSPORT_UNIX) {
         snprintf(hint, sizeof hint,
                  ": listening on %s\ncurl --unix-socket %s http://localhost/v1/meshes asks hedge; "
                  "Ctrl-C stops it\n",
@@ -258,11 +260,12 @@ static void sigterm_ends_the_daemon_while_clients_write(void **state)
         workers[i] = (worker){d, i, 0};
         assert_int_equal(pthread_create(&threads[i], NULL, edit_on, &workers[i]), 0);
     }
-    reply r = client_get(c, "/v1/meshes/m0"); /* the writers have begun when this is answered */
+    reply r = client_get(c, "/v1/meshes/m0"); /* the writers have begun when this GET is answered */
     assert_int_equal(r.status, 200);
     reply_free(&r);
     client_free(c);
-    /* `d` is freed only after all writers have seen the daemon end, because they use it. */
+    /* `d` (the daemon) is freed only after all writers have seen the daemon end, because they use
+     * it. */
     kill(daemon_pid(d), SIGTERM);
     for (int i = 0; i < WORKERS; i++) {
         pthread_join(threads[i], NULL);

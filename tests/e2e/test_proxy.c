@@ -13,7 +13,7 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Returns the line of the access log about the request with this request id. */
+/* Returns the line of the access log about the request whose request id is `id`. */
 static const char *line_of(const char *log, const char *id)
 {
     const char *at = strstr(log, id);

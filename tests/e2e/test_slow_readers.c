@@ -47,7 +47,7 @@ static void begin_slowly(slow_client *s, const daemon_process *d, const char *pa
 /* A buffer from which single bytes of a socket are read. */
 typedef struct incoming {
     int fd;
-    /* number of bytes that were taken from the buffer, and number that were received into it */
+    /* `at` is the number of bytes taken from the buffer, `got` the number received into it */
     size_t at, got;
     char bytes[1 << 16];
 } incoming;
@@ -190,8 +190,8 @@ static void expect_all_closed(int sockets[IDLERS])
     }
 }
 
-/* Connections may be idle for an hour, so only the rule about the minimum rate of reading can close
- * these. */
+/* Options of a daemon that lets connections be idle for an hour, so that only its rule about the
+ * minimum rate of reading can close the connections of this test. */
 static const char *const impatient[] = {
     "--log", "off", "--body-grace", "1", "--min-rate", "4K", "--idle-timeout", "3600", NULL};
 
@@ -263,8 +263,8 @@ static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
     print_message("note: %d clients who read nothing: %.1f MB in sockets, counted %.1f MB more\n",
                   IDLERS, (double)waiting / 1e6, (counted(c) - before) / 1e6);
     assert_true(counted(c) >= before + (double)waiting);
-    /* The daemon enlarges the send buffer only of clients that read well. These clients read
-     * nothing, so their buffers must be small. */
+    /* The daemon enlarges the send buffer only of clients that read well. The clients of this test
+     * read nothing, so their buffers must be small. */
     assert_true(waiting_bytes(d) <= (size_t)IDLERS * SRV_SEND_BUFFER / 2);
     for (int i = 0; i < IDLERS; i++) {
         close(sockets[i]);

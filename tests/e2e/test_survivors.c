@@ -216,7 +216,8 @@ static void jobs_that_had_not_ended_were_interrupted(void **state)
     end_and_begin();
     expect_job(waiting, told);
     free(told);
-    /* The job of this key was interrupted, so the repeated request must be executed. */
+    /* The job that had the idempotency key was interrupted, so the repeated request must be
+     * executed. */
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", "Idempotency-Key: k",
            again);
     told = await(again);
@@ -337,7 +338,9 @@ static void cursors_tags_and_event_ids_go_on(void **state)
         listener_close(l);
         for (size_t i = 0; i < LISTS; i++) {
             char *again = page(lists[i][1], cursors[i]);
-            if (i > 0) { /* the list of meshes says how much memory they take, which differs */
+            /* the list of meshes (0) also shows their use of memory, which differs after a
+             * restart */
+            if (i > 0) {
                 assert_string_equal(again, pages[i]);
             }
             free(again);

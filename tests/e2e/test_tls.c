@@ -48,7 +48,7 @@ static daemon_process *start(void)
     return daemon_start(ARGUMENTS("--tls-cert", certificate, "--tls-key", key));
 }
 
-/* Connects with openssl s_client and these options; `said` becomes its output. */
+/* Connects with openssl s_client and the options `options`; `said` becomes its output. */
 static void s_client(const daemon_process *d, const char *options, char *said, size_t size)
 {
     shell(said, size,
@@ -126,7 +126,7 @@ static void a_new_certificate_is_for_new_connections(void **state)
     free(daemon_wait_log(d, "new connections use the certificate", 1));
     s_client(d, "", said, sizeof said);
     assert_non_null(strstr(said, "subject=CN = after"));
-    /* This client trusts only the old certificate. It keeps its old connection, on which the new
+    /* The client `c` trusts only the old certificate. It keeps its old connection, on which the new
      * certificate does not matter. */
     reply_done(reply_expect(200, client_get(c, "/livez")));
     client *other = client_new(d);
@@ -337,7 +337,9 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 static int make_folder(void **state)
 {
     (void)state;
-    transport_choose(TRANSPORT_TCP); /* each test sets the options of its transport itself */
+    /* TRANSPORT in the environment does not matter here: each test sets the options of its
+     * transport */
+    transport_choose(TRANSPORT_TCP);
     folder_make(folder);
     snprintf(certificate, sizeof certificate, "%s/certificate.pem", folder);
     snprintf(key, sizeof key, "%s/key.pem", folder);

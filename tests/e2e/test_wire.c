@@ -145,8 +145,8 @@ static void hostile_requests_get_their_status_and_change_no_mesh(void **state)
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n"
          "Content-Type: application/json\r\nContent-Length: 16\r\n\r\n{\"shape\":\"cube\"}",
          403},
-        /* A form on any web page can send this media type without a preflight request, so the
-         * daemon checks the origin. */
+        /* A form on any web page can send the media type multipart/form-data without a preflight
+         * request, so the daemon checks the origin. */
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://evil.example\r\n" FILES, 403},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n" FILES, 403},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Sec-Fetch-Site: cross-site\r\n" FILES, 403},

@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-/* TOGETHER is the number of edits after which two writers that send the same edits wait for each
- * other. So the daemon does not forget the keys of the slower writer before it uses them. */
+/* TOGETHER: two writers that send the same edits wait for each other after so many edits. So the
+ * daemon does not forget the idempotency keys of the slower writer before it uses them. */
 enum { WRITERS = 8, MESHES = 3, DEFAULT_EDITS = 400, TOGETHER = 500 };
 
 typedef enum condition { NONE, EXPECTED, IF_MATCH, KEYED } condition;
@@ -30,7 +30,7 @@ typedef struct writer {
     const daemon_process *daemon;
     condition condition;
     int index, meshes, edits;
-    int *revisions[MESHES]; /* the revisions that this writer's edits made */
+    int *revisions[MESHES]; /* for each mesh, the revisions that the edits of this writer made */
     int made[MESHES];
     long stale;
     char strange[200]; /* the first answer that was not expected */

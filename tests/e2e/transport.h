@@ -15,7 +15,7 @@ typedef enum transport { TRANSPORT_TCP, TRANSPORT_TLS, TRANSPORT_UNIX } transpor
 /* Returns the transport in the environment, TCP if it names none; fails the test if it names an
  * unknown one. */
 transport transport_get(void);
-/* Makes all daemons that this program starts from now on use this transport. */
+/* Makes all daemons that this program starts from now on use the transport `way`. */
 void transport_choose(transport way);
 /* Skips the running test if the transport is `way`, and prints the reason. */
 void transport_skip_over(transport way, const char *reason);
@@ -32,8 +32,8 @@ const char *const *transport_options(void);
  * removed when the program ends. */
 const char *transport_certificate(void);
 
-/* Writes a new key and a self-signed certificate for localhost and 127.0.0.1, with this common
- * name, as two PEM files. Fails the test if a file cannot be written. */
+/* Writes a new key and a self-signed certificate for localhost and 127.0.0.1, with the common name
+ * `name`, as two PEM files. Fails the test if a file cannot be written. */
 void transport_make_pair(const char *name, const char *certificate, const char *key);
 
 /* Begins TLS with the daemon at the other end of a connected socket, which then belongs to this

@@ -31,7 +31,8 @@ static const char *const names[FILES] = {"hedge.db", "hedge.db-wal", "hedge.mark
 static struct {
     unsigned char *bytes[FILES]; /* the undamaged contents of the store's files */
     size_t sizes[FILES];
-    size_t total, every, first; /* number of places; every `every`-th from `first` on is tried */
+    /* `total` is the number of places (bytes or bits); every `every`-th from `first` on is tried */
+    size_t total, every, first;
     bool cuts;
 } plan;
 
@@ -170,8 +171,8 @@ static void run(const char *base, unsigned count)
 
 /* --- would the test notice a loss? --- */
 
-/* Checks that the test would notice a loss. The undamaged store must be judged whole. Without its
- * write-ahead log and mark the store is in an older state, which must be judged wrong. */
+/* Checks that the test would notice a loss. The undamaged store must be judged whole. Without the
+ * files hedge.db-wal and hedge.mark the store is in an older state, which must be judged wrong. */
 static bool sees(const char *base)
 {
     char folder[FOLDER_PATH], why[SPECIMEN_WHY], path[2 * FOLDER_PATH];

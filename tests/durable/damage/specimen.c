@@ -18,7 +18,7 @@ enum { MESHES = 5, ID = 4, STATES = 2 };
 typedef struct expected {
     char id[ID];
     bool absent;
-    unsigned states; /* number of states in `digests`; the mesh may be in any of them */
+    unsigned states; /* number of states in `digests`; the mesh may be in any of these states */
     uint64_t digests[STATES][2];
 } expected;
 
@@ -206,7 +206,7 @@ static void post(void *context)
     sem_post(context);
 }
 
-/* Waits until the thread pool has finished all earlier tasks about this mesh. */
+/* Waits until the thread pool has finished all earlier tasks about the mesh `id`. */
 static void await_base(st_pool *pool, const char *id)
 {
     sem_t done;
