@@ -26,8 +26,8 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-/* Runs `answer` with a budget of steps. Returns true if the request must start again on another
- * thread. */
+/* Runs the function `answer` with a budget of steps. Returns true if the request must start again
+ * on another thread. */
 static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,

@@ -57,7 +57,8 @@ typedef struct path {
     end from;
     he_path_steps steps;
     bool has_repeat;
-    const char *until_name; /* the word of "until"; NULL: the path ends after a number of steps */
+    /* Value of the member "until"; NULL: the path ends after a number of steps. */
+    const char *until_name;
 } path;
 
 static bool read_steps(api_asker *a, const api_in *walk, path *out)
@@ -194,8 +195,8 @@ static uint64_t most_of_flood(const api_asker *a)
     return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
 }
 
-/* Walks breadth first: fills a->first with elements and a->second with their depths. `question` is
- * the walk, for the JSON pointer of a refusal. */
+/* Walks breadth first: fills the asker's list `first` with elements and its list `second` with
+ * their depths. `question` is the walk, for the JSON pointer of a refusal. */
 static bool flood(api_asker *a, const api_in *question, const he_breadth_first *asked)
 {
     he_error err = {0};

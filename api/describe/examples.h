@@ -26,13 +26,13 @@
 /* The content of examples.json, followed by a NUL. */
 extern const char api_examples_text[];
 
-/* The parsed file. {0} is empty. */
+/* The parsed examples.json; {0} before api_examples_read. */
 typedef struct api_examples {
     he_json json;
     uint32_t list; /* the array "examples" in `json` */
 } api_examples;
 
-/* Parses the file. Returns false if memory is out. */
+/* Parses examples.json. Returns false if memory is out. */
 bool api_examples_read(api_examples *examples);
 void api_examples_clear(api_examples *examples);
 
@@ -45,7 +45,7 @@ uint32_t api_example_find(const api_examples *examples, api_example_part part, c
                           const char *media);
 /* Returns the first example of a refused request. */
 uint32_t api_example_problem(const api_examples *examples);
-/* Appends a body of an example as it is sent. Returns false if the example has none. */
+/* Appends a body of an example as it is sent. Returns false if the example has no such body. */
 bool api_example_body(const api_examples *examples, uint32_t example, api_example_part part,
                       api_text *text);
 /* Appends the value with this index in examples->json, as JSON without blanks. */

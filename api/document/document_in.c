@@ -37,7 +37,7 @@ struct api_document_in {
     double point[3];
 
     api_attributes_in *attributes; /* reads the attributes; NULL if the document has none so far */
-    api_members *gathering;        /* where the present member is gathered; NULL: it is not */
+    api_members *gathering; /* where the present member is gathered; NULL: it is not gathered */
     api_members materials, rest;
     api_document document; /* the members of `rest`, parsed */
     api_in root;

@@ -187,7 +187,8 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-/* Copies bytes to u->head, as many as fit, and returns how many were copied. */
+/* Copies the first bytes of the body to u->head, as many as fit, and returns how many were
+ * copied. */
 static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
     size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
@@ -425,8 +426,8 @@ static void name_defects(api_exchange *x, upload *u)
     }
 }
 
-/* Refuses the body. The defects in u->report are sent only if they are the reason of the refusal:
- * work that was cancelled or ran out of memory may have found defects before that. */
+/* Refuses the body. The defects that were found are sent only if they are the reason of the
+ * refusal: work that was cancelled or ran out of memory may have found some before that. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
     bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
@@ -589,8 +590,8 @@ typedef struct shown_warning {
     uint64_t count;
     uint64_t at; /* line or byte of the first occurrence */
     bool has_line, has_byte, has_lines, has_bytes, has_vertices;
-    /* A warning of the reader is number `warning` of these; `warnings` also has the places of its
-     * occurrences. */
+    /* `warnings` are the warnings of the reader of the file, with the places where they occurred;
+     * this one has the index `warning`. */
     const he_warnings *warnings;
     size_t warning;
     const uint32_t *vertices;
