@@ -13,7 +13,7 @@
  * text plus the nodes of one operation at a time. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
-#define API_MAX_MATERIALS      ((size_t)16 << 20) /* the materials of a mesh document */
+#define API_MAX_MATERIALS      ((size_t)16 << 20) /* text of the materials in a mesh document */
 #define API_MAX_EDITS          ((size_t)8 << 20)  /* an edit list */
 #define API_MAX_EDITS_VALUES   ((size_t)1 << 20)
 /* The largest mesh document or file, unless api_options.max_upload is set. */

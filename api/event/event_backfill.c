@@ -7,7 +7,8 @@
 
 #include <pthread.h>
 
-/* Bytes after which a batch ends; it may be longer by a part of one event. */
+/* The number of bytes after which a batch of events ends; a batch may be longer by a part of one
+ * event. */
 enum { BATCH = 32 * 1024 };
 
 struct api_backfill {
@@ -22,7 +23,8 @@ struct api_backfill {
     bool failed;
     /* The lock protects the members below. */
     pthread_mutex_t lock;
-    unsigned uses; /* 1 for the listener, and 1 for a task that is queued or running */
+    /* Number of users: 1 for the listener, and 1 for a task that is queued or running. */
+    unsigned uses;
     bool working, waiting;
     void (*wake)(void *context); /* NULL if the listener has freed the backfill */
     void *context;

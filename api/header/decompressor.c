@@ -201,8 +201,8 @@ static uint64_t beyond(const api_decompressor *u)
     return u->to > earned ? u->to - earned : 0;
 }
 
-/* Passes the first `length` bytes of u->piece to the callback. Refuses the body if its decompressed
- * size exceeds the allowed ratio by too much. */
+/* Passes `length` decompressed bytes, which are in u->piece, to the callback. Refuses the body if
+ * its decompressed size exceeds the allowed ratio by too much. */
 static bool give(api_decompressor *u, size_t length, api_problem *problem)
 {
     u->to += length;

@@ -32,7 +32,7 @@ typedef struct api_job {
     const char *operation;     /* operationId of the request's route */
     const char *phase;         /* what the work is doing, such as "writing"; "" before it runs */
     double progress;           /* fraction of the work that is done, 0 to 1; never decreases */
-    char mesh[ST_MESH_ID + 1]; /* id of its mesh; "" while the mesh has no id */
+    char mesh[ST_MESH_ID + 1]; /* id of the job's mesh; "" while the mesh has no id */
     double created, started, finished; /* times in seconds since 1970 UTC; 0: not yet */
     int status;                        /* HTTP status of the answer; 0: no answer yet */
     char location[API_JOB_LOCATION];   /* value of the answer's header Location; "": none */

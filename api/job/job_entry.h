@@ -56,7 +56,8 @@ struct api_job_table {
     bool stopped;
     /* Number of jobs that ended in each final state since the server started. */
     uint64_t ended[API_JOB_STATES];
-    st_histogram waited, ran; /* time in the queue and time running, in microseconds */
+    /* waited: times of jobs in the queue; ran: times running; in microseconds. */
+    st_histogram waited, ran;
 };
 
 /* Returns true if the job has ended. The caller of this function and of all below must hold the

@@ -89,7 +89,8 @@ static void take_out(api_job_table *table, api_job_entry *j)
 
 static void forget(api_job_table *table, api_job_entry *j)
 {
-    (void)api_job_forget(j); /* if that fails, the record is deleted later because of its age */
+    /* If the record cannot be deleted now, it is deleted later because of its age. */
+    (void)api_job_forget(j);
     take_out(table, j);
 }
 
@@ -576,7 +577,8 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         api_job_count_end(j);
         if (j->is_kept && !j->table->stopped) {
             uint64_t position;
-            /* If the store cannot record this, the job is marked as interrupted after a restart. */
+            /* If the store cannot record the cancellation, the job is marked as interrupted after a
+             * restart. */
             (void)api_job_keep(j, &position);
         }
         api_job_entry_wake(j);

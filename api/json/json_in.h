@@ -86,7 +86,7 @@ bool api_in_is_number(const api_in *in);
 /* Checks that the value is an object with no other members than `names`, each of which may be
  * absent. `names` ends in NULL. */
 bool api_in_only(const api_in *in, const char *const *names);
-bool api_in_object(const api_in *in); /* checks that it is an object */
+bool api_in_object(const api_in *in); /* checks that the value is an object */
 /* Returns false if there is no such member. */
 bool api_in_find(const api_in *object, const char *name, api_in *out);
 /* Refuses an object without it. */

@@ -50,8 +50,8 @@ typedef struct api_rows {
     unsigned char buffer[API_ROWS_AT_ONCE * API_ROW_BYTES];
 } api_rows;
 
-/* These two functions choose the rows to send: all rows, or those that changed after revision
- * `since`. The slots are not needed afterwards.
+/* api_rows_take_all chooses all rows, to be sent; api_rows_take_changes chooses the rows that
+ * changed after revision `since`. The slots are not needed afterwards.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_UNSUPPORTED if the changed rows are not known, so that all rows must be sent.
  * Returns HE_LIMIT if more than `most` changes would have to be visited. */

@@ -160,8 +160,8 @@ void api_content_encoding_answer(api_exchange *x)
         }
         return;
     }
-    /* The packer has read part of the body already, so it must deliver the rest even if it cannot
-     * compress: then it passes the body on unchanged. */
+    /* The compressor has read part of the body already, so the rest must come from it even if it
+     * cannot compress: then it passes the body on unchanged. */
     a->read = api_compressor_read;
     a->context = x->compressor;
     a->bytes = NULL;

@@ -118,8 +118,8 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
-/* Refuses a request to a mesh whose changes were lost. A write is refused with what is wrong with
- * the store, if something still is. */
+/* Refuses a request to a mesh whose changes were lost. While the store cannot write, a write is
+ * refused with the reason for that. */
 static bool fail_lost(api_exchange *x)
 {
     st_health health;

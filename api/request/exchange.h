@@ -141,7 +141,8 @@ struct api_exchange {
     bool is_job;          /* `deferred` is to run as a job */
     double seconds;       /* estimated duration; 0: not estimated */
     he_progress progress; /* the threads that the work may use, and the callback for its progress */
-    /* Why the watch stopped the work; its code is HE_OK if no reason was given. */
+    /* Why the work was stopped (api_give_up); the code of this problem is HE_OK if no reason was
+     * given. */
     api_problem given_up;
 
     /* --- the answer --- */
@@ -198,8 +199,8 @@ bool api_write_commit(api_exchange *x, const char *ops);
 /* Returns true if If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info;
  * otherwise fills the problem. */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
-/* Returns true if the preconditions hold for a PUT to a mesh that does not exist: If-None-Match: *
- * does, If-Match does not. */
+/* Returns true if the preconditions hold for a PUT to a mesh that does not exist: If-None-Match
+ * with "*" holds then, If-Match does not. */
 bool api_precondition_absent(api_exchange *x);
 
 /* --- long work --- */

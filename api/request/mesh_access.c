@@ -121,8 +121,8 @@ static bool obtain(api_exchange *x)
     return !copies || take_snapshot(x);
 }
 
-/* Decides whether a handler that writes runs on this thread: `cost` of the route reads the mesh, if
- * there is one (a route may create its mesh). */
+/* Decides whether a handler that writes runs on this thread: lets the function `cost` of the route
+ * read the mesh, unless the mesh does not exist yet. */
 static bool look(api_exchange *x)
 {
     api_cost cost = {0};

@@ -26,7 +26,7 @@ typedef struct edits {
     uint64_t passes;          /* how many passes over the mesh the `whole` operations take */
     double growth;            /* the factor by which all operations together enlarge the mesh */
     uint64_t elements_beside; /* number of elements of the other meshes that operations name */
-    /* Whether the list must leave the worker; whether it must claim the mesh. */
+    /* costly: the list must leave the worker thread. claims: it must claim the mesh. */
     bool costly, claims;
     double seconds;
     api_edit_cost cost;
@@ -37,9 +37,10 @@ typedef struct edits {
     bool exceeded;      /* `most_work` would be exceeded */
     size_t most_rows;   /* a list whose delta has more rows needs a claim */
     bool crowded;       /* `most_rows` was exceeded */
-    /* How many more polls of the watch the charge for the current operation includes. */
+    /* How many more polls of the watch (questions whether to stop) are free, because the charge for
+     * the current operation includes them. */
     uint64_t paid;
-    uint64_t look;    /* work charged for each further poll */
+    uint64_t look;    /* work charged for each poll that is not free */
     bool unlimited;   /* this thread may do any amount of work */
     he_progress told; /* the original x->progress, to which tell_and_charge forwards */
     api_hubs hubs;

@@ -23,7 +23,8 @@ typedef struct api_named_meshes {
     api_named_mesh other[API_MAX_NAMED_MESHES];
     size_t count;
     st_shown shown[API_MAX_NAMED_MESHES]; /* the state of each mesh that its snapshot shows */
-    size_t cold; /* how many of them are not in memory; then api_named_meshes_load must be called */
+    /* How many of these meshes are not in memory; if any, api_named_meshes_load must be called. */
+    size_t cold;
 } api_named_meshes;
 
 /* Initializes an empty list. others->meshes.find adds each mesh once, and refuses a mesh that does
