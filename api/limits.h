@@ -99,8 +99,8 @@ enum {
     API_MAX_PAIRS = 1 << 20
 };
 
-/* A request that costs more than one of these runs on a thread of the job pool instead of a worker
- * thread, which must not block for long (API_WORK). */
+/* A request that costs more than one of these amounts runs on a thread of the job pool instead of a
+ * worker thread, which must not block for long (API_WORK). */
 enum {
     API_COSTLY_ELEMENTS = 20000,    /* number of vertices, half-edges and faces together */
     API_COSTLY_UPLOAD = 256 * 1024, /* bytes of an uploaded body */

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Parameters of a measure other than its element. */
+/* The parameters of a question about a measure, except the elements to measure. */
 typedef struct options {
     he_weight weight;
     double crease;

@@ -77,7 +77,7 @@ bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
 bool api_measure_is_dense(const api_in *question);
 bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count);
 
-/* --- functions that only files of this room call --- */
+/* --- functions that only the files in api/ask call --- */
 bool api_measure_ask(api_asker *a, const api_in *question);
 bool api_ray_ask(api_asker *a, const api_in *question);
 bool api_closest_ask(api_asker *a, const api_in *question);

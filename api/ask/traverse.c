@@ -12,8 +12,8 @@
 
 #include <string.h>
 
-/* How many half-edges are charged for each element that a breadth-first walk reaches; on average it
- * visits fewer. */
+/* How many half-edges are charged for each element that a breadth-first walk reaches; on average
+ * the walk visits fewer. */
 enum { FLOOD_COST = 8 };
 
 /* An element at which a walk begins or ends. */

@@ -36,7 +36,7 @@ typedef struct api_examples {
 bool api_examples_read(api_examples *examples);
 void api_examples_clear(api_examples *examples);
 
-/* Selects one of the two bodies of an example. */
+/* Selects a body of an example: that of the request or that of the answer. */
 typedef enum api_example_part { API_EXAMPLE_REQUEST, API_EXAMPLE_RESPONSE } api_example_part;
 
 /* Returns the first example of a successful request to `route` whose body `part` has this media

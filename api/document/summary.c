@@ -229,8 +229,8 @@ void api_answer_created(api_exchange *x, const char *name, const api_summary *su
     api_answer_stored(x, 201, summary, extra);
 }
 
-/* Estimates the cost of a summary. If the store has the summary cached, it is put into x->state,
- * and the handler need not read the mesh. */
+/* Estimates the cost of a summary. If the store has kept the summary, the summary is put into
+ * x->state, and the handler need not read the mesh. */
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     api_summary *kept = api_arena_array(&x->arena, 1, sizeof *kept);

@@ -187,7 +187,7 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-/* Copies the first bytes of the body to u->head, as many as fit, and returns how many were
+/* Copies the first bytes of the body to `head`, as many as fit, and returns how many were
  * copied. */
 static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
@@ -678,8 +678,8 @@ static void write_vertices(api_out *out, const upload *u, shown_warning value, c
     api_record_write(out, &api_warning_record, &value);
 }
 
-/* Writes a warning about open seams. Programs leave them that write a vertex several times, once
- * for each combination of attribute values of its corners. */
+/* Writes a warning about open seams. Seams are left by programs that write a vertex several times,
+ * once for each combination of attribute values of its corners. */
 static void write_seams(api_out *out, const upload *u)
 {
     const shown_warning value = {.code = "open_seams",

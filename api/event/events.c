@@ -77,7 +77,7 @@ static void begin_edit(api_out *out, const st_mesh_info *info)
     api_out_key_u64(out, "revision", info->revision);
 }
 
-/* Writes the data of an event `edit`. Returns false if it is too long or memory is out. */
+/* Writes the data of an event `edit`. Returns false if the data are too long or memory is out. */
 static bool write_edit(api_text *data, const st_mesh_info *info, const st_change *change,
                        const he_changes *changes)
 {

@@ -15,7 +15,7 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-/* Limits the memory of compression streams. It comes from the heap; a group of streams shares one
+/* Limits the memory that compression streams allocate from the heap; a group of streams shares one
  * ceiling. */
 typedef struct api_compression_memory {
     /* The bytes that all streams of the group have allocated, including the overhead of each

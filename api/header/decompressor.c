@@ -201,7 +201,7 @@ static uint64_t beyond(const api_decompressor *u)
     return u->to > earned ? u->to - earned : 0;
 }
 
-/* Passes `length` decompressed bytes, which are in u->piece, to the callback. Refuses the body if
+/* Passes `length` decompressed bytes, which are in `piece`, to the callback. Refuses the body if
  * its decompressed size exceeds the allowed ratio by too much. */
 static bool give(api_decompressor *u, size_t length, api_problem *problem)
 {
@@ -299,8 +299,8 @@ static bool refuse_zstd(const api_decompressor *u, size_t code, api_problem *pro
     return refuse(u, problem, ZSTD_getErrorName(code));
 }
 
-/* Ends a frame. It compares the decompressed length with the one in the frame's header, because
- * zstd does not if the last block is empty. */
+/* Ends a frame. This function compares the decompressed length with the length in the frame's
+ * header, because zstd does not compare them if the last block is empty. */
 static bool end_frame(api_decompressor *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);

@@ -24,7 +24,7 @@ extern const char *const api_job_header_names[API_JOB_HEADERS];
 
 /* The description of a job. */
 typedef struct api_job {
-    char id[API_JOB_ID + 1]; /* random, so that no client can guess it */
+    char id[API_JOB_ID + 1]; /* id of the job: random, so that no client can guess it */
     /* The name of the token that started the job; "" if there was no token. */
     char holder[API_TOKEN_NAME + 1];
     uint64_t number; /* jobs are numbered from 1 in the order of submission */

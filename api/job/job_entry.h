@@ -60,8 +60,8 @@ struct api_job_table {
     st_histogram waited, ran;
 };
 
-/* Returns true if the job has ended. The caller of this function and of all below must hold the
- * table's lock. */
+/* Returns true if the job has ended. The caller of this function and of all functions below must
+ * hold the table's lock. */
 static inline bool api_job_entry_has_ended(const api_job_entry *job)
 {
     return job->facts.state >= API_JOB_DONE;

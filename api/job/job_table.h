@@ -123,7 +123,7 @@ typedef struct api_job_page {
     size_t limit;            /* how many jobs the page has at most */
 } api_job_page;
 
-/* Calls `show` with the jobs of a page. Returns true if there are more after it. */
+/* Calls `show` with each job of a page. Returns true if there are more jobs after the page. */
 bool api_job_list(api_job_table *table, const api_job_page *page,
                   void (*show)(void *context, const api_job *job), void *context);
 /* Cancels the wanted job if it has not ended, and calls `show`; deletes it if it has ended, and

@@ -87,9 +87,9 @@ bool api_in_is_number(const api_in *in);
  * absent. `names` ends in NULL. */
 bool api_in_only(const api_in *in, const char *const *names);
 bool api_in_object(const api_in *in); /* checks that the value is an object */
-/* Returns false if there is no such member. */
+/* Returns false if the object has no member `name`. */
 bool api_in_find(const api_in *object, const char *name, api_in *out);
-/* Refuses an object without it. */
+/* Refuses an object without the member `name`. */
 bool api_in_need(const api_in *object, const char *name, api_in *out);
 /* Checks that the value is an array of `min` to `max` values. */
 bool api_in_array(const api_in *in, size_t min, size_t max);

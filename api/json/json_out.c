@@ -314,7 +314,7 @@ static void date_of(int64_t day, int64_t *year, int *month, int *date)
 
 void api_out_time(api_out *out, double seconds)
 {
-    /* ISO 8601 has this form only for years with four digits. */
+    /* ISO 8601 has the form written here only for years with four digits. */
     if (!(seconds > -62167219200.0 && seconds < 253402300799.0)) {
         api_out_null(out);
         return;

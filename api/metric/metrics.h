@@ -82,7 +82,7 @@ typedef enum api_edit_result {
 } api_edit_result;
 
 /* Edits are counted by the number of their operation (he_op_number). Undo and redo have the numbers
- * after the highest possible one. */
+ * after the highest possible number of an operation. */
 enum { API_MOST_OPERATIONS = 64, API_UNDO = API_MOST_OPERATIONS, API_REDO, API_OPERATIONS };
 
 /* Counts `count` operations that have this number and result. */

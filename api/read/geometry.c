@@ -211,8 +211,8 @@ static void answer_stream(api_exchange *x, geometry *g)
     api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
-/* Answers with the changed rows, while the mesh is locked for reading. Returns LATER if they are
- * too many for that. */
+/* Answers with the changed rows, while the mesh is locked for reading. Returns LATER if there are
+ * too many rows for that. */
 static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -273,8 +273,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Sets the tag of the answer if it can be known from the kept slots, so that If-None-Match is
- * answered 304 before a job is made. */
+/* Sets the ETag of the answer if the kept slots show it, so that If-None-Match is answered 304
+ * before a job is made. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);

@@ -118,7 +118,8 @@ typedef struct api_options {
      * (0: no limit). NULL: not reported. */
     void (*memory)(uint64_t *used, uint64_t *budget);
     api_limits address_limits; /* limits of each address for requests without a token */
-    /* How many seconds of requests and bytes a client may use at once; 0: one. */
+    /* How many seconds' worth of requests and bytes a client may use at once; 0 stands for one
+     * second. */
     uint64_t limit_burst;
     api_tokens *tokens; /* NULL: no token is needed, every client may do everything */
     /* Reads the server's files again, such as the token file. On failure returns false with a

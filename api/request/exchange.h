@@ -60,7 +60,7 @@ struct api_service {
  * in a job, or is answered. It only moves forward. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
-enum { API_LOCATION = 512 }; /* bytes of a percent-encoded path of this API */
+enum { API_LOCATION = 512 }; /* the most bytes that a percent-encoded path of this API has */
 
 struct api_exchange {
     api_service *service;
@@ -101,7 +101,7 @@ struct api_exchange {
     /* Position in the journal of the record of the Idempotency-Key, for which the answer waits; 0:
      * none. */
     uint64_t noted;
-    const char *own_job;  /* id of the job that does this work; NULL: none */
+    const char *own_job;  /* id of the job that does the work of this exchange; NULL: none */
     api_coding coding_in; /* content coding of the body */
     api_codings codings;  /* content codings that the answer may have */
 
@@ -229,7 +229,7 @@ uint64_t api_elements_of(const he_mesh *mesh);
  * Returns false in api_work, which is on such a thread. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 
-/* --- answers: a handler calls one of these, once --- */
+/* --- answers: a handler calls one of these functions, once --- */
 /* Declares that the write took effect, so that a refusal would be wrong. If a problem comes up
  * later (no memory for the answer, the mesh deleted meanwhile), the client gets `status`, 201 or
  * 204, without a body. With 201, the header Location is made from x->info, which must be that of
@@ -269,7 +269,8 @@ void api_answer_live(api_exchange *x, int status, const char *type, const api_so
 void api_answer_header(api_exchange *x, const char *name, const char *value);
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Sets the ETag of x->info for this representation. */
+/* Sets the ETag of the answer, made from the mesh's state in x->info and the name of the
+ * representation (etag.h). */
 void api_answer_etag(api_exchange *x, const char *representation);
 /* Sets the ETag. If If-None-Match names it, answers 304 and returns true. A job never does that:
  * its client asked for the result. */

@@ -66,9 +66,10 @@ typedef struct api_cost {
 
 typedef struct api_reading {
     api_reads reads;
-    /* Estimates the cost before the handler runs; NULL if it is always small. It may change
-     * x->reading for this request. If the work moves to another thread, it is called again there.
-     * Returns false with the problem filled if the request can be refused already. */
+    /* Estimates the cost before the handler runs; NULL if the cost is always small. This function
+     * may change x->reading for the request. If the work moves to another thread, the function is
+     * called again there. Returns false with the problem filled if the request can be refused
+     * already. */
     bool (*cost)(api_exchange *x, const he_mesh *mesh, api_cost *out);
     /* The representation of the answer, from which its ETag is made (etag.h), if a request whose
      * If-None-Match matches may be answered 304 before the handler runs. NULL if the handler itself
@@ -80,7 +81,7 @@ typedef struct api_reading {
 
 enum {
     API_WRITES = 1, /* the route changes something; it reads If-Match */
-    /* A write whose cost grows with its upload: large uploads are worked on off the worker. */
+    /* A write whose cost grows with its upload: a thread that may block works on large uploads. */
     API_COSTLY = 2,
     API_MAY_CREATE = 4, /* the mesh in the path need not exist */
     API_OWN_ACCEPT = 8, /* the handler itself evaluates Accept, because ?format= overrides it */

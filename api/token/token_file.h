@@ -30,7 +30,8 @@ enum {
 };
 
 typedef struct api_token_list {
-    api_token **items; /* in the order of their lines; the list holds a reference to each token */
+    /* The tokens in the order of their lines; the list holds a reference to each. */
+    api_token **items;
     size_t count;
 } api_token_list;
 

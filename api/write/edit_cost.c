@@ -177,7 +177,7 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
 
 /* --- what the operations of a list are charged --- */
 
-/* Degrees below this are not cached (api_hubs). */
+/* Vertices and faces with fewer half-edges are not kept in the cache (api_hubs). */
 enum { HUB = 256 };
 
 /* Returns what the function `steps` returns, but keeps high degrees in a cache. */

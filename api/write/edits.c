@@ -77,8 +77,8 @@ static void free_edits(void *state)
     he_mem_free(e);
 }
 
-/* Appends the name of an operation to e->ops, the list in the history entry; appends ",..." if it
- * does not fit. */
+/* Appends the name of an operation to `ops`, the list in the history entry; appends ",..." if the
+ * name does not fit. */
 static void note_name(edits *e, const char *name)
 {
     static const char more[] = ",...";

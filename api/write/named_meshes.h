@@ -27,8 +27,8 @@ typedef struct api_named_meshes {
     size_t cold;
 } api_named_meshes;
 
-/* Initializes an empty list. others->meshes.find adds each mesh once, and refuses a mesh that does
- * not exist and more meshes than API_MAX_NAMED_MESHES. */
+/* Initializes an empty list. The function `find` of its member `meshes` adds each mesh once, and
+ * refuses a mesh that does not exist and more meshes than API_MAX_NAMED_MESHES. */
 void api_named_meshes_init(api_named_meshes *named, api_exchange *asker);
 /* Loads the meshes that are not in memory. Blocks. Returns false with x->problem filled. */
 bool api_named_meshes_load(api_exchange *x, api_named_meshes *named);
