@@ -233,7 +233,9 @@ static void write_content(api_out *out, const body *b)
         } else if (strcmp(*types, "model/gltf+json") == 0) {
             write_gltf_schema(out);
         } else if (json) {
-            api_out_key(out, "schema"); /* any JSON value: the file of the web page is unknown */
+            /* The schema allows any JSON value, because what a JSON file of the web page contains
+             * is unknown. */
+            api_out_key(out, "schema");
             api_out_raw(out, "{}", 2);
         } else {
             write_bytes_schema(out, *types);

@@ -11,7 +11,7 @@
 /* How deep in the document the lexer is: the number of arrays and objects around the value that is
  * read. */
 enum {
-    IN_DOCUMENT = 1, /* in the object of the document, whose member "attributes" is read */
+    IN_DOCUMENT = 1, /* in the object of the document itself, which has the member "attributes" */
     IN_LIST,
     IN_OBJECT,
     IN_VALUES,

@@ -11,7 +11,7 @@
 
 /* The member of the document whose value is being read. */
 typedef enum member {
-    NO_MEMBER, /* between members, and before and after the document */
+    NO_MEMBER, /* the lexer is between members, or before or after the document */
     VERTICES,
     FACES,
     ATTRIBUTES /* read by attributes_in.c */

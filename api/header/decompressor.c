@@ -18,7 +18,8 @@ struct api_decompressor {
     uint64_t at; /* number of bytes of the compressed body that were read */
     /* Decompressed bytes by which earlier gzip members or zstd frames exceeded the ratio. */
     uint64_t beyond;
-    /* Compressed and decompressed bytes of the present gzip member or zstd frame. */
+    /* How many bytes of the present gzip member or zstd frame were read (from: compressed) and
+     * written (to: decompressed). */
     uint64_t from, to;
     size_t turn; /* bytes decompressed in this call of api_decompressor_feed */
     bool inside; /* a gzip member or zstd frame has begun and not ended */

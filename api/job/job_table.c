@@ -314,7 +314,7 @@ static void resume(st_wait *wait)
         answer_lost(j);
         note_end(j);
         break;
-    case ST_WAIT_STOPPED: /* the changes may still become durable */
+    case ST_WAIT_STOPPED: /* the server stops, and the changes may still become durable */
         answer_lost(j);
         decide_end(j);
         break;
@@ -364,7 +364,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    /* Needs no lock: `about` is released only when the job ends. */
+    /* `about` is read without the lock: it is released only when the job ends. */
     tell_listeners(j->about, &facts);
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
@@ -411,7 +411,7 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
 static void stop_if_lost(api_job_entry *j)
 {
     if (j->accepted.end == ST_WAIT_LOST) {
-        atomic_store(&j->stop, true); /* the client will not get its 202 */
+        atomic_store(&j->stop, true); /* the client will not get the answer 202 */
     }
 }
 

@@ -31,10 +31,10 @@
 typedef struct api_job_table api_job_table;
 
 enum {
-    API_JOBS_KEPT = 1000,             /* all jobs: queued, running and ended */
+    API_JOBS_KEPT = 1000,             /* the most jobs in the table: queued, running and ended */
     API_JOBS_BYTES = 64 << 20,        /* bytes of all answers */
     API_JOB_SECONDS = ST_JOB_SECONDS, /* seconds for which an ended job is kept */
-    API_JOB_LISTENERS = 1000          /* event streams of jobs that are open at one time */
+    API_JOB_LISTENERS = 1000          /* the most event streams of jobs that are open at one time */
 };
 
 typedef struct api_job_table_options {

@@ -27,7 +27,7 @@ typedef struct api_in {
     const struct cJSON *value;
     const struct api_in *parent; /* the array or object around the value; NULL for the root */
     size_t index;         /* index of the value in its array; unused for a member of an object */
-    api_problem *problem; /* filled when the value is refused */
+    api_problem *problem; /* the problem that is filled when the value is refused */
 } api_in;
 
 /* A parsed document. */

@@ -189,7 +189,7 @@ static bool look(const bucket *b, uint64_t rate, uint64_t seconds, int which, ap
 {
     const uint64_t taken = b->taken[which];
     const uint64_t capacity = product(product(rate, seconds), MILLION);
-    /* Not negative: `rate` and `seconds` are at least 1. */
+    /* The difference is not negative, because `rate` and `seconds` are at least 1. */
     const uint64_t wanted = capacity - MILLION;
     *out = (api_rate_left){0};
     if (rate == 0) {

@@ -73,11 +73,11 @@ struct api_exchange {
     const api_route *route; /* the row of the table of routes; NULL: no route matched */
     bool head;              /* the method is HEAD: the server sends no body */
     const char *mesh_id;    /* id of the mesh in the path, well formed; NULL: none */
-    he_kind kind;           /* kind of {domain} in the path, or of the route */
-    uint32_t id;            /* {id} in the path */
-    const char *code;       /* {code} in the path */
-    const char *attribute;  /* {name} in the path */
-    const char *job_id;     /* {job} in the path; any text */
+    he_kind kind; /* kind of element that {domain} in the path names, or that the route is about */
+    uint32_t id;  /* {id} in the path */
+    const char *code;      /* {code} in the path */
+    const char *attribute; /* {name} in the path */
+    const char *job_id;    /* {job} in the path, which may be any text */
     /* The client's token, with a reference held; NULL: the route is open, or the server has no
      * tokens. */
     api_token *token;
@@ -126,9 +126,11 @@ struct api_exchange {
     /* Whether the answer may show more of the store than `info`; it then waits for more changes to
      * be durable (`shown` in api_answer). */
     bool shows_all;
-    uint64_t since;      /* the journal was durable up to this position when the exchange began */
-    st_write write;      /* the write to the mesh; a claim outlives the handler that began it */
-    api_reading reading; /* what the handler reads: a copy of the route's members */
+    uint64_t since; /* the journal was durable up to this position when the exchange began */
+    st_write write; /* the write to the mesh; a claim outlives the handler that began it */
+    /* What the handler reads: at first a copy of the route's members `reads`, `cost`, `tag` and
+     * `run`. */
+    api_reading reading;
     const he_mesh *content; /* the mesh that the handler may read while it runs; NULL: none */
     /* The snapshot that owns `content`; NULL: `content` is read under the shared lock. */
     st_snapshot *snapshot;

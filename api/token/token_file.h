@@ -23,7 +23,7 @@
 #include "api/token/token.h"
 
 enum {
-    API_TOKENS = 4096,         /* number of tokens in the file */
+    API_TOKENS = 4096,         /* the most tokens in the file */
     API_TOKENS_FILE = 1 << 20, /* bytes of the file */
     API_TOKEN_LINE = 1024,     /* bytes per line */
     API_TOKENS_MESSAGE = 160
