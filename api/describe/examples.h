@@ -9,8 +9,9 @@
  *     "differs"   texts that are different in every session. Each has two regular expressions, one
  *                 for what comes before the text ("after") and one for the text itself ("form");
  *                 "shown" is what the file has in its place.
- *     "before"    requests that are sent first and are not shown. A request with "job" is answered
- *                 by a job, and the file has this id for it; with "runs" the job runs at once.
+ *     "before"    requests that are sent first and are not shown. A request with "job" becomes a
+ *                 job, whose id is replaced in the file by the value of "job". After a request
+ *                 with "runs" one job that waits is run.
  *     "examples"  the session. "route" names a row of the table of routes. A body is "request" or
  *                 "response". A body that is not JSON, or that has blanks between its values, is
  *                 "request_text" or "response_text", a list of texts that are joined.

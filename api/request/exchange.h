@@ -113,7 +113,7 @@ struct api_exchange {
         *decompressor; /* decompresses the body; NULL: the body is not compressed, or has ended */
     api_document document;
     bool has_root;
-    api_in root;   /* cursor at the root of a control document */
+    api_in root;   /* cursor at the outermost value of a control document */
     api_items ops; /* operations of an edit list, which lies in `body` */
 
     /* --- the mesh --- */

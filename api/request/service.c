@@ -122,7 +122,8 @@ static void end_claim(api_exchange *x)
     }
 }
 
-/* If the watch stopped the work, replaces the problem by the reason that api_give_up has stored. */
+/* If the work was stopped from outside (api_give_up), replaces the problem by the reason that
+ * api_give_up has stored. */
 static void end_given_up(api_exchange *x)
 {
     if (x->progress.cancelled && x->problem.code != HE_OK) {

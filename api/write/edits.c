@@ -37,10 +37,10 @@ typedef struct edits {
     bool exceeded;      /* `most_work` would be exceeded */
     size_t most_rows;   /* a list whose delta has more rows needs a claim */
     bool crowded;       /* `most_rows` was exceeded */
-    /* How many more polls of the watch (questions whether to stop) are free, because the charge for
-     * the current operation includes them. */
+    /* How many more reports of progress are free, because the charge for the current operation
+     * includes them. */
     uint64_t paid;
-    uint64_t look;    /* work charged for each poll that is not free */
+    uint64_t look;    /* work charged for each report of progress that is not free */
     bool unlimited;   /* this thread may do any amount of work */
     he_progress told; /* the original x->progress, to which tell_and_charge forwards */
     api_hubs hubs;
@@ -305,8 +305,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return good;
 }
 
-/* The watch is polled once for this many operations, or earlier after a certain amount of work. It
- * is not polled for each operation, because a report takes a system call. */
+/* Progress is reported once for this many operations, or earlier after a certain amount of work. It
+ * is not reported for each operation, because a report takes a system call. */
 enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
