@@ -90,9 +90,9 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
     return tree;
 }
 
-/* Returns the entry that is kept with the mesh, if it is for this revision. Otherwise returns a new
- * entry, which replaces one for an earlier revision, and sets `*made_here`: the caller must make
- * the tree. */
+/* Returns the entry that is kept with the mesh, if it is for the revision that is asked about.
+ * Otherwise returns a new entry, which replaces an entry for an earlier revision, and sets
+ * `*made_here`: the caller must make the tree. */
 static api_bvh *find(api_asker *a, const api_in *in, bool *made_here)
 {
     api_bvh *dropped = NULL;
@@ -162,7 +162,8 @@ const he_bvh *api_asker_bvh(api_asker *a, const api_in *in)
             return NULL;
         }
         if (tree->bvh == NULL) {
-            /* The request that was making the tree has given up, so this one tries again. */
+            /* The request that was making the tree has given up, so the present request tries
+             * again. */
             api_bvh_release(tree);
             continue;
         }

@@ -73,8 +73,8 @@ void api_asker_pay(api_asker *a, uint64_t halfedges)
 
 bool api_asker_exceed(api_asker *a, const api_in *in)
 {
-    /* A client that is willing to wait, but also accepts a job (respond-async, wait=10), gets a
-     * job. */
+    /* A client that is willing to wait, but also accepts a job (it sends Prefer: respond-async,
+     * wait=10), gets a job. */
     bool may_be_job = api_can_be_job(a->x);
     bool is_job = !a->on_worker && may_be_job && a->x->prefer.respond_async;
     if (a->on_worker || is_job) {

@@ -41,8 +41,10 @@ typedef struct api_asker {
     he_budget
         budget; /* steps that are left; charging steps also polls the progress of the exchange */
     const char *asked; /* name of the current question, for the message of a refusal */
-    bool on_worker;    /* the budget is small: a request that needs more moves to the job pool */
-    bool reads_only;   /* only the body is read: nothing is searched or written */
+    /* The request runs on a worker: its budget is small, and a request that needs more moves to the
+     * job pool. */
+    bool on_worker;
+    bool reads_only; /* only the body is read: nothing is searched or written */
     bool spent; /* the budget is used up: the request starts again on the job pool or as a job */
     double seconds; /* estimated duration of the work announced by api_asker_waits */
     /* The search for intersections that gets additional steps (API_MEET_STEPS) is done. */

@@ -431,7 +431,8 @@ bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *
         he_error err = {0};
         he_status status = HE_OK;
         if (one->column == NULL) {
-            continue; /* api_attributes_in_to_soup has moved the column to the soup */
+            /* api_attributes_in_to_soup has moved the column into the soup of the document. */
+            continue;
         }
         if (one->has_values) {
             status = he_attribute_fill(mesh, one->column, one->values, one->count, &err);

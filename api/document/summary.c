@@ -280,8 +280,8 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
         /* Without the summary its length is unknown, so it is unknown whether GET would compress
-         * the answer. HEAD is answered as if GET would not. The tag of the uncompressed answer is
-         * as good as that of the compressed one in every precondition. */
+         * the answer. HEAD is answered as if GET would not. The ETag of the uncompressed answer is
+         * as good as that of the compressed answer in every precondition. */
         x->codings.best = API_IDENTITY;
         const api_stream nothing = {.length = -1, .read = read_nothing};
         api_answer_stream(x, 200, "application/json", &nothing);

@@ -125,8 +125,8 @@ bool api_upload_begin(api_exchange *x)
 }
 
 /* Refuses a file that its reader has refused. If the first bytes show something that is no mesh,
- * the message says only that, without a position; if they show another format, that is added. (Text
- * in UTF-16 is reported by the readers.) */
+ * the message says only that, without a position; if they show another format, the message names
+ * that format, too. (Text in UTF-16 is reported by the readers.) */
 static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
 {
     const char *foreign = he_foreign_find(u->head, u->head_length);
@@ -504,8 +504,9 @@ static void note_edges(upload *u, const he_mesh *mesh)
     }
 }
 
-/* Completes a mesh that was built from the soup: adds its attributes, applies the repairs that need
- * a mesh, and finds what the report of the import warns of. */
+/* Completes a mesh that was built from the soup (the vertices and faces as read): adds its
+ * attributes, applies the repairs that need a mesh, and finds what the report of the import warns
+ * of. */
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
     he_error err = {0};

@@ -74,7 +74,7 @@ bool api_document_parse_scanned(api_bytes text, api_document *out, api_in *root,
                                 api_problem *problem);
 void api_document_clear(api_document *document);
 /* Reads one item. Items are read in order: for (size_t i = 0; i < items.count &&
- * api_item_read(...); i++). `list` is a cursor at their array.
+ * api_item_read(...); i++). `list` is a cursor at the array of the items.
  * Returns false with duplicate_member or no_memory. */
 bool api_item_read(const api_items *items, size_t i, const api_in *list, api_item *item);
 void api_item_clear(api_item *item);

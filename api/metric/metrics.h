@@ -98,10 +98,12 @@ typedef enum api_counter {
     API_COUNT_BYTES_OUT,
     API_COUNT_OPENED, /* connections that were opened */
     API_COUNT_CLOSED,
-    API_COUNT_REFUSED_LIMIT, /* connections that were refused, one counter for each reason */
+    /* Connections that were refused; three counters, one for each reason. */
+    API_COUNT_REFUSED_LIMIT,
     API_COUNT_REFUSED_MEMORY,
     API_COUNT_REFUSED_STOPPING,
-    /* Connections that were closed because the client was too slow, one counter for each stage. */
+    /* Connections that were closed because the client was too slow, one counter for each stage:
+     * before a request, in its headers, in its body, in the answer. */
     API_COUNT_LATE_IDLE,
     API_COUNT_LATE_HEAD,
     API_COUNT_LATE_BODY,

@@ -32,8 +32,8 @@ typedef struct api_named_meshes {
 void api_named_meshes_init(api_named_meshes *named, api_exchange *asker);
 /* Loads the meshes that are not in memory. Blocks. Returns false with x->problem filled. */
 bool api_named_meshes_load(api_exchange *x, api_named_meshes *named);
-/* Returns the present number of elements of all these meshes, from which the cost of the request is
- * estimated. */
+/* Returns the present number of elements of all other meshes that operations name, from which the
+ * cost of the request is estimated. */
 uint64_t api_named_meshes_elements(const api_named_meshes *named);
 /* Takes a snapshot of each mesh; returns false with x->problem filled. api_named_meshes_release
  * releases the snapshots; api_named_meshes_clear also releases the references to the meshes. */
