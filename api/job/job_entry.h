@@ -19,7 +19,7 @@ typedef struct api_job_entry {
     char *body;    /* facts.body, owned by the entry */
     api_blob blob; /* facts.blob, owned by the entry */
     /* The memory of the strings in facts.headers. If the job was loaded from the store after a
-     * restart, also of the other strings in `facts`. */
+     * restart, this is also the memory of the other strings in `facts`. */
     char *texts;
     api_job_work work; /* work.self is NULL when the work has ended */
     /* The mesh whose listeners get events of the job; a reference is held. NULL if there is none or

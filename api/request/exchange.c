@@ -505,8 +505,8 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
     char coded[API_ETAG];
     api_coding coding;
     const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
-    /* A job never answers 304: its client asked for the result, and the mesh may have got this tag
-     * after the request. */
+    /* A job never answers 304: its client asked for the result, and the mesh may have got the ETag
+     * in its request after the request was sent. */
     if (none == NULL || x->phase == API_PHASE_JOB ||
         !api_etag_listed(none, etag, &x->codings, &coding)) {
         api_answer_header(x, "ETag", etag);

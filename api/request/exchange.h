@@ -277,7 +277,7 @@ void api_answer_etag(api_exchange *x, const char *representation);
 /* Sets the ETag. If If-None-Match names it, answers 304 and returns true. A job never does that:
  * its client asked for the result. */
 bool api_not_modified(api_exchange *x, const char *representation);
-/* Does what api_not_modified does, with the given tag instead of one made from the mesh's
+/* Does what api_not_modified does, with the given ETag instead of an ETag made from the mesh's
  * revision. */
 bool api_not_modified_since(api_exchange *x, const char *etag);
 
