@@ -6,7 +6,8 @@
  * being made, `bvh` and `abandoned` are not set; then one of them is set, with the lock of
  * st_derived_begin held. */
 typedef struct api_bvh {
-    /* 1 while the entry is kept with the mesh, and 1 for each request that uses it. */
+    /* Number of users: 1 while the entry is kept with the mesh, and 1 for each request that uses
+     * the tree. */
     _Atomic uint32_t uses;
     uint64_t revision;
     he_bvh *bvh;
@@ -52,9 +53,9 @@ static bool must_be_made(const api_bvh *tree)
     return tree->bvh == NULL && !tree->abandoned;
 }
 
-/* Returns the entry in `place` if it is for this revision, else a new entry for a tree that the
- * caller must make. The caller holds the lock of `place`. Returns NULL when memory is out, or with
- * a->spent. */
+/* Returns the entry that `place` of the mesh keeps, if it is for the revision that is asked about;
+ * else a new entry for a tree that the caller must make. The caller holds the lock of `place`.
+ * Returns NULL when memory is out, or if the request must start again (a->spent). */
 static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh **dropped,
                      bool *made_here)
 {
@@ -89,9 +90,9 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
     return tree;
 }
 
-/* Returns the entry that is kept with the mesh, if it is for this revision. Otherwise returns a new
- * entry, which replaces one for an earlier revision, and sets `*made_here`: the caller must make
- * the tree. */
+/* Returns the entry that is kept with the mesh, if it is for the revision that is asked about.
+ * Otherwise returns a new entry, which replaces an entry for an earlier revision, and sets
+ * `*made_here`: the caller must make the tree. */
 static api_bvh *find(api_asker *a, const api_in *in, bool *made_here)
 {
     api_bvh *dropped = NULL;
@@ -102,8 +103,8 @@ static api_bvh *find(api_asker *a, const api_in *in, bool *made_here)
     return tree;
 }
 
-/* Waits until another request has made the tree. Returns HE_CANCELLED if the watch of the waiting
- * request cancelled its work first. */
+/* Waits until another request has made the tree. Returns HE_CANCELLED if the waiting request was
+ * cancelled before that. */
 static he_status await(const api_asker *a, const api_bvh *tree, he_error *err)
 {
     for (;;) {
@@ -161,13 +162,15 @@ const he_bvh *api_asker_bvh(api_asker *a, const api_in *in)
             return NULL;
         }
         if (tree->bvh == NULL) {
-            /* The request that was making the tree has given up, so this one tries again. */
+            /* The request that was making the tree has given up, so the present request tries
+             * again. */
             api_bvh_release(tree);
             continue;
         }
         /* The cost of making the tree is charged even if another request has made it, so that a
-         * request is not refused or accepted by chance. On a worker it is not charged then, because
-         * a request whose steps run out there is not refused, but starts again on the job pool. */
+         * request is not refused or accepted by chance. A request on a worker thread pays only for
+         * a tree that it made itself: if its steps run out, it is not refused, but starts again on
+         * the job pool. */
         if (made_here || !a->on_worker) {
             api_asker_pay(a, cost_of(a));
         }

@@ -12,8 +12,9 @@
 #include "api/ask/question.h"
 #include "query/bvh.h"
 
-/* Returns the tree of a->mesh, which stays valid as long as `a`. `in` is the question; NULL for a
- * request without a body. Returns NULL with the problem filled, or with a->spent. */
+/* Returns the tree of a->mesh, which stays valid as long as the asker `a`. `in` is the question;
+ * NULL for a request without a body. Returns NULL with the problem filled, or with a->spent set
+ * (question.h). */
 const he_bvh *api_asker_bvh(api_asker *a, const api_in *in);
 void api_bvh_release(struct api_bvh *tree);
 

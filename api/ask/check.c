@@ -12,13 +12,12 @@
 #include <assert.h>
 #include <stdio.h>
 
-/* How many broken invariants, and how many defects of each code, the report lists; all are
- * counted. */
+/* How many broken invariants, and how many defects of each code, the report lists; those beyond
+ * this number are only counted. */
 enum { NAMED = API_PROBLEM_ELEMENTS };
 static_assert((int)NAMED == HE_DEFECTS_LISTED, "the OpenAPI document names one limit for both");
 
-/* If self-intersections are searched for: the progress that is reached when all other defects are
- * found. */
+/* The progress (0 to 1) of a check when only the search for self-intersections is left to do. */
 static const double FOUND = 0.2;
 
 typedef struct report {

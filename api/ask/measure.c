@@ -12,19 +12,19 @@
 #include <math.h>
 #include <string.h>
 
-/* Parameters of a measure other than its element. */
+/* The parameters of a question about a measure, except the elements to measure. */
 typedef struct options {
     he_weight weight;
     double crease;
     he_progress *progress; /* the watch of the exchange */
-    /* Limit of the work for listed elements: the sum, over the faces around them, of the squared
-     * number of corners. */
+    /* Limit of the work if a question lists its elements: the sum of the squared numbers of corners
+     * of the faces around these elements. */
     uint64_t most;
 } options;
 
 /* The elements that a question wants to be measured. */
 typedef struct selection {
-    const uint32_t *ids; /* NULL: all live elements, in the order of ids */
+    const uint32_t *ids; /* NULL: all live elements are measured, in the order of ids */
     size_t count;
 } selection;
 
@@ -386,7 +386,8 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const sele
         if (a->on_worker && cost >= api_asker_left(a)) {
             return api_asker_exceed(a, question);
         }
-        /* Not refused if it costs more than is left: one pass over the mesh is always allowed. */
+        /* A question about all elements is not refused even if it costs more than is left: one pass
+         * over the mesh is always allowed. */
         api_asker_pay(a, cost);
         return true;
     }

@@ -26,8 +26,8 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-/* Runs `answer` with a budget of steps. Returns true if the request must start again on another
- * thread. */
+/* Runs the function `answer` with a budget of steps. Returns true if the request must start again
+ * on another thread. */
 static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,
@@ -73,8 +73,8 @@ void api_asker_pay(api_asker *a, uint64_t halfedges)
 
 bool api_asker_exceed(api_asker *a, const api_in *in)
 {
-    /* A client that is willing to wait, but also accepts a job (respond-async, wait=10), gets a
-     * job. */
+    /* A client that is willing to wait, but also accepts a job (it sends Prefer: respond-async,
+     * wait=10), gets a job. */
     bool may_be_job = api_can_be_job(a->x);
     bool is_job = !a->on_worker && may_be_job && a->x->prefer.respond_async;
     if (a->on_worker || is_job) {

@@ -41,8 +41,10 @@ typedef struct api_asker {
     he_budget
         budget; /* steps that are left; charging steps also polls the progress of the exchange */
     const char *asked; /* name of the current question, for the message of a refusal */
-    bool on_worker;    /* the budget is small: a request that needs more moves to the job pool */
-    bool reads_only;   /* only the body is read: nothing is searched or written */
+    /* The request runs on a worker: its budget is small, and a request that needs more moves to the
+     * job pool. */
+    bool on_worker;
+    bool reads_only; /* only the body is read: nothing is searched or written */
     bool spent; /* the budget is used up: the request starts again on the job pool or as a job */
     double seconds; /* estimated duration of the work announced by api_asker_waits */
     /* The search for intersections that gets additional steps (API_MEET_STEPS) is done. */
@@ -51,17 +53,19 @@ typedef struct api_asker {
     struct api_bvh *tree; /* the tree of boxes (bvh_cache.h); NULL until a question needs it */
 } api_asker;
 
-/* Calls `answer` with the mesh in x->content. `answer` writes to x->out and answers, or fills the
- * problem, or returns with a->spent; then the request starts again on another thread. */
+/* Calls the function `answer` with the mesh in x->content of the exchange. `answer` writes to
+ * x->out and answers, or fills the problem, or sets `spent` of the asker; then the request starts
+ * again on another thread. */
 void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
-/* Checks the body before a job is made, so that a mistake is reported at once: calls `answer` with
- * an asker that only reads the body (a->reads_only) and may look up ids in the mesh. Then
- * api_walk_ask, api_question_dense and api_measure_dense return, without a result, as soon as the
- * question is read. Other questions are not looked at. Returns false with the problem filled. */
+/* Checks the body before a job is made, so that a mistake is reported at once: calls the function
+ * `answer` with an asker that only reads the body (`reads_only` is set) and may look up ids in the
+ * mesh. With such an asker, api_walk_ask, api_question_dense and api_measure_dense return, without
+ * a result, as soon as the question is read. Questions of other kinds are not read. Returns false
+ * with the problem filled. */
 bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 
-/* api_question_ask answers a question of any kind, api_walk_ask only a walk. On failure nothing is
- * written, and they return false with the problem filled or with a->spent. */
+/* api_question_ask answers a question of any kind, api_walk_ask only a walk. On failure both write
+ * nothing and return false, with the problem filled or with a->spent set (`a` is the asker). */
 bool api_question_ask(api_asker *a, const api_in *question);
 bool api_walk_ask(api_asker *a, const api_in *walk);
 
@@ -75,7 +79,7 @@ bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
 bool api_measure_is_dense(const api_in *question);
 bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count);
 
-/* --- functions that only files of this room call --- */
+/* --- functions that only the files in api/ask call --- */
 bool api_measure_ask(api_asker *a, const api_in *question);
 bool api_ray_ask(api_asker *a, const api_in *question);
 bool api_closest_ask(api_asker *a, const api_in *question);
@@ -97,7 +101,7 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))
 /* Reads {"vertex":5}, which must be a live element of one of the kinds in the bit set `kinds`. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
-/* Announces work on the whole mesh that takes `seconds`. Returns false, with a->spent, if all
+/* Announces work on the whole mesh that takes `seconds`. Returns false, with a->spent set, if all
  * announced work takes longer than the client will wait; the request then starts again as a job. */
 bool api_asker_waits(api_asker *a, double seconds);
 /* Returns how many half-edges may still be visited. api_asker_pay charges for visited

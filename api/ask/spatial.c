@@ -116,8 +116,8 @@ bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
 {
     he_progress *progress = &a->x->progress;
     a->asked = "self_intersections";
-    he_progress_span(progress,
-                     0.5 * (1 + progress->done)); /* the tree takes about half of the time */
+    /* Making the tree of boxes takes about half of the time, the search the other half. */
+    he_progress_span(progress, 0.5 * (1 + progress->done));
     const he_bvh *tree = api_asker_bvh(a, in);
     if (tree == NULL) {
         return false;
@@ -155,6 +155,7 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
         return false;
     }
     size_t total = a->first.count / 2;
-    api_asker_pay(a, total < limit ? total : limit); /* the cost of writing the pairs as text */
+    /* Charges the cost of writing the pairs as text. */
+    api_asker_pay(a, total < limit ? total : limit);
     return write_pairs(a, (size_t)limit, complete);
 }

@@ -12,8 +12,8 @@
 
 #include <string.h>
 
-/* How many half-edges are charged for each element that a breadth-first walk reaches; on average it
- * visits fewer. */
+/* How many half-edges are charged for each element that a breadth-first walk reaches; on average
+ * the walk visits fewer. */
 enum { FLOOD_COST = 8 };
 
 /* An element at which a walk begins or ends. */
@@ -57,7 +57,8 @@ typedef struct path {
     end from;
     he_path_steps steps;
     bool has_repeat;
-    const char *until_name; /* the word of "until"; NULL: the path ends after a number of steps */
+    /* Value of the member "until"; NULL: the path ends after a number of steps. */
+    const char *until_name;
 } path;
 
 static bool read_steps(api_asker *a, const api_in *walk, path *out)
@@ -194,8 +195,8 @@ static uint64_t most_of_flood(const api_asker *a)
     return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
 }
 
-/* Walks breadth first: fills a->first with elements and a->second with their depths. `question` is
- * the walk, for the JSON pointer of a refusal. */
+/* Walks breadth first: fills the asker's list `first` with elements and its list `second` with
+ * their depths. `question` is the walk, for the JSON pointer of a refusal. */
 static bool flood(api_asker *a, const api_in *question, const he_breadth_first *asked)
 {
     he_error err = {0};
@@ -411,7 +412,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_traverse_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* the cost is charged during the walk */
+    (void)out; /* no estimate: the cost is charged during the walk */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

@@ -9,8 +9,9 @@
  *     "differs"   texts that are different in every session. Each has two regular expressions, one
  *                 for what comes before the text ("after") and one for the text itself ("form");
  *                 "shown" is what the file has in its place.
- *     "before"    requests that are sent first and are not shown. A request with "job" is answered
- *                 by a job, and the file has this id for it; with "runs" the job runs at once.
+ *     "before"    requests that are sent first and are not shown. A request with "job" becomes a
+ *                 job, whose id is replaced in the file by the value of "job". After a request
+ *                 with "runs" one job that waits is run.
  *     "examples"  the session. "route" names a row of the table of routes. A body is "request" or
  *                 "response". A body that is not JSON, or that has blanks between its values, is
  *                 "request_text" or "response_text", a list of texts that are joined.
@@ -26,17 +27,17 @@
 /* The content of examples.json, followed by a NUL. */
 extern const char api_examples_text[];
 
-/* The parsed file. {0} is empty. */
+/* The parsed examples.json; {0} before api_examples_read. */
 typedef struct api_examples {
     he_json json;
     uint32_t list; /* the array "examples" in `json` */
 } api_examples;
 
-/* Parses the file. Returns false if memory is out. */
+/* Parses examples.json. Returns false if memory is out. */
 bool api_examples_read(api_examples *examples);
 void api_examples_clear(api_examples *examples);
 
-/* Selects one of the two bodies of an example. */
+/* Selects a body of an example: that of the request or that of the answer. */
 typedef enum api_example_part { API_EXAMPLE_REQUEST, API_EXAMPLE_RESPONSE } api_example_part;
 
 /* Returns the first example of a successful request to `route` whose body `part` has this media
@@ -45,7 +46,7 @@ uint32_t api_example_find(const api_examples *examples, api_example_part part, c
                           const char *media);
 /* Returns the first example of a refused request. */
 uint32_t api_example_problem(const api_examples *examples);
-/* Appends a body of an example as it is sent. Returns false if the example has none. */
+/* Appends a body of an example as it is sent. Returns false if the example has no such body. */
 bool api_example_body(const api_examples *examples, uint32_t example, api_example_part part,
                       api_text *text);
 /* Appends the value with this index in examples->json, as JSON without blanks. */

@@ -102,7 +102,8 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     api_out_object_end(out);
 }
 
-/* Writes the schema of a line of an NDJSON answer: the schema `line`, or that of the last line. */
+/* Writes the schema of the lines of an NDJSON answer: each line has the schema `line`, except the
+ * last one, {"end":true,"count":N}. */
 static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
@@ -232,7 +233,9 @@ static void write_content(api_out *out, const body *b)
         } else if (strcmp(*types, "model/gltf+json") == 0) {
             write_gltf_schema(out);
         } else if (json) {
-            api_out_key(out, "schema"); /* any JSON value: the file of the web page is unknown */
+            /* The schema allows any JSON value, because what a JSON file of the web page contains
+             * is unknown. */
+            api_out_key(out, "schema");
             api_out_raw(out, "{}", 2);
         } else {
             write_bytes_schema(out, *types);
@@ -302,8 +305,8 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
                      false);
     }
     if (tagged) {
-        /* A dry run makes no state that a tag could name, and the bare answer of api_publish (204)
-         * may not know the state. So such answers do not always have a tag. */
+        /* A dry run makes no state that an ETag could name, and an answer 204 without a body
+         * (api_publish) may not know the state. So such answers do not always have an ETag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Identifies the state that the answer shows.", always);
     }

@@ -24,7 +24,8 @@ typedef struct api_member {
 extern const api_member api_answer_members[];
 extern const api_member api_request_members[];
 
-/* These two functions give access to all tables from which answers are written. */
+/* Give access to all tables from which answers are written: api_record_count returns their number,
+ * api_record_at the table with index `i`. */
 size_t api_record_count(void);
 const api_record *api_record_at(size_t i);
 /* Returns the table from which answers with this schema are written, or NULL. */

@@ -11,7 +11,7 @@
 /* How deep in the document the lexer is: the number of arrays and objects around the value that is
  * read. */
 enum {
-    IN_DOCUMENT = 1, /* in the object of the document, whose member "attributes" is read */
+    IN_DOCUMENT = 1, /* in the object of the document itself, which has the member "attributes" */
     IN_LIST,
     IN_OBJECT,
     IN_VALUES,
@@ -34,11 +34,12 @@ struct api_attributes_in {
     /* --- members about the attribute that is being read --- */
     api_members head; /* the text of all members but "values" */
     bool has_values;
-    bool has_words, has_numbers; /* the values include true or false; they include numbers */
+    /* has_words: true or false is among the values. has_numbers: a number is among them. */
+    bool has_words, has_numbers;
     double *numbers;
     size_t number_count, number_capacity;
-    /* Number of complete values; numbers in each value, 0 if values are not arrays; numbers of the
-     * value that is being read. */
+    /* rows: number of complete values. width: how many numbers each value has, 0 if values are not
+     * arrays. column: how many numbers of the present value were read. */
     size_t rows, width, column;
 };
 
@@ -430,7 +431,8 @@ bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *
         he_error err = {0};
         he_status status = HE_OK;
         if (one->column == NULL) {
-            continue; /* api_attributes_in_to_soup has moved it to the soup */
+            /* api_attributes_in_to_soup has moved the column into the soup of the document. */
+            continue;
         }
         if (one->has_values) {
             status = he_attribute_fill(mesh, one->column, one->values, one->count, &err);

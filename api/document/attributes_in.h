@@ -37,8 +37,9 @@ bool api_attributes_in_take(api_attributes_in *in, he_lexer *x, he_token token, 
                             api_problem *problem);
 /* Returns true if the document has attribute values of edges or half-edges. */
 bool api_attributes_in_has_edges(const api_attributes_in *in);
-/* Moves the values of vertices and faces into the soup of a document that is to be repaired before
- * it is built, so that the repair also changes these values. */
+/* Moves the values of vertices and faces into the soup (the vertices and faces as read) of a
+ * document that is to be repaired before the mesh is built, so that the repair also changes these
+ * values. */
 bool api_attributes_in_to_soup(api_attributes_in *in, he_soup *soup, api_problem *problem);
 /* Refuses attribute values of edges and half-edges. It is called if the document was repaired,
  * because the edges to which they belong may no longer exist. */

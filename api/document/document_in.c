@@ -11,7 +11,7 @@
 
 /* The member of the document whose value is being read. */
 typedef enum member {
-    NO_MEMBER, /* between members, and before and after the document */
+    NO_MEMBER, /* the lexer is between members, or before or after the document */
     VERTICES,
     FACES,
     ATTRIBUTES /* read by attributes_in.c */
@@ -37,7 +37,7 @@ struct api_document_in {
     double point[3];
 
     api_attributes_in *attributes; /* reads the attributes; NULL if the document has none so far */
-    api_members *gathering;        /* where the present member is gathered; NULL: it is not */
+    api_members *gathering; /* where the present member is gathered; NULL: it is not gathered */
     api_members materials, rest;
     api_document document; /* the members of `rest`, parsed */
     api_in root;
@@ -80,8 +80,9 @@ void api_document_in_free(api_document_in *in)
 
 /* --- refusals --- */
 
-/* Sets the JSON pointer of the problem to what is being read: to the list of vertices or faces, its
- * item or the item's number, as `depth` says; outside of these lists, to the whole document. */
+/* Sets the JSON pointer of the problem to what is being read: to the list of vertices or faces, to
+ * an item of the list or to a number of the item, as `depth` says; outside of these lists, to the
+ * whole document. */
 static bool point(api_document_in *in, size_t depth)
 {
     const he_lexer_frame *frames = in->lexer.frames;
@@ -98,8 +99,8 @@ static bool point(api_document_in *in, size_t depth)
     return false;
 }
 
-/* Refuses what stands before the next byte; `depth` says whether that is the list, an item or a
- * number (see point). */
+/* Refuses what stands before the next byte; `depth` says whether the list of vertices or faces, an
+ * item of it or a number is refused (see point). */
 static bool refuse_in(api_document_in *in, size_t depth, int code, const char *text)
 {
     api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), code, "%s", text);

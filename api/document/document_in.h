@@ -38,16 +38,16 @@ bool api_document_in_feed(api_document_in *in, const char *bytes, size_t length,
 /* Ends the document: checks that it was complete, and that the gathered members are well formed. */
 bool api_document_in_end(api_document_in *in, api_problem *problem);
 
-/* Returns the soup of vertices and faces, after api_document_in_end returned true. The reader owns
- * it, but he_build may move memory out of it. */
+/* Returns the soup (the vertices and faces as read), after api_document_in_end returned true. The
+ * reader owns it, but he_build may move memory out of it. */
 he_soup *api_document_in_soup(api_document_in *in);
 bool api_document_in_has_vertices(const api_document_in *in);
 bool api_document_in_has_faces(const api_document_in *in);
-/* Moves the attributes of vertices and faces into the soup, so that repairs also change them. It
- * must be called before the soup is repaired. */
+/* Moves the attributes of vertices and faces into the soup (the vertices and faces as read), so
+ * that repairs also change the attributes. It must be called before the soup is repaired. */
 bool api_document_in_lend(api_document_in *in, api_problem *problem);
-/* Adds the attributes that are not in the soup to the mesh that was made from it. `repaired` says
- * whether the soup was repaired. */
+/* Adds the attributes that are not in the soup to the mesh that was made from the soup. `repaired`
+ * says whether the soup was repaired. */
 bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, bool repaired,
                                 api_problem *problem);
 /* Returns true if the document has attributes of edges or half-edges, which no repaired document

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* The text is made one buffer of BUFFER bytes at a time. One vertex or one corner takes at most
- * UNIT bytes, so one is written only if UNIT bytes are free. */
+ * UNIT bytes, so a vertex or corner is written only if UNIT bytes of the buffer are free. */
 enum { BUFFER = 64 * 1024, UNIT = 128 };
 
 typedef enum phase {
@@ -26,19 +26,20 @@ struct api_document_out {
     api_text text;
     bool from_text; /* `begin` and `end` are positions in `text`, not in `buffer` */
     uint32_t *rank; /* number of each live vertex in the document; NULL if no vertex was deleted */
-    /* One half-edge of each edge, in the order of the document: that in the face which is written
-     * first. NULL if no attribute needs these. */
+    /* One half-edge of each edge, in the order in which the document has the edges. It is the
+     * half-edge in that face of the edge which is written first. NULL if no attribute needs this
+     * list. */
     uint32_t *edges;
     size_t column; /* index of the attribute that is being written */
-    bool begun;    /* the attribute's members before its values were written */
+    bool begun;    /* the attribute's other members, which precede its values, were written */
     phase phase;
     uint32_t next; /* next vertex or face, or next value of an attribute */
     bool listed;   /* the present list has an item already */
-    /* In faces: `corner` is the next corner of a face that is begun; in attributes: a value was
-     * written. */
+    /* While faces are written: a face is begun, and `corner` is its next corner. While attributes
+     * are written: the present attribute has a value already. */
     bool open;
     he_halfedge corner;
-    size_t begin, end; /* range of `buffer` or `text` that the server has not read yet */
+    size_t begin, end; /* what the server has not read yet of `buffer` or `text` */
     char buffer[BUFFER];
 };
 
@@ -190,8 +191,8 @@ static size_t next_column(const he_mesh *mesh, size_t from)
     return from;
 }
 
-/* Returns how many positions row_at must be called for to find all values of an attribute. Those of
- * vertices and faces include deleted elements. */
+/* Returns how many positions row_at must be called for to find all values of an attribute.
+ * Positions of vertices and faces include deleted elements. */
 static uint64_t count_places(const api_document_out *out, he_kind domain)
 {
     return domain == HE_EDGE || domain == HE_HALFEDGE ? he_mesh_count(out->mesh, domain)

@@ -66,9 +66,9 @@ bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *prob
     do {
         api_problem wrong = {0};
         if (!api_json_next(x, &m->values, m->values_most, &token, &wrong)) {
-            /* If there are too many bytes, that is reported, and not this fault, which is behind
-             * the limit. So the problem does not depend on where the pieces of the body were
-             * cut. */
+            /* If the members have more bytes than allowed, that is reported, and not the fault in
+             * the JSON, which lies behind the limit. So the problem does not depend on where the
+             * pieces of the body were cut. */
             if (add_passed(m, x, problem)) {
                 *problem = wrong;
             }

@@ -11,7 +11,9 @@ enum { SNIFF_BYTES = 512 };
 typedef struct part {
     char *name;
     api_part_kind kind; /* what the name or the media type of the file says about its format */
-    api_text bytes;     /* the content; empty for the mesh file if that was known when it began */
+    /* The content. Empty for a file that was known to be the mesh file when it began, because its
+     * bytes were passed on. */
+    api_text bytes;
 } part;
 
 struct api_parts {

@@ -21,7 +21,7 @@ typedef struct api_parts api_parts;
 
 /* How a file is read: by the reader of a format, or as a mesh document. */
 typedef struct api_part_kind {
-    bool is_mesh;            /* it is a mesh file: one of these two */
+    bool is_mesh;            /* it is a mesh file: a mesh document or of a known format */
     const he_format *format; /* the format of the file; NULL: it is a mesh document */
 } api_part_kind;
 

@@ -229,8 +229,8 @@ void api_answer_created(api_exchange *x, const char *name, const api_summary *su
     api_answer_stored(x, 201, summary, extra);
 }
 
-/* Estimates the cost of a summary. If the store has the summary cached, it is put into x->state,
- * and the handler need not read the mesh. */
+/* Estimates the cost of a summary. If the store has kept the summary, the summary is put into
+ * x->state, and the handler need not read the mesh. */
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     api_summary *kept = api_arena_array(&x->arena, 1, sizeof *kept);
@@ -280,8 +280,8 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
         /* Without the summary its length is unknown, so it is unknown whether GET would compress
-         * the answer. HEAD is answered as if GET would not. The tag of the uncompressed answer is
-         * as good as that of the compressed one in every precondition. */
+         * the answer. HEAD is answered as if GET would not. The ETag of the uncompressed answer is
+         * as good as that of the compressed answer in every precondition. */
         x->codings.best = API_IDENTITY;
         const api_stream nothing = {.length = -1, .read = read_nothing};
         api_answer_stream(x, 200, "application/json", &nothing);

@@ -56,8 +56,8 @@ void api_answer_summary(api_exchange *x);
  * the object. */
 void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
                        void (*extra)(api_exchange *x));
-/* Answers 201, with Location and the summary that x->mesh had when it was created, just now, under
- * this name. Calls api_publish. */
+/* Answers 201, with Location and the summary that x->mesh had when this request created it with the
+ * name `name`. Calls api_publish. */
 void api_answer_created(api_exchange *x, const char *name, const api_summary *summary,
                         void (*extra)(api_exchange *x));
 

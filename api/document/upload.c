@@ -125,8 +125,8 @@ bool api_upload_begin(api_exchange *x)
 }
 
 /* Refuses a file that its reader has refused. If the first bytes show something that is no mesh,
- * the message says only that, without a position; if they show another format, that is added. (Text
- * in UTF-16 is reported by the readers.) */
+ * the message says only that, without a position; if they show another format, the message names
+ * that format, too. (Text in UTF-16 is reported by the readers.) */
 static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
 {
     const char *foreign = he_foreign_find(u->head, u->head_length);
@@ -187,7 +187,8 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-/* Copies bytes to u->head, as many as fit, and returns how many were copied. */
+/* Copies the first bytes of the body to `head`, as many as fit, and returns how many were
+ * copied. */
 static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
     size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
@@ -425,8 +426,8 @@ static void name_defects(api_exchange *x, upload *u)
     }
 }
 
-/* Refuses the body. The defects in u->report are sent only if they are the reason of the refusal:
- * work that was cancelled or ran out of memory may have found defects before that. */
+/* Refuses the body. The defects that were found are sent only if they are the reason of the
+ * refusal: work that was cancelled or ran out of memory may have found some before that. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
     bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
@@ -503,8 +504,9 @@ static void note_edges(upload *u, const he_mesh *mesh)
     }
 }
 
-/* Completes a mesh that was built from the soup: adds its attributes, applies the repairs that need
- * a mesh, and finds what the report of the import warns of. */
+/* Completes a mesh that was built from the soup (the vertices and faces as read): adds its
+ * attributes, applies the repairs that need a mesh, and finds what the report of the import warns
+ * of. */
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
     he_error err = {0};
@@ -589,8 +591,8 @@ typedef struct shown_warning {
     uint64_t count;
     uint64_t at; /* line or byte of the first occurrence */
     bool has_line, has_byte, has_lines, has_bytes, has_vertices;
-    /* A warning of the reader is number `warning` of these; `warnings` also has the places of its
-     * occurrences. */
+    /* `warnings` are the warnings of the reader of the file, with the places where they occurred;
+     * this one has the index `warning`. */
     const he_warnings *warnings;
     size_t warning;
     const uint32_t *vertices;
@@ -677,8 +679,8 @@ static void write_vertices(api_out *out, const upload *u, shown_warning value, c
     api_record_write(out, &api_warning_record, &value);
 }
 
-/* Writes a warning about open seams. Programs leave them that write a vertex several times, once
- * for each combination of attribute values of its corners. */
+/* Writes a warning about open seams. Seams are left by programs that write a vertex several times,
+ * once for each combination of attribute values of its corners. */
 static void write_seams(api_out *out, const upload *u)
 {
     const shown_warning value = {.code = "open_seams",

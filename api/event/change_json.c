@@ -1,7 +1,7 @@
 #include "api/event/change_json.h"
 
-/* Writes a map from old to new ids as the list of the new ids, at the positions of the old ones. A
- * new id is null if there was no element with the old id. */
+/* Writes a map from old to new ids as a list: the item with index i is the new id of the element
+ * whose old id was i. A new id is null if there was no element with the old id. */
 static void write_map(api_out *out, const he_ids *map)
 {
     api_out_array_begin(out);

@@ -7,7 +7,8 @@
 
 #include <pthread.h>
 
-/* Bytes after which a batch ends; it may be longer by a part of one event. */
+/* The number of bytes after which a batch of events ends; a batch may be longer by a part of one
+ * event. */
 enum { BATCH = 32 * 1024 };
 
 struct api_backfill {
@@ -22,9 +23,11 @@ struct api_backfill {
     bool failed;
     /* The lock protects the members below. */
     pthread_mutex_t lock;
-    unsigned uses; /* 1 for the listener, and 1 for a task that is queued or running */
+    /* Number of users: 1 for the listener, and 1 for a task that is queued or running. */
+    unsigned uses;
     bool working, waiting;
-    void (*wake)(void *context); /* NULL if the listener has freed the backfill */
+    /* Wakes the listener; NULL if the listener has freed the backfill. */
+    void (*wake)(void *context);
     void *context;
 };
 
@@ -48,8 +51,8 @@ api_backfill *api_backfill_new(api_backfills *all, st_mesh *mesh, const st_mesh_
     return c;
 }
 
-/* Ends the use of a backfill by the listener or by a task: unlocks it, and frees it after the last
- * use. The caller holds the lock. */
+/* Ends the use of a backfill by the listener or by a task: unlocks the backfill, and frees it after
+ * the last use. The caller holds the lock of the backfill. */
 static void release(api_backfill *c)
 {
     bool last = --c->uses == 0;
@@ -98,8 +101,8 @@ static void render(api_backfill *c, const st_cursor_step *step)
     }
 }
 
-/* Gets the next change of the history. If the history in memory has dropped it since the last call,
- * the cursor is begun again, because the history on disk may have it. */
+/* Gets the next change of the history. If the history in memory has dropped that change since the
+ * last call, the cursor is begun again, because the history on disk may have it. */
 static bool next_step(api_backfill *c, st_cursor_step *step)
 {
     st_status status = st_cursor_next(c->cursor, step);

@@ -135,7 +135,7 @@ static he_status find_touched(touched *t, const he_mesh *mesh, const he_delta *d
     return status == HE_OK ? he_ids_sort(&t->faces, err) : status;
 }
 
-/* --- writing; it stops early when the text has reached its maximum --- */
+/* --- writing, which stops early when the text has reached its maximum --- */
 
 static void write_vertices(api_out *out, const he_mesh *mesh, const he_ids *rows)
 {

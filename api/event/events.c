@@ -77,7 +77,7 @@ static void begin_edit(api_out *out, const st_mesh_info *info)
     api_out_key_u64(out, "revision", info->revision);
 }
 
-/* Writes the data of an event `edit`. Returns false if it is too long or memory is out. */
+/* Writes the data of an event `edit`. Returns false if the data are too long or memory is out. */
 static bool write_edit(api_text *data, const st_mesh_info *info, const st_change *change,
                        const he_changes *changes)
 {
@@ -117,8 +117,8 @@ void api_event_stale(api_text *text, const st_mesh_info *info)
     api_text_clear(&data);
 }
 
-/* Returns the changes that a delta made, possibly in `found`; NULL if the delta is too large or
- * memory is out. */
+/* Returns the elements that a delta changed: those that `change` has already, else those that it
+ * finds and puts into `found`. Returns NULL if the delta is too large or memory is out. */
 static const he_changes *changes_of(const st_change *change, he_changes *found)
 {
     if (change->delta->count > API_MAX_EVENT_ROWS) {

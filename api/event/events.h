@@ -25,7 +25,7 @@
 #define API_EVENT_IDLE ":\n\n"
 
 /* Appends the opening message. `place` is false if the stream begins with earlier revisions: then
- * the message has no id, and the first event has the first one. */
+ * the message has no id, and the first id is that of the first event. */
 void api_event_begin(api_text *text, const st_mesh_info *info, bool place);
 
 /* Appends an event that describes the change that led to info->revision. Of `change` it reads the

@@ -22,9 +22,9 @@ static void give_back(void *context, void *block)
     }
 }
 
-/* Counts an allocation if it stays below the ceiling. It compares and adds in one atomic step, so
- * that two threads cannot exceed the ceiling together, and the counter never includes an allocation
- * that was refused. */
+/* Counts an allocation if the sum stays below the ceiling. The function compares and adds in one
+ * atomic step, so that two threads cannot exceed the ceiling together, and the counter never
+ * includes an allocation that was refused. */
 static bool fits(api_compression_memory *memory, size_t size)
 {
     size_t lent = atomic_load_explicit(memory->lent, memory_order_relaxed);

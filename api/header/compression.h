@@ -2,8 +2,8 @@
  * decompressor.c.
  *
  * The functions of zstd that take an allocator are declared only if ZSTD_STATIC_LINKING_ONLY is
- * defined, but the shared library exports them too. Without them, the memory that decoders allocate
- * for the bodies of clients would count towards no budget. */
+ * defined, but the shared library exports them too. Without these functions, the memory that
+ * decoders allocate for the bodies of clients would count towards no budget. */
 #ifndef HE_API_HEADER_COMPRESSION_H
 #define HE_API_HEADER_COMPRESSION_H
 
@@ -15,7 +15,7 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-/* Limits the memory of compression streams. It comes from the heap; a group of streams shares one
+/* Limits the memory that compression streams allocate from the heap; a group of streams shares one
  * ceiling. */
 typedef struct api_compression_memory {
     /* The bytes that all streams of the group have allocated, including the overhead of each

@@ -121,7 +121,7 @@ void api_compressor_give_up(api_compressor *compressor)
 
 /* The functions step_gzip, step_zstd and step_plain write the waiting input, compressed or
  * unchanged, to `buffer` as far as it fits, and return the number of bytes written. The waiting
- * input is pack->in from pack->from to pack->to. */
+ * input is the bytes `from` to `to` of the array `in`. */
 static size_t step_gzip(api_compressor *compressor, char *buffer, size_t size)
 {
     z_stream *z = &compressor->zlib;

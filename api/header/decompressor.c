@@ -16,9 +16,11 @@ struct api_decompressor {
     bool (*take)(void *context, const char *bytes, size_t length);
     void *context;
     uint64_t at; /* number of bytes of the compressed body that were read */
-    /* Decompressed bytes by which earlier gzip members or zstd frames exceeded the ratio. */
+    /* Decompressed bytes by which earlier gzip members or zstd frames exceeded
+     * API_DECOMPRESS_RATIO. */
     uint64_t beyond;
-    /* Compressed and decompressed bytes of the present gzip member or zstd frame. */
+    /* How many bytes of the present gzip member or zstd frame were read (from: compressed) and
+     * written (to: decompressed). */
     uint64_t from, to;
     size_t turn; /* bytes decompressed in this call of api_decompressor_feed */
     bool inside; /* a gzip member or zstd frame has begun and not ended */
@@ -201,8 +203,8 @@ static uint64_t beyond(const api_decompressor *u)
     return u->to > earned ? u->to - earned : 0;
 }
 
-/* Passes the first `length` bytes of u->piece to the callback. Refuses the body if its decompressed
- * size exceeds the allowed ratio by too much. */
+/* Passes `length` decompressed bytes, which are in `piece`, to the callback. Refuses the body if
+ * its decompressed size exceeds the allowed ratio by too much. */
 static bool give(api_decompressor *u, size_t length, api_problem *problem)
 {
     u->to += length;
@@ -299,8 +301,8 @@ static bool refuse_zstd(const api_decompressor *u, size_t code, api_problem *pro
     return refuse(u, problem, ZSTD_getErrorName(code));
 }
 
-/* Ends a frame. It compares the decompressed length with the one in the frame's header, because
- * zstd does not if the last block is empty. */
+/* Ends a frame. This function compares the decompressed length with the length in the frame's
+ * header, because zstd does not compare them if the last block is empty. */
 static bool end_frame(api_decompressor *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);

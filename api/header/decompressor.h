@@ -47,8 +47,8 @@ enum { API_DECOMPRESS_PIECE = 32 * 1024, API_DECOMPRESS_PLACES = API_MAX_DECOMPR
 typedef struct api_decompressor_place {
     _Atomic int state; /* one of the states above; EMPTY is 0 */
     _Atomic(api_decompressor *) owner;
-    /* The value that the room's `arrived` had when this body began, and the number of compressed
-     * bytes of this body since. */
+    /* began: the value that `arrived` in api_decompressor_room had when this body began. bytes: how
+     * many compressed bytes of this body have arrived. */
     _Atomic uint64_t began, bytes;
 } api_decompressor_place;
 

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Writes the part of a tag that changes with the mesh. printf is avoided for speed, because nearly
- * every answer has a tag. */
+/* Writes the part of an entity tag that changes with the mesh. printf is avoided for speed, because
+ * nearly every answer has an entity tag. */
 static size_t write_state(const st_mesh_info *info, char out[API_ETAG])
 {
     static const char digits[] = "0123456789abcdef";

@@ -14,7 +14,7 @@ enum { API_ETAG = 128 };
 
 void api_etag_write(const st_mesh_info *info, const char *representation, char out[API_ETAG]);
 
-/* Adds the content coding to a tag: "...-obj" becomes "...-obj-gzip". */
+/* Adds the content coding to an entity tag: "...-obj" becomes "...-obj-gzip". */
 void api_etag_code(const char *etag, api_coding coding, char out[API_ETAG]);
 
 /* Evaluates If-None-Match: returns true if the header is "*" or lists this tag, possibly with W/ or

@@ -72,7 +72,7 @@ const char *api_kept_etag(const api_kept *kept)
 /* Returns the body compressed, or NULL when memory is out. */
 static form *compress(const api_kept *kept, api_coding coding)
 {
-    /* More than zlib or zstd needs in the worst case. */
+    /* The size of the buffer: more than zlib or zstd needs in the worst case. */
     const size_t room = kept->length + kept->length / 4 + 512;
     const api_plain plain = {.bytes = kept->bytes, .length = kept->length};
     form *made = he_mem_alloc(sizeof *made + room);

@@ -20,9 +20,10 @@ struct api_multipart {
     state state;
     uint64_t seen;             /* number of bytes read so far */
     char delimiter[DELIMITER]; /* CR, LF, "--" and the boundary */
-    /* The length of `delimiter`, and how many of its bytes the last bytes read match. */
+    /* length: the length of `delimiter`. matched: how many of its bytes equal the bytes that were
+     * read last. */
     size_t length, matched;
-    /* How many of the matched bytes cannot be content of a part, because they end the line before
+    /* How many of the `matched` bytes cannot be content of a part, because they end the line before
      * the content. */
     size_t implied;
     bool inside;      /* the content of a part is being read */

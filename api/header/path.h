@@ -12,7 +12,7 @@
 #include "api/limits.h"
 
 typedef struct api_path {
-    const char *segments[API_MAX_SEGMENTS]; /* decoded; their memory is in the arena */
+    const char *segments[API_MAX_SEGMENTS]; /* the decoded segments; their memory is in the arena */
     size_t count;                           /* 0 for "/" */
     bool has_slash;                         /* the last segment contains an encoded slash */
 } api_path;

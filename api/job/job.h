@@ -24,18 +24,19 @@ extern const char *const api_job_header_names[API_JOB_HEADERS];
 
 /* The description of a job. */
 typedef struct api_job {
-    char id[API_JOB_ID + 1]; /* random, so that no client can guess it */
+    char id[API_JOB_ID + 1]; /* id of the job: random, so that no client can guess it */
     /* The name of the token that started the job; "" if there was no token. */
     char holder[API_TOKEN_NAME + 1];
-    uint64_t number; /* jobs are numbered from 1 in the order of submission */
+    uint64_t number; /* number of the job: jobs are numbered from 1 in the order of submission */
     api_job_state state;
     const char *operation;     /* operationId of the request's route */
     const char *phase;         /* what the work is doing, such as "writing"; "" before it runs */
     double progress;           /* fraction of the work that is done, 0 to 1; never decreases */
-    char mesh[ST_MESH_ID + 1]; /* id of its mesh; "" while the mesh has no id */
-    double created, started, finished; /* times in seconds since 1970 UTC; 0: not yet */
-    int status;                        /* HTTP status of the answer; 0: no answer yet */
-    char location[API_JOB_LOCATION];   /* value of the answer's header Location; "": none */
+    char mesh[ST_MESH_ID + 1]; /* id of the job's mesh; "" while the mesh has no id */
+    /* Times of these events of the job, in seconds since 1970 UTC; 0: not yet. */
+    double created, started, finished;
+    int status;                      /* HTTP status of the answer; 0: no answer yet */
+    char location[API_JOB_LOCATION]; /* value of the answer's header Location; "": none */
     /* The answer's body, valid only while the callback that got this struct runs; NULL: there is no
      * answer yet, or it was not kept. */
     const char *body;

@@ -19,7 +19,7 @@ typedef struct api_job_entry {
     char *body;    /* facts.body, owned by the entry */
     api_blob blob; /* facts.blob, owned by the entry */
     /* The memory of the strings in facts.headers. If the job was loaded from the store after a
-     * restart, also of the other strings in `facts`. */
+     * restart, this is also the memory of the other strings in `facts`. */
     char *texts;
     api_job_work work; /* work.self is NULL when the work has ended */
     /* The mesh whose listeners get events of the job; a reference is held. NULL if there is none or
@@ -56,11 +56,12 @@ struct api_job_table {
     bool stopped;
     /* Number of jobs that ended in each final state since the server started. */
     uint64_t ended[API_JOB_STATES];
-    st_histogram waited, ran; /* time in the queue and time running, in microseconds */
+    /* waited: times of jobs in the queue; ran: times running; in microseconds. */
+    st_histogram waited, ran;
 };
 
-/* Returns true if the job has ended. The caller of this function and of all below must hold the
- * table's lock. */
+/* Returns true if the job has ended. The caller of this function and of all functions below must
+ * hold the table's lock. */
 static inline bool api_job_entry_has_ended(const api_job_entry *job)
 {
     return job->facts.state >= API_JOB_DONE;

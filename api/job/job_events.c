@@ -52,8 +52,8 @@ static bool is_news(const api_job_listener *l, const api_job *facts)
            l->phase != facts->phase;
 }
 
-/* Writes the next message of the stream to l->text. If there is no news of the job, the text is
- * empty and the listener will be woken. Returns false at the end of the stream. */
+/* Writes the next message of the stream to the listener's `text`. If there is no news of the job,
+ * the text is empty and the listener will be woken. Returns false at the end of the stream. */
 static bool next_message(api_job_listener *l)
 {
     api_job_entry *job = l->job;

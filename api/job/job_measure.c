@@ -3,7 +3,8 @@
 
 static uint64_t micros_between(double from, double to)
 {
-    return to > from ? (uint64_t)((to - from) * 1e6) : 0; /* 0 if the system clock was set back */
+    /* The time is taken as 0 if the system clock was set back. */
+    return to > from ? (uint64_t)((to - from) * 1e6) : 0;
 }
 
 void api_job_count_begin(api_job_entry *job)

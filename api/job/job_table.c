@@ -89,7 +89,8 @@ static void take_out(api_job_table *table, api_job_entry *j)
 
 static void forget(api_job_table *table, api_job_entry *j)
 {
-    (void)api_job_forget(j); /* if that fails, the record is deleted later because of its age */
+    /* If the record cannot be deleted now, it is deleted later because of its age. */
+    (void)api_job_forget(j);
     take_out(table, j);
 }
 
@@ -313,7 +314,7 @@ static void resume(st_wait *wait)
         answer_lost(j);
         note_end(j);
         break;
-    case ST_WAIT_STOPPED: /* the changes may still become durable */
+    case ST_WAIT_STOPPED: /* the server stops, and the changes may still become durable */
         answer_lost(j);
         decide_end(j);
         break;
@@ -363,7 +364,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    /* Needs no lock: `about` is released only when the job ends. */
+    /* `about` is read without the lock: it is released only when the job ends. */
     tell_listeners(j->about, &facts);
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
@@ -410,7 +411,7 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
 static void stop_if_lost(api_job_entry *j)
 {
     if (j->accepted.end == ST_WAIT_LOST) {
-        atomic_store(&j->stop, true); /* the client will not get its 202 */
+        atomic_store(&j->stop, true); /* the client will not get the answer 202 */
     }
 }
 
@@ -576,7 +577,8 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         api_job_count_end(j);
         if (j->is_kept && !j->table->stopped) {
             uint64_t position;
-            /* If the store cannot record this, the job is marked as interrupted after a restart. */
+            /* If the store cannot record the cancellation, the job is marked as interrupted after a
+             * restart. */
             (void)api_job_keep(j, &position);
         }
         api_job_entry_wake(j);

@@ -31,10 +31,10 @@
 typedef struct api_job_table api_job_table;
 
 enum {
-    API_JOBS_KEPT = 1000,             /* all jobs: queued, running and ended */
+    API_JOBS_KEPT = 1000,             /* the most jobs in the table: queued, running and ended */
     API_JOBS_BYTES = 64 << 20,        /* bytes of all answers */
     API_JOB_SECONDS = ST_JOB_SECONDS, /* seconds for which an ended job is kept */
-    API_JOB_LISTENERS = 1000          /* event streams of jobs that are open at one time */
+    API_JOB_LISTENERS = 1000          /* the most event streams of jobs that are open at one time */
 };
 
 typedef struct api_job_table_options {
@@ -60,9 +60,11 @@ typedef struct api_job_outcome {
     const char *location; /* value of the header Location; "": none */
     char *body;           /* memory of base/mem.h; NULL: none */
     size_t length;
-    api_blob blob;                        /* the answer, if it is not in `body` */
-    bool shown;                           /* as in api_job */
-    const char *headers[API_JOB_HEADERS]; /* NULL for a header that is missing */
+    api_blob blob; /* the answer, if it is not in `body` */
+    bool shown;    /* as in api_job */
+    /* Values of the answer's headers, as in api_job; NULL for a header that the answer does not
+     * have. */
+    const char *headers[API_JOB_HEADERS];
     st_shown awaits; /* what must be durable before clients see the end of the job */
     bool changed;    /* the work changed a mesh */
 } api_job_outcome;
@@ -82,9 +84,9 @@ typedef struct api_job_work {
     /* The mesh whose listeners get events of the job, to which the work holds a reference; NULL if
      * there is none. */
     st_mesh *about;
-    const char *holder; /* name of the token that started it; "" if there was no token */
-    /* The number of queued and running jobs that this token may have, including the new one; 0 is
-     * no limit. */
+    const char *holder; /* name of the token that started the job; "" if there was no token */
+    /* How many queued and running jobs the token `holder` may have, including this job; 0 is no
+     * limit. */
     uint64_t most;
     bool claims; /* the work has claimed `about` (store/write.h) */
 } api_job_work;
@@ -121,7 +123,7 @@ typedef struct api_job_page {
     size_t limit;            /* how many jobs the page has at most */
 } api_job_page;
 
-/* Calls `show` with the jobs of a page. Returns true if there are more after it. */
+/* Calls `show` with each job of a page. Returns true if there are more jobs after the page. */
 bool api_job_list(api_job_table *table, const api_job_page *page,
                   void (*show)(void *context, const api_job *job), void *context);
 /* Cancels the wanted job if it has not ended, and calls `show`; deletes it if it has ended, and
@@ -135,8 +137,9 @@ typedef struct api_job_measures {
     size_t in_state[API_JOB_STATES];
     /* Number of jobs that ended in each final state; zero for other states. */
     uint64_t ended[API_JOB_STATES];
-    st_distribution waited, ran; /* time in the queue, and time running; microseconds */
-    size_t bytes;                /* bytes of the answers that are kept */
+    /* waited: times of jobs in the queue; ran: times running; in microseconds. */
+    st_distribution waited, ran;
+    size_t bytes; /* bytes of the answers that are kept */
     size_t listeners, most_listeners;
 } api_job_measures;
 

@@ -5,10 +5,11 @@
  * anything after the value. Then the text is parsed, and an object with a repeated member is
  * refused with the member's name.
  *
- * Values are read through api_in, a cursor that knows the path back to the root, so that every
- * refusal carries the JSON pointer of the value at fault. Cursors live on the stack; a child holds
- * a pointer to its parent, which must outlive it. All functions that return bool fill the problem
- * when they return false, except api_in_find, where false means "absent".
+ * Values are read through api_in, a cursor that knows the path back to the root (the outermost
+ * value of the document), so that every refusal carries the JSON pointer of the value at fault.
+ * Cursors live on the stack; a child holds a pointer to its parent, which must outlive it. All
+ * functions that return bool fill the problem when they return false, except api_in_find, where
+ * false means "absent".
  *
  *     api_in depth;
  *     if (!api_in_only(&root, (const char *const[]){"walk", "depth", NULL}) ||
@@ -25,9 +26,10 @@ struct cJSON;
 
 typedef struct api_in {
     const struct cJSON *value;
-    const struct api_in *parent; /* the array or object around the value; NULL for the root */
+    /* The array or object around the value; NULL for the outermost value. */
+    const struct api_in *parent;
     size_t index;         /* index of the value in its array; unused for a member of an object */
-    api_problem *problem; /* filled when the value is refused */
+    api_problem *problem; /* the problem that is filled when the value is refused */
 } api_in;
 
 /* A parsed document. */
@@ -35,11 +37,11 @@ typedef struct api_document {
     struct cJSON *root;
 } api_document;
 
-/* The items of an array that is kept out of its document. They are parsed one at a time, so that a
- * long list needs no more memory than its text. */
+/* The items of a long array in a document, which the parsed document leaves out. The caller parses
+ * the items one at a time, so that the array needs no more memory than its text. */
 typedef struct api_items {
-    const char *name; /* name of the root object's member whose value is the array */
-    /* Begin and end of the items' text; NULL if the root has no such array. */
+    const char *name; /* name of the document's member whose value is the array */
+    /* Begin and end of the items' text; NULL if the document has no such array. */
     const char *at, *end;
     size_t count;
 } api_items;
@@ -47,7 +49,7 @@ typedef struct api_items {
 /* Limits and options for parsing a text. */
 typedef struct api_in_options {
     size_t values;    /* how many values the text may contain at most */
-    api_items *items; /* the array to keep out, with `name` set; NULL: nothing is kept out */
+    api_items *items; /* the array whose items are left out, with `name` set; NULL: there is none */
 } api_in_options;
 
 /* One parsed item; reading the next item replaces it. {0} is no item. */
@@ -60,9 +62,10 @@ typedef struct api_item {
 /* Makes cJSON allocate through mem.h. api_service_new calls it once, before threads start. */
 void api_in_setup(void);
 
-/* Parses the text into `out`, which the caller clears, and puts `root` at its root. If items are
- * kept out, their array is empty in the document, and the caller reads them one by one; the text
- * must outlive them. A repeated member inside an item is found when the item is read.
+/* Parses the text into `out`, which the caller clears, and sets the cursor `root` to the outermost
+ * value. If the options name an array whose items are left out (api_items), that array is empty in
+ * `out`, and the caller reads its items one by one with api_item_read; the text must outlive the
+ * items. A repeated member inside an item is found when the item is read.
  * Returns false with malformed_json, duplicate_member, limit_exceeded (413) or no_memory. */
 bool api_document_parse(api_bytes text, const api_in_options *options, api_document *out,
                         api_in *root, api_problem *problem);
@@ -71,7 +74,7 @@ bool api_document_parse_scanned(api_bytes text, api_document *out, api_in *root,
                                 api_problem *problem);
 void api_document_clear(api_document *document);
 /* Reads one item. Items are read in order: for (size_t i = 0; i < items.count &&
- * api_item_read(...); i++). `list` is a cursor at their array.
+ * api_item_read(...); i++). `list` is a cursor at the array of the items.
  * Returns false with duplicate_member or no_memory. */
 bool api_item_read(const api_items *items, size_t i, const api_in *list, api_item *item);
 void api_item_clear(api_item *item);
@@ -86,10 +89,10 @@ bool api_in_is_number(const api_in *in);
 /* Checks that the value is an object with no other members than `names`, each of which may be
  * absent. `names` ends in NULL. */
 bool api_in_only(const api_in *in, const char *const *names);
-bool api_in_object(const api_in *in); /* checks that it is an object */
-/* Returns false if there is no such member. */
+bool api_in_object(const api_in *in); /* checks that the value is an object */
+/* Returns false if the object has no member `name`. */
 bool api_in_find(const api_in *object, const char *name, api_in *out);
-/* Refuses an object without it. */
+/* Refuses an object without the member `name`. */
 bool api_in_need(const api_in *object, const char *name, api_in *out);
 /* Checks that the value is an array of `min` to `max` values. */
 bool api_in_array(const api_in *in, size_t min, size_t max);

@@ -233,8 +233,8 @@ void api_out_id(api_out *out, uint32_t id)
  * longest id with its comma. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
-/* Returns false if writing must stop: memory is out or the watch cancelled the work. In both cases
- * the text is marked as failed, because the caller drops the text of a cancelled request anyway. */
+/* Returns false if writing must stop: memory is out or the work was cancelled. In both cases the
+ * text is marked as failed, because the caller drops the text of a cancelled request anyway. */
 static bool goes_on(api_out *out)
 {
     he_error err = {0};
@@ -314,7 +314,7 @@ static void date_of(int64_t day, int64_t *year, int *month, int *date)
 
 void api_out_time(api_out *out, double seconds)
 {
-    /* ISO 8601 has this form only for years with four digits. */
+    /* ISO 8601 has the form written here only for years with four digits. */
     if (!(seconds > -62167219200.0 && seconds < 253402300799.0)) {
         api_out_null(out);
         return;

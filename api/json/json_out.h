@@ -26,8 +26,9 @@ typedef struct api_out {
     uint64_t objects; /* bit d is set if nesting level d is an object, clear if it is an array */
     uint64_t filled;  /* bit d is set if nesting level d has a value already */
     unsigned depth;
-    bool keyed;                   /* a key was written, but not yet its value */
-    struct he_progress *progress; /* asked in long lists whether to stop; NULL: never */
+    bool keyed; /* a key was written, but not yet its value */
+    /* Asked, while a long list is written, whether to stop; NULL: writing never stops. */
+    struct he_progress *progress;
     unsigned parts; /* number of parts of lists of ids written since `progress` was set */
 } api_out;
 

@@ -62,8 +62,8 @@ bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, ap
     return true;
 }
 
-/* Returns true if the array that the lexer has just entered is the one whose items are parsed one
- * by one. */
+/* Returns true if the array that the lexer has just entered is the array whose items the caller
+ * parses one by one (api_items). */
 static bool opens_items(const he_lexer *x, const api_items *items)
 {
     const he_lexer_frame *root = &x->frames[0];

@@ -10,8 +10,8 @@
 #include "api/json/json_in.h"
 #include "format/text/json_lexer.h"
 
-/* Scans a whole text. If options->items is not NULL, the scan also finds the array in the root
- * object whose items are to be kept out of the document, and counts them. */
+/* Scans a whole text. If options->items is not NULL, the scan also finds the array whose items the
+ * parsed document leaves out (api_items), and counts the items. */
 bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *problem);
 
 /* Reads the next token of a control document, and counts its values in `*values`. */

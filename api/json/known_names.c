@@ -51,7 +51,8 @@ size_t api_name_distance(const char *a, const char *b)
     if (m == n && strcmp(a, b) != 0 && are_words_of(a, b) && are_words_of(b, a)) {
         return 1;
     }
-    /* rows[i % 3][j] is the distance of the first i letters of a and the first j letters of b. */
+    /* rows[i % 3][j] is the distance between the first i letters of the name `a` and the first j
+     * letters of the name `b`. */
     size_t rows[3][LONGEST + 1];
     for (size_t j = 0; j <= n; j++) {
         rows[0][j] = j;
@@ -74,7 +75,8 @@ size_t api_name_distance(const char *a, const char *b)
 void api_known_names_add(api_known_names *known, const char *name)
 {
     size_t distance = api_name_distance(known->wanted, name);
-    size_t most = (strlen(known->wanted) + 2) / 4; /* "cub" is like "cube", "ab" like no "cd" */
+    /* "cub" counts as like "cube"; "ab" is too short to be like "cd". */
+    size_t most = (strlen(known->wanted) + 2) / 4;
     if (distance <= most && (known->nearest == NULL || distance < known->distance)) {
         known->nearest = name;
         known->distance = distance;

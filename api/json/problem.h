@@ -261,7 +261,9 @@ typedef struct api_problem {
     uint32_t id;
     bool has_revision; /* `revision` is set to the mesh's present revision (with status 412) */
     uint64_t revision;
-    const he_report *report; /* borrowed; gives the members "elements" and "total"; NULL: none */
+    /* The report of defects, borrowed, from which the members "elements" and "total" are made;
+     * NULL: none. */
+    const he_report *report;
     /* Set of the repairs (repair.h) with which the body would be accepted; 0: none. */
     unsigned repairs;
     /* The body is a mesh document: each element gets a JSON pointer such as "/faces/3/1". */

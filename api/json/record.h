@@ -29,7 +29,7 @@ typedef enum api_form {
     API_FORM_U32,
     API_FORM_U64,
     API_FORM_DOUBLE,
-    API_FORM_TEXT,  /* const char *; NULL means no value */
+    API_FORM_TEXT,  /* a const char *; NULL means that there is no value */
     API_FORM_CHARS, /* an array of char */
     API_FORM_VEC3
 } api_form;

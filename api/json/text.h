@@ -29,7 +29,8 @@ static inline api_bytes api_text_bytes(const api_text *text)
 }
 
 void api_text_clear(api_text *text); /* frees the bytes; the text is {0} again */
-void api_text_empty(api_text *text); /* makes it empty and not failed; keeps memory and maximum */
+/* Makes the text empty and not failed; keeps memory and maximum. */
+void api_text_empty(api_text *text);
 
 /* Returns space for `size` more bytes, at text->bytes + text->length. Returns NULL and sets
  * `failed` when memory is out or the maximum would be exceeded. The caller writes there and adds

@@ -37,7 +37,8 @@ typedef enum api_limit {
         API_LIMIT_COUNT
 } api_limit;
 
-/* The largest values that a limit of things and a limit of bytes may have. */
+/* The largest value of a limit that counts things (requests, jobs ...), and of one that counts
+ * bytes. */
 #define API_LIMIT_MOST       UINT64_C(1000000000)
 #define API_LIMIT_MOST_BYTES (UINT64_C(1) << 40)
 
@@ -63,8 +64,9 @@ bool api_limit_is_of_token(api_limit limit);
 /* Parses a whole number. If `bytes` is set, K, M, G or T may follow it (powers of 1024). */
 bool api_amount_parse(const char *text, size_t length, bool bytes, uint64_t *out);
 
-/* Counts the requests and connections that each limit has refused since the start, separately for
- * tokens and addresses. All threads may count and read at the same time; there is no lock. */
+/* The kinds of clients. api_limited counts the requests and connections that each limit has refused
+ * since the server started, separately for tokens and addresses. All threads may count and read at
+ * the same time; there is no lock. */
 typedef enum api_client_kind {
     API_CLIENT_TOKEN,
     API_CLIENT_ADDRESS,

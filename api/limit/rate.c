@@ -155,8 +155,8 @@ static uint64_t quotient_up(uint64_t a, uint64_t b)
     return a / b + (a % b != 0 ? 1 : 0);
 }
 
-/* Returns how many microseconds it takes to refill `millionths` of a request or byte at `rate` of
- * them a second. */
+/* Returns how many microseconds it takes to refill `millionths` of a request or byte, if `rate`
+ * requests or bytes are refilled a second. */
 static uint64_t time_to_fill(uint64_t millionths, uint64_t rate)
 {
     return rate == 0 ? 0 : quotient_up(millionths, rate);
@@ -189,7 +189,7 @@ static bool look(const bucket *b, uint64_t rate, uint64_t seconds, int which, ap
 {
     const uint64_t taken = b->taken[which];
     const uint64_t capacity = product(product(rate, seconds), MILLION);
-    /* Not negative: `rate` and `seconds` are at least 1. */
+    /* The difference is not negative, because `rate` and `seconds` are at least 1. */
     const uint64_t wanted = capacity - MILLION;
     *out = (api_rate_left){0};
     if (rate == 0) {

@@ -34,7 +34,7 @@ typedef struct api_rate_key {
 
 /* The limits of a client's rate; 0 requests or 0 bytes is no limit. `seconds` is at least 1. */
 typedef struct api_rate {
-    uint64_t requests, bytes; /* how many of each are allowed per second */
+    uint64_t requests, bytes; /* how many requests, and how many bytes, are allowed per second */
     uint64_t seconds; /* capacity of the bucket: how many seconds of requests and bytes it holds */
 } api_rate;
 
@@ -42,12 +42,13 @@ typedef struct api_rate {
 typedef struct api_rate_left {
     uint64_t left;  /* number that is available now */
     uint64_t reset; /* seconds until the bucket is full, rounded up */
-    /* Seconds until a request would be admitted, rounded up; 0 if this one was admitted. */
+    /* Seconds until a request would be admitted, rounded up; 0 if the present request was
+     * admitted. */
     uint64_t wait;
 } api_rate_left;
 
 typedef struct api_rate_state {
-    api_rate_left requests, bytes; /* all zero for an amount without a limit */
+    api_rate_left requests, bytes; /* all members are zero for an amount without a limit */
 } api_rate_state;
 
 /* Makes a table for `capacity` clients. Returns NULL when memory is out. */

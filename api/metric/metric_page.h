@@ -26,7 +26,7 @@ typedef enum api_metric_type {
 typedef struct api_metric {
     const char *name;
     api_metric_type type;
-    const char *labels; /* names of its labels, separated by commas; "" if it has none */
+    const char *labels; /* names of the metric's labels, separated by commas; "" if it has none */
     const char *help;
 } api_metric;
 

@@ -82,7 +82,7 @@ typedef enum api_edit_result {
 } api_edit_result;
 
 /* Edits are counted by the number of their operation (he_op_number). Undo and redo have the numbers
- * after the highest possible one. */
+ * after the highest possible number of an operation. */
 enum { API_MOST_OPERATIONS = 64, API_UNDO = API_MOST_OPERATIONS, API_REDO, API_OPERATIONS };
 
 /* Counts `count` operations that have this number and result. */
@@ -98,10 +98,12 @@ typedef enum api_counter {
     API_COUNT_BYTES_OUT,
     API_COUNT_OPENED, /* connections that were opened */
     API_COUNT_CLOSED,
-    API_COUNT_REFUSED_LIMIT, /* connections that were refused, one counter for each reason */
+    /* Connections that were refused; three counters, one for each reason. */
+    API_COUNT_REFUSED_LIMIT,
     API_COUNT_REFUSED_MEMORY,
     API_COUNT_REFUSED_STOPPING,
-    /* Connections that were closed because the client was too slow, one counter for each stage. */
+    /* Connections that were closed because the client was too slow, one counter for each stage:
+     * before a request, in its headers, in its body, in the answer. */
     API_COUNT_LATE_IDLE,
     API_COUNT_LATE_HEAD,
     API_COUNT_LATE_BODY,

@@ -143,7 +143,8 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
     api_answer_json(x, 200);
 }
 
-/* Reads the ids in a parameter such as "1,2,3". It has at most one id for every two bytes. */
+/* Reads the ids in a parameter such as "1,2,3". The parameter has at most one id for every two
+ * bytes. */
 static bool read_ids(api_exchange *x, const char *text, choice *out)
 {
     uint32_t *ids = api_arena_array(&x->arena, strlen(text) / 2 + 1, sizeof *ids);

@@ -156,8 +156,8 @@ static bool is_plain(const char *name)
     return name[length] == '\0' && length > 0 && length <= HE_BESIDE_NAME && name[0] != '.';
 }
 
-/* Suggests a file name to the client. The name of a material library (format mtl) is the one by
- * which the mesh's OBJ file refers to it. */
+/* Suggests a file name to the client. A material library (format mtl) gets the name by which the
+ * mesh's OBJ file refers to it. */
 static void name_file(api_exchange *x, const he_format *format)
 {
     const char *names[HE_COLUMN_COMPONENTS];

@@ -157,7 +157,7 @@ static bool wants_lines(const api_exchange *x)
 }
 
 /* Estimates the cost of reading elements. Lines are made from a copy of the mesh, and writing an
- * element takes about as long as copying twenty. */
+ * element takes about as long as copying twenty elements. */
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";

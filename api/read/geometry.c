@@ -22,9 +22,9 @@ typedef struct geometry {
 
 /* What came of the attempt to answer with the slots that are kept with the mesh. */
 typedef enum geometry_step {
-    TAKEN,   /* g->rows has the rows to send */
+    TAKEN,   /* the rows to send were chosen (`rows` of geometry) */
     MISSING, /* no slots are kept */
-    LATER,   /* this is too much work for a worker */
+    LATER,   /* the attempt takes too long for a worker thread */
     ANSWERED /* the request was answered or refused */
 } geometry_step;
 
@@ -113,7 +113,8 @@ static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_draw_sl
     return api_rows_take_all(&g->rows, slots, &err) == HE_OK ? TAKEN : fail(g->x, &err);
 }
 
-/* Chooses the rows to send (g->rows) from slots that are up to date with the present revision. */
+/* Chooses the rows to send (`rows` of geometry) from slots that are up to date with the present
+ * revision. */
 static geometry_step take(geometry *g, const he_mesh *mesh, const he_draw_slots *slots)
 {
     api_exchange *x = g->x;
@@ -141,8 +142,9 @@ static geometry_step take(geometry *g, const he_mesh *mesh, const he_draw_slots 
     return is_not_modified(x, slots, since) ? ANSWERED : TAKEN;
 }
 
-/* Chooses the rows to send (g->rows) from the slots that are kept with the mesh, if possible. The
- * caller has locked the mesh for reading. Slots that cannot be brought up to date are dropped. */
+/* Chooses the rows to send (`rows` of geometry) from the slots that are kept with the mesh, if
+ * possible. The caller has locked the mesh for reading. Slots that cannot be brought up to date are
+ * dropped. */
 static geometry_step take_kept(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -166,9 +168,9 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
     return outcome;
 }
 
-/* Keeps new slots with the mesh and chooses all rows to send. If another request has made slots
- * meanwhile, those are used instead; if they are of another revision, the new slots are used but
- * not kept. */
+/* Keeps new slots with the mesh, and chooses the rows to send: all of them. If another request has
+ * made slots meanwhile, its slots are used instead; if its slots are of another revision, the new
+ * slots are used but not kept. */
 static geometry_step keep_or_take(geometry *g, he_draw_slots *slots)
 {
     api_exchange *x = g->x;
@@ -209,8 +211,8 @@ static void answer_stream(api_exchange *x, geometry *g)
     api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
-/* Answers with the changed rows, while the mesh is locked for reading. Returns LATER if they are
- * too many for that. */
+/* Answers with the changed rows, while the mesh is locked for reading. Returns LATER if there are
+ * too many rows for that. */
 static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -251,7 +253,7 @@ static geometry_step make_slots(geometry *g)
 }
 
 /* Answers with a few changed rows while the mesh is locked for reading. For more rows it takes a
- * snapshot and chooses the rows to send (g->rows). */
+ * snapshot and chooses the rows to send (`rows` of geometry). */
 static geometry_step answer_or_take(geometry *g)
 {
     api_exchange *x = g->x;
@@ -271,8 +273,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Sets the tag of the answer if it can be known from the kept slots, so that If-None-Match is
- * answered 304 before a job is made. */
+/* Sets the ETag of the answer if the kept slots show it, so that If-None-Match is answered 304
+ * before a job is made. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
@@ -292,7 +294,7 @@ static bool name_kept(api_exchange *x)
 bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* the cost is unknown before the slots are looked at */
+    (void)out; /* no estimate: the cost is unknown before the slots are looked at */
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
         return api_fail(x, API_BAD_PARAMETER, "\"since\" and \"layout\" must be given together");
     }

@@ -39,19 +39,19 @@ enum { API_ROWS_AT_ONCE = 1024, API_ROW_BYTES = 16 };
 typedef struct api_rows {
     uint64_t revision, base, layout;
     he_frame frame;
-    uint32_t vertices, triangles; /* numbers of all rows of the revision */
-    he_ids vertex_ids, slot_ids;  /* the rows to send, if `base` is not 0 */
+    uint32_t vertices, triangles; /* how many rows of vertices and of triangles the revision has */
+    he_ids vertex_ids, slot_ids;  /* numbers of the rows to send, if `base` is not 0 */
     uint32_t *owner; /* the face of each triangle to send, or a mark for none (draw_slots.h) */
     he_draw_arrays drawing;
     he_draw_arrays_walk walk;
     int part;
     uint32_t next;     /* next row or id of the present part */
-    size_t begin, end; /* range of `buffer` that was not read yet */
+    size_t begin, end; /* `begin` to `end` is the part of `buffer` that was not read yet */
     unsigned char buffer[API_ROWS_AT_ONCE * API_ROW_BYTES];
 } api_rows;
 
-/* These two functions choose the rows to send: all rows, or those that changed after revision
- * `since`. The slots are not needed afterwards.
+/* api_rows_take_all chooses all rows, to be sent; api_rows_take_changes chooses the rows that
+ * changed after revision `since`. The slots are not needed afterwards.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_UNSUPPORTED if the changed rows are not known, so that all rows must be sent.
  * Returns HE_LIMIT if more than `most` changes would have to be visited. */

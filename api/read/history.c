@@ -84,7 +84,7 @@ typedef struct page {
 } page;
 
 /* Finds the entry of a revision. Returns false if the history has none, or if the revision is not
- * after p->last. */
+ * after `last` of the page. */
 static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, st_entry *out)
 {
     return revision > p->last &&

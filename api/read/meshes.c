@@ -49,16 +49,17 @@ enum { CARDS = 32 };
 
 /* The state of writing one page of the list of meshes. */
 typedef struct list_page {
-    st_card *cards;      /* an array of CARDS */
-    size_t limit, given; /* numbers of items on the page: at most, and written so far */
-    /* The search continues after this text, which is an id or, at the beginning of a range, a text
-     * just before the range (go_to). */
+    st_card *cards; /* an array of CARDS */
+    /* limit: how many items the page may have; given: how many were written so far. */
+    size_t limit, given;
+    /* The search continues after this text: the id of the last mesh found or, at the beginning of a
+     * range of ids, a text that sorts just before the range (go_to). */
     char from[ST_MESH_ID + 1];
     char last[ST_MESH_ID + 1]; /* id of the last item */
     bool more;                 /* there is a next page */
 } list_page;
 
-/* Writes the meshes whose ids begin with `prefix`, after p->from. */
+/* Writes the meshes whose ids begin with `prefix` and come after `from` of the page. */
 static bool write_range(api_exchange *x, list_page *p, const char *prefix)
 {
     size_t count = 0, asked;
@@ -89,9 +90,9 @@ static bool write_range(api_exchange *x, list_page *p, const char *prefix)
     return true;
 }
 
-/* Sets p->from to a text just before the first id that begins with `prefix`, unless p->from is
- * already after it. That text is the prefix with its last character lowered by one, followed by
- * \x7f, which sorts after all characters of ids. */
+/* Sets `from` of the page to a text that sorts just before the first id that begins with `prefix`,
+ * unless `from` sorts after that text already. That text is the prefix with its last character
+ * lowered by one, followed by \x7f, which sorts after all characters of ids. */
 static void go_to(list_page *p, const char *prefix)
 {
     char before[API_TOKEN_PREFIX + 2];

@@ -121,8 +121,8 @@ static void put_problems(sources *s)
     }
 }
 
-/* Returns `begun` minus `ended`. `ended` is read first, so that requests which end between the two
- * reads never make the result negative. */
+/* Returns the counter `begun` minus the counter `ended`. `ended` is read first, so that requests
+ * which end between the two reads never make the result negative. */
 static uint64_t difference(const api_metrics *metrics, api_counter begun, api_counter ended)
 {
     const uint64_t ends = api_counted(metrics, ended), begins = api_counted(metrics, begun);

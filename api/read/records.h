@@ -1,5 +1,5 @@
-/* records.h - the tables of JSON members (api/json/record.h) from which handlers of this room write
- * their answers. */
+/* records.h - the tables of JSON members (api/json/record.h) from which the handlers in api/read
+ * write their answers. */
 #ifndef HE_API_READ_RECORDS_H
 #define HE_API_READ_RECORDS_H
 

@@ -268,7 +268,8 @@ bool api_answer_from_card(api_exchange *x)
     }
     if (status != ST_OK || mesh != NULL) {
         st_release(mesh);
-        return false; /* loading the mesh will find it or report the error */
+        /* The caller then loads the mesh, which finds the mesh or reports the error. */
+        return false;
     }
     x->info = cold.info;
     x->has_info = true;

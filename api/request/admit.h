@@ -6,8 +6,8 @@
 
 #include "api/request/exchange.h"
 
-/* Makes all these checks and fills the members of `x` that describe the request. Returns false if
- * the request was refused, or answered (OPTIONS). */
+/* Makes all checks of this file, and fills the members of the exchange `x` that describe the
+ * request. Returns false if the request was refused, or answered (OPTIONS). */
 bool api_admit(api_exchange *x);
 
 /* Looks for the mesh on disk if x->is_cold, which means that it is not in memory. Blocks. Returns

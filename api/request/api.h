@@ -44,7 +44,7 @@ typedef struct api_service api_service;
 typedef struct api_request {
     const char *method;
     const char *path;       /* raw, percent-encoded, begins with '/' */
-    const char *query;      /* raw, without '?', "" when absent */
+    const char *query;      /* the query as received, without '?'; "" if there is none */
     const char *request_id; /* the client's X-Request-Id, or one that the server has made */
     /* Values of the headers; NULL for a header that is absent. */
     const char *headers[API_REQUEST_HEADERS];
@@ -53,7 +53,8 @@ typedef struct api_request {
     bool has_body;       /* a body follows; its length may be unknown */
     api_rate_key client; /* key of the client's address, shared by all clients at that address */
     bool is_beyond;      /* the address has more connections than allowed: refuse the request */
-    bool has_consent;    /* the Origin is a configured one, whose pages may make any request */
+    /* The header Origin names a configured site, whose pages may make any request. */
+    bool has_consent;
 } api_request;
 
 typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
@@ -86,10 +87,11 @@ typedef struct api_answer {
     /* The body if it has no known end, such as an event stream; then `bytes` and `read` are NULL.
      * NULL for other bodies. */
     const api_source *live;
-    bool close;        /* close the connection after this answer */
-    st_shown shown;    /* what must be durable before the answer is sent (durability_wait.h) */
-    bool changed;      /* the request has changed a mesh */
-    const char *route; /* path template for logs and metrics; "-" when no route matched */
+    bool close;     /* close the connection after this answer */
+    st_shown shown; /* what must be durable before the answer is sent (durability_wait.h) */
+    bool changed;   /* the request has changed a mesh */
+    /* Path template of the route, for logs and metrics; "-" when no route matched. */
+    const char *route;
 } api_answer;
 
 /* A file that belongs to the web page. */
@@ -118,7 +120,8 @@ typedef struct api_options {
      * (0: no limit). NULL: not reported. */
     void (*memory)(uint64_t *used, uint64_t *budget);
     api_limits address_limits; /* limits of each address for requests without a token */
-    /* How many seconds of requests and bytes a client may use at once; 0: one. */
+    /* How many seconds' worth of requests and bytes a client may use at once; 0 stands for one
+     * second. */
     uint64_t limit_burst;
     api_tokens *tokens; /* NULL: no token is needed, every client may do everything */
     /* Reads the server's files again, such as the token file. On failure returns false with a

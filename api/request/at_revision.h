@@ -14,8 +14,8 @@ bool api_at_revision_wanted(api_exchange *x, uint64_t *revision);
 /* Checks a result of api_at_revision_wanted. Returns false with the problem filled if `revision` is
  * 0 or higher than the present one (404). */
 bool api_at_revision_may(api_exchange *x, uint64_t revision);
-/* Makes a snapshot of the mesh as it was at that revision. It may copy the mesh and replay changes,
- * so do not call it on a worker. Returns false with the problem filled (410, 507). */
+/* Makes a snapshot of the mesh as it was at `revision`. It may copy the mesh and replay changes, so
+ * do not call it on a worker thread. Returns false with the problem filled (410, 507). */
 bool api_at_revision_take(api_exchange *x, uint64_t revision, st_snapshot **out);
 
 #endif

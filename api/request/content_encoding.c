@@ -106,7 +106,8 @@ static bool name_coding(api_exchange *x)
 /* Compresses the whole answer now, so that its length is known. */
 static void code_whole(api_exchange *x, size_t length)
 {
-    size_t room = length + length / 4 + 512; /* more than zlib or zstd needs in the worst case */
+    /* The size of the buffer: more than zlib or zstd needs in the worst case. */
+    size_t room = length + length / 4 + 512;
     x->coded = he_mem_alloc(room);
     if (x->coded == NULL || !api_compressor_begin(x->compressor)) {
         return;
@@ -160,8 +161,8 @@ void api_content_encoding_answer(api_exchange *x)
         }
         return;
     }
-    /* The packer has read part of the body already, so it must deliver the rest even if it cannot
-     * compress: then it passes the body on unchanged. */
+    /* The compressor has read part of the body already, so the rest must come from it even if it
+     * cannot compress: then it passes the body on unchanged. */
     a->read = api_compressor_read;
     a->context = x->compressor;
     a->bytes = NULL;

@@ -60,7 +60,7 @@ struct api_service {
  * in a job, or is answered. It only moves forward. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
-enum { API_LOCATION = 512 }; /* bytes of a percent-encoded path of this API */
+enum { API_LOCATION = 512 }; /* the most bytes that a percent-encoded path of this API has */
 
 struct api_exchange {
     api_service *service;
@@ -73,11 +73,11 @@ struct api_exchange {
     const api_route *route; /* the row of the table of routes; NULL: no route matched */
     bool head;              /* the method is HEAD: the server sends no body */
     const char *mesh_id;    /* id of the mesh in the path, well formed; NULL: none */
-    he_kind kind;           /* kind of {domain} in the path, or of the route */
-    uint32_t id;            /* {id} in the path */
-    const char *code;       /* {code} in the path */
-    const char *attribute;  /* {name} in the path */
-    const char *job_id;     /* {job} in the path; any text */
+    he_kind kind; /* kind of element that {domain} in the path names, or that the route is about */
+    uint32_t id;  /* {id} in the path */
+    const char *code;      /* {code} in the path */
+    const char *attribute; /* {name} in the path */
+    const char *job_id;    /* {job} in the path, which may be any text */
     /* The client's token, with a reference held; NULL: the route is open, or the server has no
      * tokens. */
     api_token *token;
@@ -101,7 +101,7 @@ struct api_exchange {
     /* Position in the journal of the record of the Idempotency-Key, for which the answer waits; 0:
      * none. */
     uint64_t noted;
-    const char *own_job;  /* id of the job that does this work; NULL: none */
+    const char *own_job;  /* id of the job that does the work of this exchange; NULL: none */
     api_coding coding_in; /* content coding of the body */
     api_codings codings;  /* content codings that the answer may have */
 
@@ -113,7 +113,7 @@ struct api_exchange {
         *decompressor; /* decompresses the body; NULL: the body is not compressed, or has ended */
     api_document document;
     bool has_root;
-    api_in root;   /* cursor at the root of a control document */
+    api_in root;   /* cursor at the outermost value of a control document */
     api_items ops; /* operations of an edit list, which lies in `body` */
 
     /* --- the mesh --- */
@@ -126,9 +126,11 @@ struct api_exchange {
     /* Whether the answer may show more of the store than `info`; it then waits for more changes to
      * be durable (`shown` in api_answer). */
     bool shows_all;
-    uint64_t since;      /* the journal was durable up to this position when the exchange began */
-    st_write write;      /* the write to the mesh; a claim outlives the handler that began it */
-    api_reading reading; /* what the handler reads: a copy of the route's members */
+    uint64_t since; /* the journal was durable up to this position when the exchange began */
+    st_write write; /* the write to the mesh; a claim outlives the handler that began it */
+    /* What the handler reads: at first a copy of the route's members `reads`, `cost`, `tag` and
+     * `run`. */
+    api_reading reading;
     const he_mesh *content; /* the mesh that the handler may read while it runs; NULL: none */
     /* The snapshot that owns `content`; NULL: `content` is read under the shared lock. */
     st_snapshot *snapshot;
@@ -141,7 +143,8 @@ struct api_exchange {
     bool is_job;          /* `deferred` is to run as a job */
     double seconds;       /* estimated duration; 0: not estimated */
     he_progress progress; /* the threads that the work may use, and the callback for its progress */
-    /* Why the watch stopped the work; its code is HE_OK if no reason was given. */
+    /* Why the work was stopped (api_give_up); the code of this problem is HE_OK if no reason was
+     * given. */
     api_problem given_up;
 
     /* --- the answer --- */
@@ -198,8 +201,8 @@ bool api_write_commit(api_exchange *x, const char *ops);
 /* Returns true if If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info;
  * otherwise fills the problem. */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
-/* Returns true if the preconditions hold for a PUT to a mesh that does not exist: If-None-Match: *
- * does, If-Match does not. */
+/* Returns true if the preconditions hold for a PUT to a mesh that does not exist: If-None-Match
+ * with "*" holds then, If-Match does not. */
 bool api_precondition_absent(api_exchange *x);
 
 /* --- long work --- */
@@ -228,7 +231,7 @@ uint64_t api_elements_of(const he_mesh *mesh);
  * Returns false in api_work, which is on such a thread. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 
-/* --- answers: a handler calls one of these, once --- */
+/* --- answers: a handler calls one of these functions, once --- */
 /* Declares that the write took effect, so that a refusal would be wrong. If a problem comes up
  * later (no memory for the answer, the mesh deleted meanwhile), the client gets `status`, 201 or
  * 204, without a body. With 201, the header Location is made from x->info, which must be that of
@@ -268,12 +271,13 @@ void api_answer_live(api_exchange *x, int status, const char *type, const api_so
 void api_answer_header(api_exchange *x, const char *name, const char *value);
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Sets the ETag of x->info for this representation. */
+/* Sets the ETag of the answer, made from the mesh's state in x->info and the name of the
+ * representation (etag.h). */
 void api_answer_etag(api_exchange *x, const char *representation);
 /* Sets the ETag. If If-None-Match names it, answers 304 and returns true. A job never does that:
  * its client asked for the result. */
 bool api_not_modified(api_exchange *x, const char *representation);
-/* Does what api_not_modified does, with the given tag instead of one made from the mesh's
+/* Does what api_not_modified does, with the given ETag instead of an ETag made from the mesh's
  * revision. */
 bool api_not_modified_since(api_exchange *x, const char *etag);
 

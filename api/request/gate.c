@@ -99,7 +99,8 @@ static bool enter(api_exchange *x)
     bool asks = x->service->options.tokens != NULL;
     const char *header = x->request.headers[API_HEADER_AUTHORIZATION];
     const char *ticket = header == NULL ? api_gate_ticket(x->request.query) : NULL;
-    x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* the secret is not needed any more */
+    /* The exchange forgets the secret in the header, which is not needed any more. */
+    x->request.headers[API_HEADER_AUTHORIZATION] = NULL;
     if (x->route->role == API_ROLE_OPEN || (!asks && ticket == NULL)) {
         return api_rating_enter(x);
     }

@@ -1,7 +1,7 @@
 #include "api/request/gather.h"
 
-/* The number of bytes that are read at a time. After each piece the watch is asked whether to
- * stop. */
+/* The number of bytes that are read at a time. After each piece the reader stops if the work was
+ * cancelled. */
 enum { PIECE = 256 * 1024 };
 
 static bool read_piece(api_exchange *x, bool *ended)

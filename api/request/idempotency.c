@@ -29,7 +29,8 @@ bool api_idempotency_begin(api_exchange *x)
                         "Idempotency-Key has %zu characters; 1 to %d are allowed", length,
                         API_MAX_KEY_LENGTH);
     }
-    x->key = api_arena_copy(&x->arena, key, length); /* a job outlives the connection's buffer */
+    /* The key is copied, because a job may outlive the buffer of the connection. */
+    x->key = api_arena_copy(&x->arena, key, length);
     if (x->key == NULL) {
         return api_fail_memory(x);
     }
@@ -149,8 +150,8 @@ void api_idempotency_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
     if (x->keyed == NULL || st_keyed_answer(x->keyed)->status != 0) {
-        /* There is no key, or the answer is the kept one, which is borrowed until the exchange
-         * ends. */
+        /* Nothing is to be done: there is no key, or the answer is the one that was kept under the
+         * key, which is borrowed until the exchange ends. */
         return;
     }
     if (answer->status < 300) {

@@ -105,7 +105,7 @@ static bool is_read_here(api_exchange *x)
 static bool obtain(api_exchange *x)
 {
     uint64_t revision;
-    x->keeps = false; /* an earlier attempt may have kept its snapshot, which is released now */
+    x->keeps = false; /* the snapshot that an earlier attempt kept, if any, is released now */
     give_back(x);
     if (!lock(x)) {
         return false;
@@ -121,8 +121,8 @@ static bool obtain(api_exchange *x)
     return !copies || take_snapshot(x);
 }
 
-/* Decides whether a handler that writes runs on this thread: `cost` of the route reads the mesh, if
- * there is one (a route may create its mesh). */
+/* Decides whether a handler that writes runs on this thread: lets the function `cost` of the route
+ * read the mesh, unless the mesh does not exist yet. */
 static bool look(api_exchange *x)
 {
     api_cost cost = {0};

@@ -23,7 +23,7 @@ void api_read(api_exchange *x);
 /* Obtains what the row's `begin_reads` says, and runs the row's `begin`. */
 void api_read_at_head(api_exchange *x);
 /* Does what api_read does, with `reading` instead of what the route's row says. A handler that has
- * changed the mesh calls it to answer like another route. */
+ * changed the mesh calls this function to answer like another route. */
 void api_read_as(api_exchange *x, const api_reading *reading);
 
 /* --- for handlers that read --- */
@@ -36,7 +36,7 @@ bool api_keep_mesh(api_exchange *x);
 void api_begin_elsewhere(api_exchange *x);
 
 /* --- for the member `cost` of a route --- */
-/* Sets the cost of a handler that visits the whole mesh: the number of its elements. */
+/* Sets the cost of a handler that visits the whole mesh: the number of elements of the mesh. */
 bool api_cost_of_mesh(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 #endif

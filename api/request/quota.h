@@ -7,8 +7,8 @@
 
 #include "api/request/exchange.h"
 
-/* Refuses a new mesh. Both functions fill the problem after the store returned ST_QUOTA, and always
- * return false. */
+/* api_quota_fail_new refuses a new mesh. It and api_quota_fail fill the problem after the store
+ * returned ST_QUOTA, and always return false. */
 bool api_quota_fail_new(api_exchange *x);
 /* Refuses the growth of x->mesh. The message does not say what another token's quota is. */
 bool api_quota_fail(api_exchange *x);

@@ -66,9 +66,10 @@ typedef struct api_cost {
 
 typedef struct api_reading {
     api_reads reads;
-    /* Estimates the cost before the handler runs; NULL if it is always small. It may change
-     * x->reading for this request. If the work moves to another thread, it is called again there.
-     * Returns false with the problem filled if the request can be refused already. */
+    /* Estimates the cost before the handler runs; NULL if the cost is always small. This function
+     * may change x->reading for the request. If the work moves to another thread, the function is
+     * called again there. Returns false with the problem filled if the request can be refused
+     * already. */
     bool (*cost)(api_exchange *x, const he_mesh *mesh, api_cost *out);
     /* The representation of the answer, from which its ETag is made (etag.h), if a request whose
      * If-None-Match matches may be answered 304 before the handler runs. NULL if the handler itself
@@ -79,27 +80,27 @@ typedef struct api_reading {
 } api_reading;
 
 enum {
-    API_WRITES = 1, /* the route changes something; it reads If-Match */
-    /* A write whose cost grows with its upload: large uploads are worked on off the worker. */
+    API_WRITES = 1, /* the route changes something, and reads If-Match */
+    /* A write whose cost grows with its upload: a thread that may block works on large uploads. */
     API_COSTLY = 2,
     API_MAY_CREATE = 4, /* the mesh in the path need not exist */
     API_OWN_ACCEPT = 8, /* the handler itself evaluates Accept, because ?format= overrides it */
     API_FIXED = 16,     /* the path is not under /v1: it is independent of the API version */
-    API_IDEMPOTENCY_KEY =
-        32, /* reads Idempotency-Key; the answer is kept with the mesh (idempotency.h) */
+    /* The route reads Idempotency-Key; the answer is kept with the mesh (idempotency.h). */
+    API_IDEMPOTENCY_KEY = 32,
     /* The route makes a mesh and reads Idempotency-Key; the answer is kept for the whole store
      * (idempotency.h). */
     API_IDEMPOTENCY_KEY_NEW = 64,
     API_LONG = 128,       /* the work may become a job: the route reads Prefer and may answer 202 */
-    API_INTERRUPTS = 256, /* allowed while a long edit (a claim) works on the mesh */
-    /* Takes `dry_run`, so an answer may describe a state that the mesh never had. */
+    API_INTERRUPTS = 256, /* the route is allowed while a long edit (a claim) works on the mesh */
+    /* The route takes `dry_run`, so an answer may describe a state that the mesh never had. */
     API_REHEARSED = 512,
-    /* The limits of clients do not apply: monitoring must always get an answer. */
+    /* The limits of clients do not apply to the route: monitoring must always get an answer. */
     API_UNLIMITED = 8192,
-    /* The answer is the result of another request (a job), which may have had no ETag. */
+    /* The answer is the result of another request (a job), whose answer may have had no ETag. */
     API_TAG_OF_OTHERS = 4096,
-    /* Answers show nothing from the store, so they are sent without waiting for the journal, like
-     * those of routes with API_FIXED. */
+    /* Answers of the route show nothing from the store, so they are sent without waiting for the
+     * journal, like answers of routes with API_FIXED. */
     API_STORELESS = 2048,
     /* The route reads, and its cost grows with the mesh. Requests from pages of other sites are
      * refused, because such pages could make the server work although they cannot read the
@@ -157,8 +158,8 @@ typedef struct api_route {
     const char *request, *response;
     /* Schema of one line of an NDJSON answer, or of one event of an event stream. */
     const char *item;
-    const char *summary; /* description in a few words */
-    const char *doc;     /* description in a sentence or two */
+    const char *summary; /* description of the route in a few words */
+    const char *doc;     /* description of the route in a sentence or two */
 } api_route;
 
 /* Parses a list of words separated by commas; `out` gets the bit set of their indices in `choices`.
@@ -167,9 +168,9 @@ bool api_choices_parse(const char *const *choices, const char *list, unsigned *o
 
 /* The values that a path gives to the variables of its template. */
 typedef struct api_variables {
-    const char *mesh; /* percent-decoded but not checked; NULL: not in the template */
-    he_kind domain;   /* kind of {domain}; HE_KIND_COUNT: not in the template */
-    /* Percent-decoded but not checked; NULL: not in the template. */
+    const char *mesh; /* {mesh}, percent-decoded but not checked; NULL: not in the template */
+    he_kind domain;   /* kind of element that {domain} names; HE_KIND_COUNT: not in the template */
+    /* {id} and so on, percent-decoded but not checked; NULL: not in the template. */
     const char *id, *code, *name, *job;
 } api_variables;
 

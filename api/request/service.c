@@ -122,7 +122,8 @@ static void end_claim(api_exchange *x)
     }
 }
 
-/* If the watch stopped the work, replaces the problem by the reason that api_give_up has stored. */
+/* If the work was stopped from outside (api_give_up), replaces the problem by the reason that
+ * api_give_up has stored. */
 static void end_given_up(api_exchange *x)
 {
     if (x->progress.cancelled && x->problem.code != HE_OK) {
@@ -201,7 +202,7 @@ static api_step finish(api_exchange *x)
     }
     put_header(x, "X-Request-Id", x->request.request_id);
     put_header(x, "X-Content-Type-Options", "nosniff");
-    /* An answer with a tag may be cached and revalidated; others may not be stored. */
+    /* An answer with an ETag may be cached and revalidated; other answers may not be stored. */
     put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
     if (x->rates != NULL) {
         api_rate_fields_of(x, &x->rate_fields);
@@ -213,7 +214,8 @@ static api_step finish(api_exchange *x)
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
-    api_idempotency_settle(x); /* called before shown(), because it may set x->noted */
+    /* This call may set x->noted, which shown() reads, so it comes first. */
+    api_idempotency_settle(x);
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;
     if (x->phase != API_PHASE_JOB) {

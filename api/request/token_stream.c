@@ -45,7 +45,8 @@ static bool is_between_events(const stream *s)
     return !s->begun || (s->tail[0] == '\n' && s->tail[1] == '\n');
 }
 
-/* Returns how many of these bytes still belong to the event of which a part was sent before. */
+/* Returns how many of the next bytes of the stream still belong to the event of which a part was
+ * sent before. */
 static size_t rest_of_event(const stream *s, const char *bytes, size_t length)
 {
     char before[2] = {s->tail[0], s->tail[1]};

@@ -10,7 +10,7 @@
 typedef struct ticket {
     unsigned char hashes[2 * API_TOKEN_HASH]; /* hash of the ticket, then of its target */
     double expires;
-    api_token *token; /* the token that made it, with a reference held */
+    api_token *token; /* the token that requested the ticket, with a reference held */
 } ticket;
 
 struct api_tickets {

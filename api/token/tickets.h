@@ -12,8 +12,8 @@
 
 enum {
     API_TICKET_SECONDS = 60,
-    API_TICKETS = 1024,          /* tickets valid at one time */
-    API_TICKETS_OF_A_TOKEN = 256 /* tickets of one token valid at one time */
+    API_TICKETS = 1024,          /* the most tickets that are valid at one time */
+    API_TICKETS_OF_A_TOKEN = 256 /* the most tickets of one token that are valid at one time */
 };
 
 typedef struct api_tickets api_tickets;

@@ -50,7 +50,7 @@ typedef struct api_token {
     size_t prefix_count;
     double expires; /* time in seconds since 1970; HUGE_VAL: never */
     unsigned char hash[API_TOKEN_HASH];
-    size_t line; /* number of its line in the token file */
+    size_t line; /* number of the token's line in the token file */
     /* The limits set by the token's line in the file or by the server's options, 0 for none
      * (limit.h). They change when the file is read again, also for requests that hold the token. */
     _Atomic uint64_t limits[API_LIMIT_COUNT];
@@ -79,7 +79,7 @@ bool api_token_is_current(const api_token *token, double now);
 /* Returns true if two byte strings are equal; takes constant time, so that it reveals nothing about
  * secrets. */
 bool api_token_is_equal(const unsigned char *a, const unsigned char *b, size_t length);
-/* Returns true if this is the hash of the token. Compares in constant time. */
+/* Returns true if `hash` is the hash of the token. Compares in constant time. */
 bool api_token_matches(const api_token *token, const unsigned char hash[API_TOKEN_HASH]);
 /* Returns true if the token can see the mesh with this id. A NULL token, which stands for a server
  * without tokens, sees all meshes. */

@@ -23,14 +23,15 @@
 #include "api/token/token.h"
 
 enum {
-    API_TOKENS = 4096,         /* number of tokens in the file */
+    API_TOKENS = 4096,         /* the most tokens in the file */
     API_TOKENS_FILE = 1 << 20, /* bytes of the file */
     API_TOKEN_LINE = 1024,     /* bytes per line */
     API_TOKENS_MESSAGE = 160
 };
 
 typedef struct api_token_list {
-    api_token **items; /* in the order of their lines; the list holds a reference to each token */
+    /* The tokens in the order of their lines; the list holds a reference to each. */
+    api_token **items;
     size_t count;
 } api_token_list;
 

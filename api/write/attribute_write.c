@@ -153,7 +153,8 @@ static bool read_common(writing *w, const api_in *root)
     return !api_in_find(root, "dry_run", &dry) || api_in_bool(&dry, &w->dry_run);
 }
 
-/* Reads "values" or "value"; leaves w->values NULL if there is neither. */
+/* Reads the member "values" or "value"; leaves `values` of the state NULL if the body has
+ * neither. */
 static bool read_values(writing *w, const api_in *root, const he_column *column)
 {
     api_in one;

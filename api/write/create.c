@@ -7,7 +7,7 @@
 #include "api/document/summary.h"
 #include "api/document/upload.h"
 
-/* Reads a piece of the body, for both routes. */
+/* Reads a piece of the body of a POST or PUT. */
 static void body(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->problem.code == HE_OK) {

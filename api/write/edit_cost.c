@@ -43,8 +43,8 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
     return status;
 }
 
-/* Returns the number of half-edges around the origin of `first`, or, if `turn` is false, around its
- * face or hole; at most `most`. */
+/* Returns the number of half-edges around the origin of the half-edge `first` or, if `turn` is
+ * false, around the face or hole of `first`; at most `most`. */
 static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most)
 {
     he_halfedge h = first;
@@ -177,16 +177,16 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
 
 /* --- what the operations of a list are charged --- */
 
-/* Degrees below this are not cached (api_hubs). */
+/* Vertices and faces with fewer half-edges are not kept in the cache (api_hubs). */
 enum { HUB = 256 };
 
-/* Does what steps does, with a cache of high degrees. */
+/* Returns what the function `steps` returns, but keeps high degrees in a cache. */
 static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most,
                           api_hubs *hubs)
 {
     uint32_t id = turn ? he_origin(mesh, first).i : he_face_of(mesh, first).i;
     if (id >= HE_MAX_ROWS) {
-        return steps(mesh, first, turn, most); /* not cached: a hole has no id */
+        return steps(mesh, first, turn, most); /* not cached, because a hole has no id */
     }
     uint32_t key = 2 * id + 2 + (turn ? 0 : 1);
     size_t slot = key / 2 % (sizeof hubs->slots / sizeof hubs->slots[0]);
@@ -216,7 +216,8 @@ static uint64_t walk_about_edge(const he_mesh *mesh, he_edge e, bool holes, uint
     return count;
 }
 
-/* Returns the sum of the degrees of all vertices of the face of `h` except the origin of `h`. */
+/* Returns the sum of the degrees of all vertices of the face of the half-edge `h`, except the
+ * vertex where `h` begins. */
 static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t most,
                                    api_hubs *hubs)
 {

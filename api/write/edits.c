@@ -26,7 +26,7 @@ typedef struct edits {
     uint64_t passes;          /* how many passes over the mesh the `whole` operations take */
     double growth;            /* the factor by which all operations together enlarge the mesh */
     uint64_t elements_beside; /* number of elements of the other meshes that operations name */
-    /* Whether the list must leave the worker; whether it must claim the mesh. */
+    /* costly: the list must leave the worker thread. claims: it must claim the mesh. */
     bool costly, claims;
     double seconds;
     api_edit_cost cost;
@@ -37,9 +37,10 @@ typedef struct edits {
     bool exceeded;      /* `most_work` would be exceeded */
     size_t most_rows;   /* a list whose delta has more rows needs a claim */
     bool crowded;       /* `most_rows` was exceeded */
-    /* How many more polls of the watch the charge for the current operation includes. */
+    /* How many more reports of progress are free, because the charge for the current operation
+     * includes them. */
     uint64_t paid;
-    uint64_t look;    /* work charged for each further poll */
+    uint64_t look;    /* work charged for each report of progress that is not free */
     bool unlimited;   /* this thread may do any amount of work */
     he_progress told; /* the original x->progress, to which tell_and_charge forwards */
     api_hubs hubs;
@@ -76,8 +77,8 @@ static void free_edits(void *state)
     he_mem_free(e);
 }
 
-/* Appends the name of an operation to e->ops, the list in the history entry; appends ",..." if it
- * does not fit. */
+/* Appends the name of an operation to `ops`, the list in the history entry; appends ",..." if the
+ * name does not fit. */
 static void note_name(edits *e, const char *name)
 {
     static const char more[] = ",...";
@@ -304,8 +305,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return good;
 }
 
-/* The watch is polled once for this many operations, or earlier after a certain amount of work. It
- * is not polled for each operation, because a report takes a system call. */
+/* Progress is reported once for this many operations, or earlier after a certain amount of work. It
+ * is not reported for each operation, because a report takes a system call. */
 enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)

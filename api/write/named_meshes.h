@@ -23,16 +23,17 @@ typedef struct api_named_meshes {
     api_named_mesh other[API_MAX_NAMED_MESHES];
     size_t count;
     st_shown shown[API_MAX_NAMED_MESHES]; /* the state of each mesh that its snapshot shows */
-    size_t cold; /* how many of them are not in memory; then api_named_meshes_load must be called */
+    /* How many of these meshes are not in memory; if any, api_named_meshes_load must be called. */
+    size_t cold;
 } api_named_meshes;
 
-/* Initializes an empty list. others->meshes.find adds each mesh once, and refuses a mesh that does
- * not exist and more meshes than API_MAX_NAMED_MESHES. */
+/* Initializes an empty list. The function `find` of its member `meshes` adds each mesh once, and
+ * refuses a mesh that does not exist and more meshes than API_MAX_NAMED_MESHES. */
 void api_named_meshes_init(api_named_meshes *named, api_exchange *asker);
 /* Loads the meshes that are not in memory. Blocks. Returns false with x->problem filled. */
 bool api_named_meshes_load(api_exchange *x, api_named_meshes *named);
-/* Returns the present number of elements of all these meshes, from which the cost of the request is
- * estimated. */
+/* Returns the present number of elements of all other meshes that operations name, from which the
+ * cost of the request is estimated. */
 uint64_t api_named_meshes_elements(const api_named_meshes *named);
 /* Takes a snapshot of each mesh; returns false with x->problem filled. api_named_meshes_release
  * releases the snapshots; api_named_meshes_clear also releases the references to the meshes. */
