@@ -38,9 +38,8 @@ static const he_column *find_names(const he_mesh *m, const char *name)
 typedef struct finding {
     const he_mesh *mesh;
     he_glb_groups *groups;
-    uint32_t *of; /* group of each face */
-    uint32_t
-        *slots; /* hash table of groups: a slot has the number of a group + 1, a free slot has 0 */
+    uint32_t *of;    /* group of each face */
+    uint32_t *slots; /* hash table: a slot has the number of a group + 1, a free slot 0 */
 } finding;
 
 enum { SLOTS = 4 * HE_GLB_PRIMITIVES };

@@ -17,8 +17,7 @@ typedef enum he_glb_content {
     HE_GLB_POSITIONS, /* three floats a vertex */
     HE_GLB_VALUES,    /* an attribute of vertices or corners in a type of glTF */
     HE_GLB_TRIANGLES,
-    HE_GLB_COPIES, /* for each copy of a vertex (splits.h), the number of the vertex that was copied
-                    */
+    HE_GLB_COPIES,  /* number of the vertex that each copy was made from (splits.h) */
     HE_GLB_DEGREES, /* degrees of faces */
     HE_GLB_CORNERS, /* the vertex at each corner of each face */
     HE_GLB_ORDER,   /* for each face that the file has, its number in the order of face ids */
@@ -33,11 +32,10 @@ typedef struct he_glb_part {
     unsigned type;                     /* the componentType of the accessor */
     uint32_t components;               /* components of an element of the accessor */
     bool normalized;
-    he_gltf_role
-        role;        /* which attribute defined by glTF the values are; HE_GLTF_SEMANTICS if none */
-    uint64_t count;  /* elements of the accessor */
-    uint32_t stride; /* bytes from one element to the next */
-    uint64_t offset; /* offset in the buffer, a multiple of 4 */
+    he_gltf_role role; /* attribute of glTF that the values are; HE_GLTF_SEMANTICS if none */
+    uint64_t count;    /* elements of the accessor */
+    uint32_t stride;   /* bytes from one element to the next */
+    uint64_t offset;   /* offset in the buffer, a multiple of 4 */
     uint64_t packed_at, packed; /* `packed_at` is the offset in the file's buffer of the compressed
                                    part, `packed` is its length */
 } he_glb_part;
@@ -45,9 +43,8 @@ typedef struct he_glb_part {
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
-    uint32_t
-        *numbers; /* number of each vertex in the file; NULL if every number is the vertex's id */
-    he_splits splits; /* copies of vertices whose corners have different values */
+    uint32_t *numbers; /* number of each vertex in the file; NULL if all are the ids */
+    he_splits splits;  /* copies of vertices whose corners have different values */
     he_export_triangles cuts;
     he_glb_groups groups; /* groups of faces */
     he_glb_part *parts;

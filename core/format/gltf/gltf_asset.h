@@ -37,7 +37,7 @@ typedef struct he_gltf {
     he_import *into;
     he_json json;
     he_ids accessors, views, nodes, meshes,
-        materials; /* the JSON object of each accessor, view and so on, by its index in the asset */
+        materials; /* JSON objects of each kind, by index in the asset */
     he_gltf_buffer *buffers;
     size_t buffer_count;
     he_gltf_buffer *unpacked; /* the decompressed bytes of each view; NULL before the first view is
@@ -46,8 +46,7 @@ typedef struct he_gltf {
     uint64_t room;            /* bytes of memory that the soup may still take */
     uint64_t unpack_room;     /* bytes to which views may still decompress */
     uint64_t size;            /* bytes of the input */
-    uint64_t steps,
-        told; /* `steps` of work were done, `told` of them when progress was last reported */
+    uint64_t steps, told;     /* steps of work done; of these, steps reported as progress */
 } he_gltf;
 
 /* The BIN chunk of a GLB file; `bytes` is NULL if the file has none. */

@@ -200,8 +200,8 @@ static bool is_direction(const he_gltf_semantic *known)
     return role_of(known) == HE_GLTF_NORMAL || role_of(known) == HE_GLTF_TANGENT;
 }
 
-/* Checks the component type of directions: they must be floats, or a type that
- * KHR_mesh_quantization allows. */
+/* Checks the component type of an attribute. Normals and tangents must be floats, or have a type
+ * that KHR_mesh_quantization allows. */
 static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                             const he_gltf_semantic *known, he_error *err)
 {

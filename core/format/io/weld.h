@@ -10,7 +10,7 @@
 #include "build/build.h"
 
 typedef struct he_weld_slot {
-    uint32_t hash, vertex; /* hash of a position; number of its vertex + 1, 0 in a free slot */
+    uint32_t hash, vertex; /* hash of a position; number of the vertex there + 1, 0 if free */
 } he_weld_slot;
 
 /* {0} is empty. */
