@@ -1,5 +1,5 @@
-/* off.h - Object File Format: the functions of the format's row in format.c. What is "noted" is
- * reported as a warning (warnings.h).
+/* off.h - Object File Format: the functions for its row in the table of formats (format.c). What is
+ * "noted" is reported as a warning (warnings.h).
  *
  *     [ST][C][N]OFF        in any order; may be missing: then the counts come first
  *     V F E                on the same line or a later one; E is ignored and may be missing

@@ -68,8 +68,8 @@ static const char *read_digits(const char *p, const char *end, uint64_t *value)
 }
 
 /* Returns the bits of the double nearest to w * 10^q, with w > 0, by the method of Eisel and
- * Lemire. *decided is set to false if 128 bits of the power do not suffice to tell which one it
- * is. */
+ * Lemire. *decided is set to false if 128 bits of 10^q do not suffice to tell which double is
+ * nearest. */
 static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
 {
     *decided = true;
@@ -80,7 +80,7 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
         return INFINITY_BITS;
     }
     he_pow5 power = he_pow5_get((int)q);
-    if (q < 0 && q >= -27) { /* the method needs the inverses of exact powers rounded up */
+    if (q < 0 && q >= -27) { /* the method rounds inverses of exact powers up */
         power.low++;
         power.high += power.low == 0;
     }
@@ -88,14 +88,14 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
     w <<= zeros;
     he_u128 product = (he_u128)w * power.high;
     uint64_t high = (uint64_t)(product >> 64), low = (uint64_t)product;
-    if ((high & 0x1FF) == 0x1FF) { /* all bits below the rounding bit are set: use the next word */
+    if ((high & 0x1FF) == 0x1FF) { /* all bits below the rounding bit are set: use power.low */
         uint64_t more = (uint64_t)((he_u128)w * power.low >> 64);
         low += more;
         high += low < more;
         *decided = low != UINT64_MAX || (q >= -27 && q <= 55);
     }
     unsigned top = (unsigned)(high >> 63);
-    uint64_t mantissa = high >> (top + 9); /* 53 bits and one for rounding */
+    uint64_t mantissa = high >> (top + 9); /* 53 bits, and one bit for rounding */
     int exponent = he_floor_log2_of_ten((int)q) + 63 + (int)top - zeros + 1023;
     if (exponent <= 0) {
         if (exponent <= -63) {

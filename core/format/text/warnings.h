@@ -2,7 +2,7 @@
  *
  * A warning has a code and a subject; another occurrence with that code and subject is only
  * counted. The places in the input of the first HE_WARNING_SPOTS occurrences are kept. There is
- * room for HE_WARNINGS of them, and no memory is allocated; `more` counts the occurrences that
+ * room for HE_WARNINGS warnings, and no memory is allocated; `more` counts the occurrences that
  * found no room. */
 #ifndef HE_FORMAT_TEXT_WARNINGS_H
 #define HE_FORMAT_TEXT_WARNINGS_H
@@ -26,15 +26,15 @@ typedef struct he_warning {
 typedef struct he_occurrence {
     const char *code;    /* a stable slug, static */
     const char *text;    /* one sentence without the subject, static */
-    const char *subject; /* what it is about; NULL if there is nothing to name */
+    const char *subject; /* what the warning is about; NULL if there is nothing to name */
     size_t length;       /* bytes of the subject, which need not end in NUL */
-    he_place place;      /* HE_PLACE_NONE if it has no place in the file */
+    he_place place;      /* HE_PLACE_NONE if the occurrence has no place in the file */
     uint64_t at;
 } he_occurrence;
 
 /* The place of one occurrence that a warning counts. */
 typedef struct he_warning_spot {
-    size_t warning; /* index of the note */
+    size_t warning; /* index of the warning */
     uint64_t at;
 } he_warning_spot;
 
