@@ -150,8 +150,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span
     return HE_OK;
 }
 
-/* Checks the indices of the elements that a sparse accessor replaces. They must rise, because a
- * walk over the elements meets them in rising order. */
+/* Checks the indices of the elements that a sparse accessor replaces. The indices must rise,
+ * because a walk over the elements meets them in rising order. */
 static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {

@@ -46,7 +46,7 @@ typedef struct he_gltf {
     uint64_t room;            /* bytes of memory that the soup may still take */
     uint64_t unpack_room;     /* bytes to which views may still decompress */
     uint64_t size;            /* bytes of the input */
-    uint64_t steps, told;     /* steps of work done; of these, steps reported as progress */
+    uint64_t steps, told;     /* `steps` of work are done, of which `told` were reported */
 } he_gltf;
 
 /* The BIN chunk of a GLB file; `bytes` is NULL if the file has none. */

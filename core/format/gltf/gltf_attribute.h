@@ -17,7 +17,7 @@
 
 /* A primitive that is being read. */
 typedef struct he_gltf_primitive {
-    uint32_t value, attributes; /* JSON values of the primitive and of its member `attributes` */
+    uint32_t value, attributes; /* JSON values of the primitive and of its member attributes */
     const he_gltf_frame *frame;
     bool still;  /* the frame is the identity */
     bool mirror; /* the frame mirrors: it turns right-handed axes into left-handed ones */

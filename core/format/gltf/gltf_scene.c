@@ -16,7 +16,7 @@ typedef struct level {
 typedef struct scene {
     he_gltf *asset;
     he_gltf_surface surface;
-    uint64_t *visited, *used; /* bits: the nodes that were visited, and the meshes that were used */
+    uint64_t *visited, *used; /* bits: nodes that were visited, and meshes that were used */
     uint64_t instances;       /* how many nodes have a mesh that an earlier node has, too */
     level *levels;
     size_t depth, capacity;

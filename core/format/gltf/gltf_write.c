@@ -15,8 +15,8 @@ enum { ELEMENT_ROOM = 128 };
 
 typedef struct glb_writer {
     he_glb_parts g;
-    uint32_t *at; /* if vertices are split (splits.h): the number in the file of each vertex of the
-                     present face */
+    /* if vertices are split, the number in the file of each vertex of the present face */
+    uint32_t *at;
     uint32_t *ranks; /* number of each face among the live faces; NULL if all are the ids */
     stage stage;
     size_t json;       /* the next byte of the JSON */

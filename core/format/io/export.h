@@ -30,8 +30,8 @@ static inline bool he_are_floats(he_vec3 p)
 /* Counts the positions that are changed by writing them as floats. The caller initialises it
  * with {0}. */
 typedef struct he_narrowed {
-    uint64_t rounded, beyond; /* number of positions that floats cannot represent, and of those
-                                 beyond the largest float */
+    uint64_t rounded, beyond; /* `rounded` counts the positions that no floats represent exactly,
+                                 `beyond` those beyond the largest float */
     uint32_t first;           /* first vertex of those beyond */
 } he_narrowed;
 

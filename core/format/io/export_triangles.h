@@ -11,8 +11,8 @@
 typedef struct he_export_triangles {
     const he_mesh *mesh;
     he_ids corners;            /* three vertices for each triangle into which a polygon was cut */
-    uint64_t polygons, turned; /* number of faces that were cut, and of faces cut into triangles of
-                                  which some are flipped */
+    uint64_t polygons, turned; /* `polygons` counts the faces that were cut, `turned` those of them
+                                  that have flipped triangles */
     uint64_t steps;            /* steps of work that cutting took */
 } he_export_triangles;
 

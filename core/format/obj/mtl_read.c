@@ -25,7 +25,8 @@ static void note(library *l, const char *code, const char *text, const char *sub
         &(he_occurrence){.code = code, .text = text, .subject = subject, .length = length});
 }
 
-/* Finds the number of a name among l->names, or adds the name; *fresh says whether it is new. */
+/* Finds the number of a name among l->names, or adds the name; *fresh says whether the name is
+ * new. */
 static he_status number_name(library *l, const char *name, size_t length, uint32_t *number,
                              bool *fresh, he_error *err)
 {

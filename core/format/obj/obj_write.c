@@ -65,8 +65,8 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, u
     return HE_OK;
 }
 
-/* Counts the vertices without a face whose texture coordinate or normal is not the default. Such
- * a value has no corner in the file that refers to it. */
+/* Counts the vertices without a face whose texture coordinate or normal is not the default. No
+ * corner in the file refers to such a value. */
 static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 {
     uint64_t count = 0;

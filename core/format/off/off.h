@@ -11,7 +11,7 @@
  * without the values that are missing, which is noted; but not in a file in which some vertex
  * continues on the next line. Colours have 3 or 4 numbers; they become the attribute "color" of
  * vertices and faces: integers count from 0 to 255 if all numbers of all vertices, or of all faces,
- * are integers (colors.h). They are written as four fractions. Normals and texture coordinates
+ * are integers (colors.h). Colours are written as four fractions. Normals and texture coordinates
  * become the vertex attributes "normal" and "uv", v upward. A single number in place of a colour
  * (an index into a colour map) and numbers that the header does not declare are noted and ignored.
  *

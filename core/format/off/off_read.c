@@ -19,8 +19,8 @@ typedef enum section {
     DONE
 } section;
 
-/* A vertex has at most 3 + 3 + 4 + 2 numbers, for position, normal, colour and texture
- * coordinates. There is room for more, so that surplus numbers are noticed. */
+/* The most numbers that are stored. A vertex has at most 3 + 3 + 4 + 2 numbers, for position,
+ * normal, colour and texture coordinates. */
 enum { VERTEX_NUMBERS = 16 };
 
 typedef struct off {

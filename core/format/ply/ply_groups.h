@@ -16,8 +16,7 @@
  * (io/splits.h). A comment and a property of vertices mark them:
  *
  *     comment hedge corners normal uv        these attributes are of corners
- *     property uint hedge_vertex             row of the vertex that was copied; its own row if no
- * copy
+ *     property uint hedge_vertex             row of the vertex copied, or else the vertex's own row
  *
  * Faces also have "texcoord" lists, two numbers a corner, for programs that read such lists. */
 #define HE_PLY_CORNERS_MARK "hedge corners"

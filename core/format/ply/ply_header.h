@@ -46,7 +46,8 @@ typedef struct he_ply_property {
 typedef struct he_ply_element {
     char name[HE_WARNING_SUBJECT];
     uint64_t rows;
-    /* index in the header of its first property; number of its properties */
+    /* `first` is the index in the header of the element's first property, `properties` is the
+     * number of its properties */
     size_t first, properties;
     bool lists;    /* some property is a list, so rows differ in length */
     size_t stride; /* bytes of a row without lists */

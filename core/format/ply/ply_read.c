@@ -53,7 +53,7 @@ static he_status read_whole(const he_line *line, const char **p, const char *wha
         return he_token_fail(err, HE_SYNTAX, line, *p, what);
     }
     if (status != HE_OK) {
-        *value = **p == '-' ? INT64_MIN : INT64_MAX; /* too large: the caller refuses this value
+        *value = **p == '-' ? INT64_MIN : INT64_MAX; /* out of range: the caller refuses this value
                                                         with a message of its own */
     }
     *p += plus + used;

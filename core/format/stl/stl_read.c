@@ -25,8 +25,9 @@ typedef struct stl {
     he_lines lines;
     he_face_groups object;
     bool in_facet, in_solid, begun;
-    unsigned corner_count,
-        numbers; /* corners of the facet that were read; numbers of the next corner still to come */
+    /* `corner_count` corners of the facet were read; `numbers` numbers of the next corner are to
+     * come */
+    unsigned corner_count, numbers;
     double number[3];
     uint64_t facet_line;
     uint64_t unknown; /* the first line with an unknown word, 0 if there is none */

@@ -76,7 +76,7 @@ typedef enum he_lexer_state {
     HE_JSON_NAME,         /* after ',' in an object */
     HE_JSON_AFTER,        /* ',' or a closing bracket */
     HE_JSON_DONE,         /* only blanks may follow */
-    HE_JSON_IN_STRING,    /* in this state and in those below, a token was begun */
+    HE_JSON_IN_STRING,    /* in this state and all below, a token is not complete */
     HE_JSON_IN_NUMBER,
     HE_JSON_IN_WORD,
     HE_JSON_IN_NAME,

@@ -13,8 +13,8 @@ static bool is_digit(char c)
     return (unsigned char)(c - '0') < 10;
 }
 
-/* Returns true if all eight bytes of a word are digits. If they are, the addition carries no bit
- * from one byte into the next. */
+/* Returns true if all eight bytes of a word are digits. If they are, adding 6 to each byte
+ * carries no bit from one byte into the next. */
 static bool are_eight_digits(uint64_t word)
 {
     return ((word & 0xF0F0F0F0F0F0F0F0) |
@@ -32,9 +32,9 @@ static uint32_t eight_digits(uint64_t word)
     return (uint32_t)((first + second) >> 32);
 }
 
-/* Converts the digits at the start of a word, if they are fewer than eight. Returns their number; 0
- * if there are none or eight. The addition sets the top bit of the first byte that is no digit;
- * carries only affect later bytes. */
+/* Converts the digits at the start of a word, if they are fewer than eight. Returns the number
+ * of digits; 0 if there are none or eight. Adding 0x76 to each byte sets the top bit of the
+ * first byte that is no digit; carries of this addition only affect later bytes. */
 static size_t few_digits(uint64_t word, uint64_t *value)
 {
     uint64_t digits = word ^ 0x3030303030303030;

@@ -14,8 +14,8 @@
 enum { HE_WARNINGS = 32, HE_WARNING_SUBJECT = 80, HE_WARNING_SPOTS = 100 };
 
 typedef struct he_warning {
-    const char *code;                 /* a stable slug, static */
-    const char *text;                 /* one sentence without the subject; a string literal */
+    const char *code; /* a stable slug, static */
+    const char *text; /* one sentence, which the subject completes; a string literal */
     char subject[HE_WARNING_SUBJECT]; /* what the warning is about: printable ASCII, may be "" */
     uint64_t count;                   /* how often it occurred */
     he_place place;                   /* unit of `at` */
@@ -25,7 +25,7 @@ typedef struct he_warning {
 /* One occurrence of a warning, as a reader or writer reports it. */
 typedef struct he_occurrence {
     const char *code;    /* a stable slug, static */
-    const char *text;    /* one sentence without the subject, static */
+    const char *text;    /* one sentence, which the subject completes; static */
     const char *subject; /* what the warning is about; NULL if there is nothing to name */
     size_t length;       /* bytes of the subject, which need not end in NUL */
     he_place place;      /* HE_PLACE_NONE if the occurrence has no place in the file */
