@@ -143,7 +143,7 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
     he_material *row = NULL;
     uint32_t own = he_json_find(json, he_json_find(json, value, "extras"), "hedge");
     if (he_json_is(json, own, "name")) {
-        return HE_OK; /* hedge wrote this material for its name alone, so it gets no row */
+        return HE_OK; /* hedge wrote this material for its name alone: the table gets no row */
     }
     if (table->count == HE_MATERIALS) {
         note(asset, value, "material_limit",

@@ -34,7 +34,7 @@ typedef struct obj_writer {
     uint32_t said[GROUPS]; /* value in the last line of each kind (OBJECT, GROUP ...), HE_NONE
                               before the first line */
     part part;
-    uint32_t row;      /* the next vertex, value or face */
+    uint32_t row;      /* the next vertex, value or face to write */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
     he_obj_name name;
     const char *libraries[HE_COLUMN_COMPONENTS];

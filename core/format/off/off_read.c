@@ -40,7 +40,7 @@ typedef struct off {
     uint64_t missing;
     he_off_values values;
     bool is_binary;
-    he_off_binary binary; /* reads the body if the header says BINARY */
+    he_off_binary binary; /* state of reading the body if the header says BINARY */
     uint64_t header_bytes;
 } off;
 
@@ -182,8 +182,8 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     return status;
 }
 
-/* Returns true if a number is written as an integer. As a number of a colour, 1 counts from 0 to
- * 255 and 1.0 from 0 to 1, so the text decides. */
+/* Returns true if a number is written as an integer. In a colour, 1 is one of 255 steps and 1.0
+ * is full intensity, so the text of the number decides. */
 static bool is_integer(const char *begin, const char *end, double value)
 {
     for (const char *p = begin; p < end; p++) {
@@ -466,7 +466,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     he_soup *soup = &o->into->soup;
     const char *begin = he_skip_blanks(line->begin, line->end), *p = begin;
     he_status status = HE_OK;
-    bool counts = false; /* true if the first two counts are on this line */
+    bool counts = false; /* the numbers of vertices and faces are on this line */
     while (status == HE_OK && !he_at_end(p, line->end)) {
         switch (o->section) {
         case HEADER:

@@ -42,7 +42,7 @@ static he_status too_short(const ply *o, const he_line *line, he_error *err)
                         o->rows.element->name);
 }
 
-/* Reads a whole number that must be a whole token of the line. */
+/* Reads a token of the line that must be a whole number. */
 static he_status read_whole(const he_line *line, const char **p, const char *what, int64_t *value,
                             he_error *err)
 {
@@ -379,8 +379,8 @@ static he_status take_property(ply *o, const unsigned char **p, const unsigned c
  * declare more corners. */
 enum { PLAIN_CORNERS = 16 };
 
-/* Returns true if each row is only a list of corners, with a byte for the length and 32 bits for
- * each corner, as in nearly every file. */
+/* Returns true if each row of the element is only a list of corners, with a byte for the length
+ * and 32 bits for each corner, as in nearly every file. */
 static bool is_plain(const ply *o)
 {
     const he_ply_element *e = o->rows.element;
@@ -390,7 +390,8 @@ static bool is_plain(const ply *o)
            (property->type == HE_PLY_INT32 || property->type == HE_PLY_UINT32);
 }
 
-/* Adds rows that are only lists of corners, quickly, up to one that is unusual or incomplete. */
+/* Adds rows that are only lists of corners, quickly, up to the first row that is unusual or
+ * incomplete. */
 static he_status take_plain(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {

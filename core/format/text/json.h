@@ -19,11 +19,11 @@
 enum { HE_JSON_PATH = 100 };
 #define HE_JSON_VALUES ((size_t)1 << 23)         /* most values of one text, names included */
 #define HE_JSON_TEXT   ((size_t)UINT32_MAX / 2u) /* most bytes of one text */
-#define HE_JSON_WHOLE  ((uint64_t)1 << 53)       /* doubles hold every whole number up to this */
+#define HE_JSON_WHOLE  ((uint64_t)1 << 53) /* up to this number, doubles hold every whole one */
 
 typedef struct he_json_value {
     uint32_t at;   /* offset in the text of the value's first byte, which determines its type */
-    uint32_t next; /* number of the first value after this one and all values inside it */
+    uint32_t next; /* number of the first value after this value and all values inside it */
 } he_json_value;
 
 /* {0} is empty. */

@@ -177,9 +177,9 @@ static size_t word_length(const char *p, const char *end)
     return 0;
 }
 
-/* Reads the exponent that begins with the letter at `p`, and adds it to *exponent. Returns its end,
- * or NULL if it has no digits. A huge exponent is capped; even then no number of digits that fits
- * into memory could bring the value back into the range of doubles. */
+/* Reads the exponent that begins with the letter at `p`, and adds it to *exponent. Returns the
+ * end of the exponent, or NULL if there are no digits. A huge exponent is capped; even then no
+ * number of digits that fits into memory could bring the value back into the range of doubles. */
 static const char *read_exponent(const char *p, const char *end, int64_t *exponent)
 {
     const int64_t large = INT64_C(1) << 60;
