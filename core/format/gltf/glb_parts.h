@@ -43,7 +43,7 @@ typedef struct he_glb_part {
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
-    uint32_t *numbers; /* number of each vertex in the file; NULL if all are the ids */
+    uint32_t *numbers; /* number of each vertex in the file; NULL if the ids are the numbers */
     he_splits splits;  /* copies of vertices whose corners have different values */
     he_export_triangles cuts;
     he_glb_groups groups; /* groups of faces */

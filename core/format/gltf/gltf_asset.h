@@ -44,7 +44,7 @@ typedef struct he_gltf {
                                  decompressed */
     bool quantized;           /* KHR_mesh_quantization is used */
     uint64_t room;            /* bytes of memory that the soup may still take */
-    uint64_t unpack_room;     /* bytes to which views may still decompress */
+    uint64_t unpack_room;     /* bytes that views may still take when decompressed */
     uint64_t size;            /* bytes of the input */
     uint64_t steps, told;     /* `steps` of work are done, of which `told` were reported */
 } he_gltf;

@@ -17,7 +17,7 @@ typedef struct glb_writer {
     he_glb_parts g;
     /* if vertices are split, the number in the file of each vertex of the present face */
     uint32_t *at;
-    uint32_t *ranks; /* number of each face among the live faces; NULL if all are the ids */
+    uint32_t *ranks; /* number of each face among the live faces; NULL if the ids are the numbers */
     stage stage;
     size_t json;       /* the next byte of the JSON */
     size_t part;       /* the part being written */

@@ -15,7 +15,7 @@ typedef struct he_corner_pool {
      * list may be shorter than the number of corners. */
     he_ids of;
     size_t named;     /* number of corners that have a value */
-    uint32_t highest; /* highest index that a corner refers to */
+    uint32_t highest; /* highest index of a value that a corner refers to */
 } he_corner_pool;
 
 void he_corner_pool_clear(he_corner_pool *pool);

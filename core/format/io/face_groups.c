@@ -144,7 +144,8 @@ he_status he_face_groups_merge(he_face_groups *groups, size_t faces, he_column *
         status = he_column_extend(column, faces - column->rows, err);
     }
     for (size_t f = 0; f < faces && status == HE_OK;) {
-        if (k < own->count && f >= own->ids[k]) { /* skip the faces that have names of their own */
+        if (k < own->count &&
+            f >= own->ids[k]) { /* skip the faces in `own`, which keep their names */
             f = own->ids[k + 1] > f ? own->ids[k + 1] : f;
             k += 2;
             continue;

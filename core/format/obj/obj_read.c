@@ -91,7 +91,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     }
     if (count == 5 || count > 7) {
         note_extra(o, line);
-        count = 3; /* the meaning of further numbers is not known */
+        count = 3; /* the meaning of the numbers after the position is not known */
     }
     size_t vertex = soup->vertex_count;
     status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
@@ -371,7 +371,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (he_at_end(p, end)) {
         return HE_OK;
     }
-    if (*p == '$') { /* some programs begin comments with this byte */
+    if (*p == '$') { /* some programs begin comments with '$' */
         note(o, line,
              (he_occurrence){.code = "ignored_keyword",
                              .text = "ignored: lines that begin with",

@@ -27,7 +27,7 @@ typedef struct values {
 
 typedef struct obj_writer {
     const he_mesh *mesh;
-    uint32_t *numbers; /* number of each vertex in the file; NULL if all are the ids */
+    uint32_t *numbers; /* number of each vertex in the file; NULL if the ids are the numbers */
     const he_column *color;
     values uv, normal;
     const he_column *groups[GROUPS];

@@ -31,7 +31,7 @@ typedef struct ply_writer {
     /* The attributes of corners that are written as properties of vertices. */
     const he_column *corners[HE_PLY_GROUPS];
     size_t corner_count;
-    const he_column *texcoord; /* the one of `corners` that is also written as lists of faces */
+    const he_column *texcoord; /* attribute of `corners` that is also written as lists of faces */
     he_ply_encoding encoding;
     output *outputs; /* the numbers in a row of a vertex, then those in a row of a face */
     size_t vertex_outputs, count;

@@ -29,7 +29,7 @@
 enum {
     HE_JSON_DEPTH = 128,     /* most open arrays and objects */
     HE_JSON_CARRY = 1024,    /* most bytes of a number in a text that comes in pieces */
-    HE_JSON_NAMES = 512,     /* most bytes of all names on a path, if the text comes in pieces */
+    HE_JSON_NAMES = 512,     /* most bytes of the names on a path, if the text comes in pieces */
     HE_JSON_STRING = 1 << 16 /* a longer string comes as several tokens (HE_TOKEN_PART) */
 };
 
