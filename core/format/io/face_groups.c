@@ -144,8 +144,7 @@ he_status he_face_groups_merge(he_face_groups *groups, size_t faces, he_column *
         status = he_column_extend(column, faces - column->rows, err);
     }
     for (size_t f = 0; f < faces && status == HE_OK;) {
-        if (k < own->count &&
-            f >= own->ids[k]) { /* skip the faces in `own`, which keep their names */
+        if (k < own->count && f >= own->ids[k]) { /* skip faces in `own`: they keep their names */
             f = own->ids[k + 1] > f ? own->ids[k + 1] : f;
             k += 2;
             continue;
