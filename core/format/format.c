@@ -210,7 +210,8 @@ struct he_reader {
     const he_reading *reading;
     void *state;
     he_import import;
-    he_error failure; /* error of the first call that failed; status HE_OK until then */
+    he_error failure; /* the error of the first call that failed; its status is HE_OK if none has
+                         failed */
 };
 
 he_status he_reader_new(const he_format *format, const he_limits *limits, he_reader **out,
@@ -245,7 +246,8 @@ void he_reader_free(he_reader *reader)
     }
 }
 
-/* Stores a failure, which all later calls of the reader will return, and returns `status`. */
+/* Returns `status`. If it is a failure, stores the error, which all later calls of the reader
+ * will return. */
 static he_status settle(he_reader *reader, he_status status, const he_error *failure, he_error *err)
 {
     if (status != HE_OK) {

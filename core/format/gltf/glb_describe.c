@@ -173,7 +173,7 @@ static bool same_mesh(const he_glb_group *a, const he_glb_group *b)
            a->label[HE_GLB_GROUP] == b->label[HE_GLB_GROUP];
 }
 
-/* Returns true if group i is the first group of its glTF mesh. */
+/* Returns true if group i of the faces is the first group in its glTF mesh. */
 static bool begins_mesh(const he_glb_parts *g, size_t i)
 {
     return i == 0 || !same_mesh(&g->groups.list[i], &g->groups.list[i - 1]);
@@ -188,8 +188,9 @@ static size_t count_meshes(const he_glb_parts *g)
     return count == 0 ? 1 : count;
 }
 
-/* Returns the name of a node. A node gets the name of its faces' object, and its mesh the name of
- * their group; if one of these names is empty, both get the other one. */
+/* Returns the name of a glTF node, which is the object that its faces belong to. The node's mesh
+ * has the name of the group that the faces belong to. If one of these two names is empty, node
+ * and mesh both get the other name. */
 static const char *name_of_node(const he_glb_parts *g, const he_glb_group *group)
 {
     const char *object = he_glb_name(&g->groups, group, HE_GLB_OBJECT);
@@ -217,8 +218,8 @@ static void put_nodes(text *t, const he_glb_parts *g)
     put_text(t, mesh > 0 ? "]" : "{\"mesh\":0}]");
 }
 
-/* Writes one mesh with one primitive, for a file whose faces are all in one group. The primitive
- * then has the extras that describe all faces. */
+/* Writes one glTF mesh with one primitive, for a file whose faces are all in one group. The
+ * extras (data of the application) of this primitive then describe all faces. */
 static void put_one_mesh(text *t, const he_glb_parts *g)
 {
     put_text(t, ",\"meshes\":[{");
@@ -281,8 +282,9 @@ static void put_color(text *t, const char *name, const double *numbers, size_t c
     put_text(t, "]");
 }
 
-/* Returns the smallest power of two, from 1 on, that no component of the emission exceeds. Dividing
- * by a power of two is exact, so the factors in the file are exact. */
+/* Returns the smallest power of two, at least 1, that no component of a material's emission
+ * exceeds. The file has the emission divided by this power, and dividing by a power of two is
+ * exact. */
 static double strength_of(const he_look *look)
 {
     double strength = 1;
@@ -313,7 +315,8 @@ static void put_row(text *t, const he_material *row, bool *strong)
     put_text(t, look->two_sided ? ",\"doubleSided\":true}" : "}");
 }
 
-/* Writes the materials: the rows of the table, then the names without a row. */
+/* Writes the list of materials: first the rows of the mesh's table of materials, then the
+ * materials that have only a name and no row. */
 static void put_materials(text *t, const he_glb_parts *g, bool *strong)
 {
     const he_materials *table = he_mesh_materials(g->mesh);
@@ -359,8 +362,8 @@ static void put_names(text *t, const he_glb_parts *g)
     put_text(t, "]");
 }
 
-/* Writes the extras at the root. In a file with several groups of faces they describe how to make
- * one mesh of them again: see gltf_whole.h. */
+/* Writes the extras at the root of the JSON. In a file with several groups of faces, these
+ * extras describe how to make one mesh of the groups again: see gltf_whole.h. */
 static void put_root_extras(text *t, const he_glb_parts *g)
 {
     size_t order;
@@ -398,8 +401,8 @@ static void put_box(text *t, const he_mesh *m)
     put_text(t, "]");
 }
 
-/* Writes an accessor for each group of faces, whose elements are the group's range of the
- * triangles. */
+/* Writes an accessor for each group of faces. The elements of the accessor are the triangles of
+ * that group, a range of all triangles. */
 static void put_group_accessors(text *t, const he_glb_parts *g)
 {
     size_t triangles;

@@ -39,7 +39,7 @@ typedef struct finding {
     const he_mesh *mesh;
     he_glb_groups *groups;
     uint32_t *of;    /* group of each face */
-    uint32_t *slots; /* hash table: number of a group + 1, or 0 in a free slot */
+    uint32_t *slots; /* hash table: a slot has the number of a group + 1, a free slot 0 */
 } finding;
 
 enum { SLOTS = 4 * HE_GLB_PRIMITIVES };
@@ -53,7 +53,8 @@ static uint32_t label_of(const he_column *column, uint32_t face)
     return label;
 }
 
-/* Finds the group of a face, or makes it. Returns false if there are too many groups. */
+/* Finds the group to which a face belongs, or makes a new group. Returns false if there are too
+ * many groups. */
 static bool find_group(finding *f, uint32_t face, uint32_t *out)
 {
     he_glb_groups *g = f->groups;
@@ -100,8 +101,9 @@ static bool find_groups(finding *f)
 /* --- their order --- */
 
 typedef struct placed {
-    /* The first group of faces with the same object, the first one with the same object and group,
-     * and the group of faces itself. */
+    /* Numbers of three groups of faces: `group` is the one to be sorted; `object` is the first
+     * one with an equal attribute object; `mesh` is the first one with equal attributes object
+     * and group. */
     uint32_t object, mesh, group;
 } placed;
 
@@ -117,8 +119,8 @@ static int compare(const void *left, const void *right)
     return a->group < b->group ? -1 : a->group > b->group;
 }
 
-/* Sorts the groups of faces so that those with the same object and group follow each other, in the
- * order of their first faces. Sets rank[i] to the new number of group i. */
+/* Sorts the groups of faces so that those with equal attributes object and group follow each
+ * other, in the order of their first faces. Sets rank[i] to the new number of group i. */
 static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
 {
     placed *places = he_mem_array(NULL, g->count, sizeof *places);

@@ -5,10 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A file with at most this many vertices has 16-bit indices. The largest index is excluded because
- * it restarts a strip. */
+/* A file with at most this many vertices has 16-bit indices. The largest 16-bit number is not
+ * used as an index, because in glTF it restarts a strip of triangles. */
 enum { SHORT_VERTICES = UINT16_MAX };
-/* The most attributes with one semantic, such as TEXCOORD_0 to TEXCOORD_7. */
+/* The most attributes that are written under one semantic (the meaning that glTF gives to an
+ * attribute), such as TEXCOORD_0 to TEXCOORD_7. */
 enum { MOST_NUMBERS = 8 };
 
 uint64_t he_glb_part_bytes(const he_glb_part *part)
@@ -54,8 +55,8 @@ static bool all_below(const he_column *column, double end)
     return true;
 }
 
-/* Returns true if the column is the attribute for this number of a semantic: `uv` for TEXCOORD_0,
- * `uv1` for TEXCOORD_1. */
+/* Returns true if the column has the name and the components of attribute `number` of a
+ * semantic: TEXCOORD_0 is written from the column `uv`, TEXCOORD_1 from `uv1`. */
 static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsigned number)
 {
     char name[HE_COLUMN_NAME];
@@ -64,8 +65,8 @@ static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsi
            column->components <= s->most;
 }
 
-/* Returns the glTF component type in which a column is written under a semantic; 0 if it cannot be
- * written so. */
+/* Returns the glTF component type in which a column is written under a semantic; 0 if the column
+ * cannot be written under this semantic. */
 static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf_semantic *s)
 {
     uint64_t lost;
@@ -79,16 +80,17 @@ static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf
     return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
-/* Returns the component type in which a column is written as the attribute of this number of a
- * semantic, such as TEXCOORD_1; 0 if it cannot be written so. */
+/* Returns the component type in which a column is written as attribute `number` of a semantic,
+ * such as TEXCOORD_1; 0 if the column cannot be written as this attribute. */
 static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
                         unsigned number)
 {
     return column->labels == NULL && is_numbered(column, s, number) ? type_of(m, column, s) : 0;
 }
 
-/* Returns the column that is written as the attribute of this number of a semantic, NULL if there
- * is none. An attribute of corners takes precedence over one of vertices. */
+/* Returns the column that is written as attribute `number` of a semantic, such as TEXCOORD_1;
+ * NULL if there is no such column. An attribute of corners takes precedence over one of
+ * vertices. */
 static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
 {
     static const he_kind domains[] = {HE_HALFEDGE, HE_VERTEX};
@@ -104,8 +106,8 @@ static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, 
     return NULL;
 }
 
-/* Returns how many attributes of a semantic can be written: their numbers may have no gap, and
- * joints need weights. */
+/* Returns how many attributes of a semantic can be written. Their numbers may have no gap:
+ * TEXCOORD_1 needs TEXCOORD_0. Joints need weights of the same number. */
 static unsigned count_numbers(const he_mesh *m, const he_gltf_semantic *s)
 {
     const he_gltf_semantic *partner = &he_gltf_semantics[s->partner];
@@ -132,9 +134,9 @@ static bool has_corner_namesake(const he_mesh *m, const he_column *column)
     return he_mesh_find_column(m, HE_HALFEDGE, column->name) != NULL;
 }
 
-/* Finds the semantic of a column. A column whose number cannot be written under its semantic gets a
- * name of its own, such as _uv1, from which its old name is read back; joints, which are whole
- * numbers, are then stored in extras. */
+/* Finds the glTF semantic of a column. The column uv1 cannot be TEXCOORD_1 in a file without
+ * TEXCOORD_0; such a column gets a name of its own, _uv1, which is read back as uv1. Joints
+ * without weights, which are whole numbers, are then stored in extras. */
 static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANTICS],
                           const he_column *column, he_glb_part *part)
 {
@@ -182,7 +184,8 @@ static bool comes_back(const he_mesh *m, const he_glb_part *part)
     return true;
 }
 
-/* Returns true if a reader will make an equal column of this part. */
+/* Returns true if a reader of the file will make of this part a column equal to the one that is
+ * written. */
 static bool is_exact(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -258,8 +261,8 @@ static void add_words(he_glb_parts *g, const he_column *column, he_warnings *war
                                      .length = (size_t)length});
 }
 
-/* Adds the attributes that all programs read. Those that only hedge reads follow the triangles, see
- * add_rest. */
+/* Adds a part for each attribute that all programs read. The attributes that only hedge reads
+ * are added after the triangles, by add_rest. */
 static void add_values(he_glb_parts *g, he_warnings *warnings)
 {
     const he_mesh *m = g->mesh;

@@ -17,39 +17,41 @@ typedef enum he_glb_content {
     HE_GLB_POSITIONS, /* three floats a vertex */
     HE_GLB_VALUES,    /* an attribute of vertices or corners in a type of glTF */
     HE_GLB_TRIANGLES,
-    HE_GLB_COPIES,  /* number of the original of each copied vertex (splits.h) */
+    HE_GLB_COPIES,  /* number of the vertex that each copy was made from (splits.h) */
     HE_GLB_DEGREES, /* degrees of faces */
-    HE_GLB_CORNERS, /* vertices of the corners of faces */
-    HE_GLB_ORDER,   /* number of each face in the order of ids; faces are in the file's order */
-    HE_GLB_WORDS    /* an attribute as it is in memory, but each bool takes a word */
+    HE_GLB_CORNERS, /* the vertex at each corner of each face */
+    HE_GLB_ORDER,   /* for each face that the file has, its number in the order of face ids */
+    HE_GLB_WORDS    /* an attribute as it is in memory, but each bool takes 32 bits */
 } he_glb_content;
 
 typedef struct he_glb_part {
     he_glb_content content;
     const he_column *column;           /* for values and words */
-    char semantic[HE_COLUMN_NAME + 2]; /* glTF name of positions and values, else "" */
+    char semantic[HE_COLUMN_NAME + 2]; /* name in glTF, such as "NORMAL"; "" if the part has neither
+                                          positions nor values */
     unsigned type;                     /* the componentType of the accessor */
     uint32_t components;               /* components of an element of the accessor */
     bool normalized;
-    he_gltf_role role; /* role of values, HE_GLTF_SEMANTICS if they have none */
+    he_gltf_role role; /* attribute of glTF that the values are; HE_GLTF_SEMANTICS if none */
     uint64_t count;    /* elements of the accessor */
     uint32_t stride;   /* bytes from one element to the next */
     uint64_t offset;   /* offset in the buffer, a multiple of 4 */
-    uint64_t packed_at,
-        packed; /* offset and length of the compressed stream in the file's buffer */
+    uint64_t packed_at, packed; /* `packed_at` is the offset in the file's buffer of the compressed
+                                   part, `packed` is its length */
 } he_glb_part;
 
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
-    uint32_t *numbers; /* number of each vertex in the file, NULL if it is the id */
+    uint32_t *numbers; /* number of each vertex in the file; NULL if the ids are the numbers */
     he_splits splits;  /* copies of vertices whose corners have different values */
     he_export_triangles cuts;
     he_glb_groups groups; /* groups of faces */
     he_glb_part *parts;
     size_t count, capacity;
     uint64_t bytes; /* bytes of the buffer, a multiple of 4 */
-    bool packs;     /* parts are compressed; `streams` has them, each padded to a multiple of 4 */
+    bool packs;     /* parts are compressed; `streams` has the compressed parts, each padded to a
+                       multiple of 4 bytes */
     unsigned char *streams;
     size_t streams_length, streams_capacity;
     char *json;
@@ -63,18 +65,18 @@ typedef struct he_glb_parts {
 HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_progress *progress,
                                          he_warnings *warnings, he_glb_parts *out, he_error *err);
 void he_glb_parts_clear(he_glb_parts *parts);
-/* Returns the bytes of a part without its padding to a multiple of 4. */
+/* Returns the number of bytes of a part, without its padding to a multiple of 4. */
 uint64_t he_glb_part_bytes(const he_glb_part *part);
 
 /* Returns the layout of the stream into which a part is compressed. */
 he_meshopt_stream he_glb_part_stream(const he_glb_part *part);
-/* Compresses a part; `bytes` are its elements, indices of triangles as uint32_t (see
- * he_meshopt_encode). Parts must be compressed in their order.
+/* Compresses a part. `bytes` has the elements of the part; if they are indices of triangles, they
+ * must be uint32_t (see he_meshopt_encode). Parts must be compressed in the order of their numbers.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_glb_pack(he_glb_parts *parts, he_glb_part *part, const void *bytes,
                                    he_error *err);
 
-/* Writes the JSON. All parts must be complete.
+/* Writes the JSON that describes the parts of the file, which must be complete.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_LIMIT if the length of the file does not fit into 32 bits, as a GLB requires. */
 HE_NODISCARD he_status he_glb_describe(he_glb_parts *parts, he_error *err);

@@ -1,9 +1,9 @@
-/* gltf.h - glTF 2.0, as GLB (the binary container) and as JSON: the functions of both rows in
- * format.c. What is "noted" is reported as a warning (warnings.h).
+/* gltf.h - glTF 2.0: the functions for two rows of the table of formats (format.c), for GLB, the
+ * binary container, and for JSON. What is "noted" is reported as a warning (warnings.h).
  *
  *     "glTF" 2 length            twelve bytes
  *     length "JSON" ...          a chunk: the asset
- *     length "BIN\0" ...         a chunk that may be missing: its buffer 0
+ *     length "BIN\0" ...         a chunk that may be missing: buffer 0 of the asset
  *
  * A length that is no multiple of 4 is noted; the next chunk may then follow directly, or aligned.
  *
@@ -29,18 +29,18 @@
  * KHR_mesh_quantization; nodes that are reached twice or are inside themselves; and scenes that
  * take more memory than gltf_asset.h allows. Errors name the byte, and the path in the JSON.
  *
- * WRITING. There is a mesh for each object and group of faces, and in it a primitive for each
- * material. All primitives share all vertices, which are floats in the order of ids; each has its
- * own triangles (glb_groups.h). The materials are the rows of the table and the names that have no
- * row. normal, tangent, uv, color, joints and weights of vertices, and other attributes of floats,
- * are glTF attributes of the names under which they are read. Attributes of corners with one of
- * these six names are written too, and take precedence over attributes of vertices with that name:
- * if corners of a vertex differ, copies of it follow all vertices (splits.h). All other attributes,
- * and those of faces and corners, are in extras, unless glTF preserves them exactly. So are
- * polygons, and which vertices are copies. Numbers of semantics have no gaps and joints have
- * weights; an attribute that would break this has a name of its own, such as _uv1 without uv. Other
- * programs ignore extras; hedge reads back everything except the last digits of positions, and
- * attributes of edges and of the mesh.
+ * WRITING. The file has a mesh for each object and group of faces, and in this mesh a primitive for
+ * each material. All primitives share all vertices, which are floats in the order of ids; each has
+ * its own triangles (glb_groups.h). The materials are the rows of the table and the names that have
+ * no row. normal, tangent, uv, color, joints and weights of vertices, and other attributes of
+ * floats, are glTF attributes of the names under which they are read. Attributes of corners with
+ * one of these six names are written too, and take precedence over attributes of vertices with that
+ * name: if corners of a vertex differ, copies of it follow all vertices (splits.h). All other
+ * attributes, and those of faces and corners, are in extras, unless glTF preserves them exactly.
+ * Extras also have the polygons, and say which vertices are copies. glTF allows TEXCOORD_1 only
+ * with TEXCOORD_0, and joints only with weights; an attribute that would break this gets a name of
+ * its own, such as _uv1 for uv1 without uv. Other programs ignore extras; hedge reads back
+ * everything except the last digits of positions, and attributes of edges and of the mesh.
  *
  * The encoding "meshopt" is compressed by EXT_meshopt_compression; all compressed data is in memory
  * before the first byte is written. No number is rounded, but a triangle may begin at another of

@@ -93,11 +93,11 @@ static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he
 typedef struct layout {
     uint64_t count;
     size_t size;      /* bytes of an element */
-    size_t alignment; /* bytes of a number in it */
+    size_t alignment; /* bytes of each number of an element */
 } layout;
 
-/* Finds the bytes of the elements to which a JSON object refers. Nothing overflows 64 bits: all
- * numbers are at most 2^53, and a stride is below 2^8. */
+/* Finds the bytes of the elements to which a JSON object refers. No computation overflows 64
+ * bits: all numbers are at most 2^53, and a stride is below 2^8. */
 static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span *out,
                           he_error *err)
 {
@@ -150,8 +150,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span
     return HE_OK;
 }
 
-/* Checks the indices of the elements that a sparse accessor replaces. They must rise, because a
- * walk over the elements meets them in rising order. */
+/* Checks the indices of the elements that a sparse accessor replaces. The indices must rise,
+ * because a walk over the elements meets them in rising order. */
 static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {
@@ -215,8 +215,8 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
         return status;
     }
     a->changed_value = found.bytes;
-    /* The changed elements are charged to the asset's limit, because they are visited whenever the
-     * accessor is used. */
+    /* The changed elements are charged to the asset's limit of memory, because the reader visits
+     * them whenever it uses the accessor. */
     status = he_gltf_spend(asset, sparse, a->changed, err);
     return status == HE_OK ? check_changed(asset, a, sparse, err) : status;
 }

@@ -17,8 +17,9 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
                                      .at = he_json_place(&asset->json, place)});
 }
 
-/* Reports progress. How much work there is in all is not known, so the fraction only approaches 1:
- * it is one half after a step for each 16 bytes of the file. Few files take fewer steps. */
+/* Reports progress. The number of steps that reading will take is not known, so the fraction
+ * that is reported only approaches 1: it is one half when a step was made for each 16 bytes of
+ * the file. Few files take fewer steps than that. */
 he_status he_gltf_tell(he_gltf *asset, he_error *err)
 {
     asset->told = asset->steps;
@@ -53,7 +54,7 @@ he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value, const
                             (unsigned long long)index, list->count);
     }
     *item = list->ids[index];
-    /* The caller visits all members of the item, so their number is charged to the asset's
+    /* The caller visits all members of the item, so memory for each is charged to the asset's
      * limit. */
     return he_gltf_spend(asset, value, 8 * he_json_span(&asset->json, *item), err);
 }
@@ -141,7 +142,7 @@ static bool begins_with_any(const he_json *json, uint32_t name, const char *cons
 static he_status check_extensions(he_gltf *asset, he_error *err)
 {
     /* The prefixes of extensions that change how a surface looks, not its geometry: they may be
-     * ignored even if they are required. */
+     * ignored even if the asset requires them. */
     static const char *const looks[] = {"KHR_materials_",
                                         "KHR_texture_",
                                         "EXT_texture_",
@@ -185,8 +186,8 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     return HE_OK;
 }
 
-/* Warns about images, which a mesh cannot store. Their files are marked as used, so that there is
- * no second warning that nothing refers to them. */
+/* Warns about images, which a mesh cannot store. The files of images are marked as used, so that
+ * there is no second warning that nothing refers to these files. */
 static void note_images(he_gltf *asset)
 {
     const he_json *json = &asset->json;

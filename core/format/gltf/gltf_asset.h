@@ -28,22 +28,25 @@ typedef struct he_gltf_buffer {
     const unsigned char *bytes; /* NULL if it is a fallback buffer whose file did not come */
     unsigned char *own;         /* the memory to free, if the bytes were decoded or decompressed */
     uint64_t length;
-    uint64_t start; /* offset in the asset's buffer, if this is a part of one */
-    uint64_t place; /* offset of its first byte in the input, or HE_GLTF_NOWHERE */
+    uint64_t start; /* offset in a buffer of the asset, if these bytes are a part of that buffer */
+    uint64_t place; /* offset of the first byte in the input; HE_GLTF_NOWHERE if the bytes are not
+                       in the input */
 } he_gltf_buffer;
 
 typedef struct he_gltf {
     he_import *into;
     he_json json;
-    he_ids accessors, views, nodes, meshes, materials; /* JSON values of the objects, by index */
+    he_ids accessors, views, nodes, meshes,
+        materials; /* JSON objects of each kind, by index in the asset */
     he_gltf_buffer *buffers;
     size_t buffer_count;
-    he_gltf_buffer *unpacked; /* one for each view; NULL before the first view is decompressed */
+    he_gltf_buffer *unpacked; /* the decompressed bytes of each view; NULL before the first view is
+                                 decompressed */
     bool quantized;           /* KHR_mesh_quantization is used */
     uint64_t room;            /* bytes of memory that the soup may still take */
-    uint64_t unpack_room;     /* bytes to which views may still decompress */
+    uint64_t unpack_room;     /* bytes that views may still take when decompressed */
     uint64_t size;            /* bytes of the input */
-    uint64_t steps, told;     /* steps of work; steps when progress was last reported */
+    uint64_t steps, told;     /* `steps` of work are done, of which `told` were reported */
 } he_gltf;
 
 /* The BIN chunk of a GLB file; `bytes` is NULL if the file has none. */
@@ -56,7 +59,7 @@ typedef struct he_gltf_bin {
 typedef struct he_gltf_text {
     const char *bytes;
     size_t length;
-    uint64_t place; /* where it begins in the file */
+    uint64_t place; /* offset of the text in the file */
 } he_gltf_text;
 
 /* Parses a glTF asset and checks its version, extensions and buffers. `text` and `bin` must outlive
@@ -73,8 +76,8 @@ void he_gltf_close(he_gltf *asset);
 
 /* Opens the buffers. */
 HE_NODISCARD he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err);
-/* Decompresses a buffer view, which is a value of the JSON; the object `extension` says how it is
- * compressed.
+/* Decompresses a buffer view. `view` is its JSON object; the JSON object `extension` says how the
+ * view is compressed.
  * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if the view is not valid.
  * Returns HE_LIMIT if the asset would decompress to too many bytes.
  * Returns HE_NO_MEMORY if memory is out.
@@ -85,45 +88,47 @@ HE_NODISCARD he_status he_gltf_unpack(he_gltf *asset, uint32_t view, uint32_t ex
  * Returns HE_BAD_INDEX or HE_BAD_VALUE if there are no such bytes. */
 HE_NODISCARD he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *out,
                                            he_error *err);
-/* Lists the objects in an array that is a member of the root of the JSON. */
+/* Lists the objects in the array `name`, which is a member of the outermost object of the JSON. */
 HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err);
-/* Adds a warning about the JSON value `place`. Its subject is the JSON string `subject`, unless
- * that is HE_NONE. */
+/* Adds a warning about the JSON value `place`. The subject of the warning is the JSON string
+ * `subject`, unless `subject` is HE_NONE. */
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
 
 /* Reports progress.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
-/* Must be called for each element that is visited; reports progress once in
+/* The caller must call this function for each element that it visits. Progress is reported once in
  * HE_PROGRESS_STRIDE calls.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD static inline he_status he_gltf_poll(he_gltf *asset, he_error *err)
 {
     return ++asset->steps - asset->told < HE_PROGRESS_STRIDE ? HE_OK : he_gltf_tell(asset, err);
 }
-/* Charges `bytes` of memory that reading the asset takes against the asset's limit.
- * Returns HE_LIMIT, naming `value`, if the asset may not take so many. */
+/* Subtracts `bytes` from the memory that reading the asset may still take.
+ * Returns HE_LIMIT, naming the JSON value `value`, if less memory than that is left. */
 HE_NODISCARD he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err);
-/* Finds the item of `list` whose index is the number at `value`. `what` is the name of such an
- * item, for messages.
+/* Finds the item of `list` whose index is the JSON number at `value`. Messages call the item by the
+ * word `what`, such as "buffer view".
  * Returns HE_BAD_INDEX if there is no such item. */
 HE_NODISCARD he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value,
                                     const char *what, uint32_t *item, he_error *err);
-/* A range of whole numbers, with both ends. */
+/* The whole numbers from `least` to `most`, both included. */
 typedef struct he_gltf_range {
     uint64_t least, most;
 } he_gltf_range;
 
-/* Reads a member that must exist and be a whole number in a range.
+/* Reads the member `name` of a JSON object, which must exist and be a whole number in a range.
  * Returns HE_BAD_VALUE if the member does not exist or is not in the range. */
 HE_NODISCARD he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name,
                                     he_gltf_range range, uint64_t *out, he_error *err);
-/* Reads a member that is a whole number in a range, or 0 if the member is missing.
- * Returns HE_BAD_VALUE if the number is out of range. */
+/* Reads the member `name` of a JSON object: a whole number up to `most`, or 0 if the member is
+ * missing.
+ * Returns HE_BAD_VALUE if the member is not such a number. */
 HE_NODISCARD he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name,
                                    uint64_t most, uint64_t *out, he_error *err);
-/* Finds an array that is a member of `object`; HE_NONE if there is no such member.
+/* Finds the array `name` that is a member of `object`; *out becomes HE_NONE if there is no such
+ * member.
  * Returns HE_BAD_VALUE if the member is no array. */
 HE_NODISCARD he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name,
                                      uint32_t *out, he_error *err);
@@ -139,7 +144,8 @@ typedef enum he_gltf_type {
 
 size_t he_gltf_type_bytes(he_gltf_type type);
 
-/* An accessor: elements of numbers, which were checked to be inside their buffers. */
+/* An accessor: a list of elements, each of one or more numbers. The elements were checked to be
+ * inside their buffers. */
 typedef struct he_gltf_accessor {
     uint32_t value; /* the accessor's object in the JSON */
     he_gltf_type type;
@@ -149,18 +155,20 @@ typedef struct he_gltf_accessor {
     uint64_t count;
     const unsigned char *bytes; /* NULL if all elements are zero */
     size_t stride;
-    uint64_t place;   /* offset of the first element in the input, or HE_GLTF_NOWHERE */
+    uint64_t place; /* offset of the first element in the input; HE_GLTF_NOWHERE if the elements are
+                       not in the input */
     uint64_t changed; /* number of elements that a sparse accessor replaces */
     const unsigned char *changed_index, *changed_value;
-    he_gltf_type changed_type; /* type of the indices of replaced elements, which rise */
+    he_gltf_type changed_type; /* type of the indices of replaced elements; the indices are in
+                                  rising order */
 } he_gltf_accessor;
 
-/* Returns the value of the extension EXT_meshopt_compression in a view or buffer, HE_NONE if it has
- * none. */
+/* he_gltf_meshopt returns the JSON value of the extension EXT_meshopt_compression in a view or
+ * buffer; HE_NONE if the view or buffer does not have the extension. */
 #define HE_GLTF_MESHOPT "EXT_meshopt_compression"
 uint32_t he_gltf_meshopt(const he_gltf *asset, uint32_t object);
 
-/* Finds the accessor whose index is the number at `value`, and checks it.
+/* Finds the accessor whose index is the JSON number at `value`, and checks the accessor.
  * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if the accessor is not valid. */
 HE_NODISCARD he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor *out,
                                             he_error *err);

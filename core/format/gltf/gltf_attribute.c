@@ -41,7 +41,8 @@ he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *co
     return status == HE_OK ? he_column_extend(column, rows, err) : status;
 }
 
-/* Reads a number that is the rest of a name: at most three digits, and no leading 0. */
+/* Reads the number at the end of an attribute's name, such as 1 in TEXCOORD_1: at most three
+ * digits, and no leading 0. */
 static bool read_number(const char *p, unsigned *number)
 {
     unsigned value = 0;
@@ -53,8 +54,8 @@ static bool read_number(const char *p, unsigned *number)
     return p > begin && *p == '\0' && (*begin != '0' || p == begin + 1);
 }
 
-/* Finds the name that an attribute with this semantic of glTF gets in the mesh. Returns false if it
- * gets none. */
+/* Finds the name that an attribute gets in the mesh; `semantic` is the attribute's name in glTF,
+ * such as TEXCOORD_1. Returns false if the attribute cannot be stored in a mesh. */
 static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
                            const he_gltf_semantic **known)
 {
@@ -199,8 +200,8 @@ static bool is_direction(const he_gltf_semantic *known)
     return role_of(known) == HE_GLTF_NORMAL || role_of(known) == HE_GLTF_TANGENT;
 }
 
-/* Checks the component type of directions: they must be floats, or a type that
- * KHR_mesh_quantization allows. */
+/* Checks the component type of an attribute. Normals and tangents must be floats, or have a type
+ * that KHR_mesh_quantization allows. */
 static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                             const he_gltf_semantic *known, he_error *err)
 {
@@ -218,8 +219,9 @@ static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
 typedef struct attribute {
     char semantic[HE_COLUMN_NAME + 2]; /* its name in the file */
     he_gltf_accessor values;
-    const he_gltf_semantic *known; /* NULL if the semantic is none of those of glTF */
-    he_column *column;             /* into which it is read; NULL if there can be none */
+    const he_gltf_semantic *known; /* NULL if glTF does not define this semantic */
+    he_column *column; /* the column of the mesh into which the attribute is read; NULL if it is not
+                          read */
 } attribute;
 
 /* Finds or makes the column into which an attribute is read. */
@@ -246,7 +248,7 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
     const he_column *corners = he_gltf_find_column(soup, HE_HALFEDGE, name);
     if (p->exact && corners != NULL && corners->rows > p->first_corner) {
-        return HE_OK; /* the extras have it already, for vertices and their copies */
+        return HE_OK; /* the attribute was read from extras already, also for copies of vertices */
     }
     if (column != NULL && column->rows > p->first_vertex) {
         if (!p->exact) {

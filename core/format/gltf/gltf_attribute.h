@@ -1,7 +1,7 @@
 /* gltf_attribute.h - reads the attributes of a primitive as attributes of vertices.
  *
  *     NORMAL, TANGENT      normal, tangent, transformed by the node
- *     TEXCOORD_0, _1 ...   uv, uv1 ...: v runs down in glTF and up in a mesh, so that it is 1 - v
+ *     TEXCOORD_0, _1 ...   uv, uv1 ...: v runs down in glTF and up in a mesh, so v is read as 1 - v
  *     COLOR_0, _1 ...      color, color1 ...: fractions, also from normalized integers
  *     JOINTS_0, _1 ...     joints, joints1 ...
  *     WEIGHTS_0, _1 ...    weights, weights1 ...
@@ -17,25 +17,25 @@
 
 /* A primitive that is being read. */
 typedef struct he_gltf_primitive {
-    uint32_t value, attributes; /* JSON values of the primitive and of its attributes */
+    uint32_t value, attributes; /* JSON values of the primitive and of its member attributes */
     const he_gltf_frame *frame;
     bool still;  /* the frame is the identity */
-    bool mirror; /* the frame turns right-handed axes into left-handed ones */
+    bool mirror; /* the frame mirrors: it turns right-handed axes into left-handed ones */
     bool indexed;
     uint64_t mode;
     he_gltf_accessor positions, indices;
-    uint64_t faces;    /* number of triangles */
-    uint64_t vertices; /* vertices that the soup gets: the first ones of the positions; the other
-                          positions are those of copies */
-    he_gltf_accessor copies; /* the vertex of which each copy is one, if there are copies */
+    uint64_t faces;          /* number of triangles */
+    uint64_t vertices;       /* number of vertices that the soup gets, at the first positions; the
+                                positions after them are those of copies of these vertices */
+    he_gltf_accessor copies; /* for each copy of a vertex, the vertex that was copied */
     bool private;            /* the extras are valid as far as they were read */
-    bool exact;              /* attributes read from extras take precedence */
+    bool exact;              /* attributes read from extras take precedence over those of glTF */
     bool polygons;           /* polygons from extras replace the triangles */
     uint32_t first_vertex, first_face, first_corner; /* first rows in the soup */
 } he_gltf_primitive;
 
-/* Returns the vertex of the mesh for an index of the primitive, which must be below its number of
- * positions. */
+/* Returns the vertex for position `index` of the primitive; for the position of a copy, the
+ * vertex that was copied. `index` must be below the number of positions. */
 static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index)
 {
     return index < p->vertices
@@ -61,7 +61,7 @@ HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, 
                                       size_t end, he_error *err);
 
 typedef enum he_gltf_role {
-    HE_GLTF_NORMAL, /* transformed by the node, as tangents are */
+    HE_GLTF_NORMAL, /* transformed by the matrix of the node, as tangents are */
     HE_GLTF_TANGENT,
     HE_GLTF_UV,    /* the second component v of glTF is 1 - v in a mesh */
     HE_GLTF_COLOR, /* written as bytes if bytes represent all values exactly */
@@ -77,7 +77,8 @@ typedef struct he_gltf_semantic {
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
     he_gltf_role role;
-    he_gltf_role partner; /* the role without which it is not written; its own role if none */
+    he_gltf_role partner; /* an attribute of `role` is only written beside one of the role
+                             `partner`; equal to `role` if it needs no other */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
 

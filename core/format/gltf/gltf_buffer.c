@@ -8,7 +8,7 @@
 /* The number of base64 characters after which progress is reported; a multiple of four. */
 enum { PIECE = 1 << 16 };
 
-/* Decodes `length` characters of base64 to to->own, which has room for them. */
+/* Decodes `length` characters of base64 to to->own, which has room for the decoded bytes. */
 static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
                         he_gltf_buffer *to, he_error *err)
 {
@@ -117,8 +117,8 @@ static bool is_fallback(const he_gltf *asset, uint32_t value)
     return he_json_type(&asset->json, flag) == 't';
 }
 
-/* Finds the bytes of a fallback buffer. They may be missing, because they are not used if all views
- * of the buffer are compressed. */
+/* Finds the bytes of a fallback buffer. The bytes may be missing, because hedge does not use
+ * them if all views of the buffer are compressed. */
 static he_status find_fallback(he_gltf *asset, size_t i, uint32_t value, he_error *err)
 {
     uint32_t uri = he_json_find(&asset->json, value, "uri");

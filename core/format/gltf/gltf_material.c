@@ -37,7 +37,8 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
                  "renamed with a number, because another has the same name: material", own);
         }
         number = number > FEW && number <= i ? (unsigned)i + 1
-                                             : number; /* a larger number is mostly free */
+                                             : number; /* after some tries, a number above that of
+                                                          all materials, which is mostly free */
         he_material_number_name(own, number, name);
     }
     return he_labels_add(names, name, strlen(name), &index, err);
@@ -142,7 +143,7 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
     he_material *row = NULL;
     uint32_t own = he_json_find(json, he_json_find(json, value, "extras"), "hedge");
     if (he_json_is(json, own, "name")) {
-        return HE_OK; /* hedge wrote this material, of which it knew only the name */
+        return HE_OK; /* hedge wrote this material for its name alone: the table gets no row */
     }
     if (table->count == HE_MATERIALS) {
         note(asset, value, "material_limit",

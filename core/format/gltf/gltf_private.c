@@ -25,8 +25,8 @@ static void note_stale(he_gltf_surface *s, uint32_t value)
             .at = he_json_place(&s->asset->json, value)});
 }
 
-/* Returns true if a failure is about memory, limits or cancellation and must be reported. Any other
- * failure only means that the extras are not valid, and they are ignored. */
+/* Returns true if a failure is about memory, limits or cancellation and must be reported. Any
+ * other failure only means that the extras are not valid; the reader then ignores them. */
 static bool is_serious(he_status status)
 {
     return status == HE_NO_MEMORY || status == HE_LIMIT || status == HE_CANCELLED;
@@ -61,9 +61,9 @@ typedef struct polygons {
     he_gltf_accessor degrees, corners;
 } polygons;
 
-/* Sets *fits to true if the triangles of each polygon, which are its degree - 2, have their corners
- * among those of the polygon, and no polygon has a vertex twice. `marks` has a word for each
- * vertex, 0 at first. Fails only if the work was cancelled. */
+/* A polygon of n corners was written as n - 2 triangles. Sets *fits to true if the corners of
+ * these triangles are corners of the polygon, and no polygon has a vertex twice. `marks` has a
+ * word for each vertex, 0 at first. Fails only if the work was cancelled. */
 static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
                                 uint32_t *marks, bool *fits, he_error *err)
 {
@@ -177,7 +177,7 @@ typedef struct description {
     he_rule rule;
     uint64_t components;
     uint64_t rows;
-    size_t first; /* the column's first row that the values go to */
+    size_t first; /* first row of the column that gets values */
     uint32_t labels;
     he_gltf_accessor words;
 } description;
@@ -219,8 +219,9 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     return status;
 }
 
-/* Reads the labels of a column. *fits becomes false if a label occurs twice, because a repeated
- * label would shift the indices of all labels after it. */
+/* Reads the labels of a column (names to which its values refer by index). *fits becomes false
+ * if a label occurs twice, because a repeated label would shift the indices of all labels after
+ * it. */
 static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, bool *fits,
                              he_error *err)
 {
@@ -261,8 +262,8 @@ static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, boo
     return HE_OK;
 }
 
-/* Reads one component of a value, from one or two words, and writes it to `at`. Returns false if
- * the words are no value of the type. */
+/* Converts one or two 32-bit words to one component of an attribute's value, and writes it to
+ * `at`. Returns false if the words are no value of the attribute's type. */
 static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
 {
     uint32_t word = next_word(walk);
@@ -292,8 +293,8 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
     return true;
 }
 
-/* Sets *fits to true if all words are values of the type and, in a column with labels, indices of
- * labels. Fails only if the work was cancelled. */
+/* Sets *fits to true if all 32-bit words are values of the column's type and, in a column with
+ * labels, indices of labels. Fails only if the work was cancelled. */
 static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
                               he_error *err)
 {
@@ -319,8 +320,9 @@ static he_status check_values(he_gltf *asset, const description *d, size_t label
     return HE_OK;
 }
 
-/* Returns true if there is a column that can take the values, or room for a new one. This is
- * checked before the values are read, so that each value of a file is read for one column. */
+/* Returns true if the soup has a column that can take the values, or room for a new column. The
+ * reader checks this before it reads the values, so that each value of a file is read for one
+ * column only. */
 static bool has_place(const he_gltf_surface *s, const description *d)
 {
     he_soup *soup = &s->asset->into->soup;
@@ -332,8 +334,8 @@ static bool has_place(const he_gltf_surface *s, const description *d)
            column->rows <= d->first && (column->labels == NULL) == (d->labels == HE_NONE);
 }
 
-/* Replaces the indices of labels, from row `first` on, by the indices that these labels have in the
- * column. */
+/* Replaces the indices into `labels` that the rows from `first` on contain by the indices that
+ * these labels have in the column. */
 static he_status renumber(he_column *column, size_t first, const he_labels *labels, he_error *err)
 {
     size_t count = he_labels_count(labels);
@@ -355,8 +357,8 @@ static he_status renumber(he_column *column, size_t first, const he_labels *labe
     return status;
 }
 
-/* If the column has the names of faces, notes that these faces have their names from the extras,
- * and not from nodes or materials. */
+/* If the column is the face attribute object or material, records that these faces have their
+ * names from the extras, and not from nodes or materials. */
 static he_status keep_names(he_gltf_surface *s, const description *d, he_error *err)
 {
     he_ids *named = strcmp(d->name, "object") == 0     ? &s->own_objects
@@ -424,8 +426,8 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
     fits = fits && has_place(s, &d);
     if (status == HE_OK && fits) {
-        /* The values are charged to the asset's limit, because they are visited even if they are
-         * not used. */
+        /* The values are charged to the asset's limit of memory, because all of them are read
+         * even if they are not used. */
         status = he_gltf_spend(s->asset, object, d.words.count * sizeof(uint32_t), err);
     }
     if (status == HE_OK && fits && d.labels != HE_NONE) {
@@ -451,8 +453,8 @@ static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
     return p->positions.bytes + i * p->positions.stride;
 }
 
-/* Sets *fits to false if a copy is not at the position of its vertex. Fails only if the work was
- * cancelled. */
+/* Sets *fits to false if a copy of a vertex is not at the position of the vertex that was
+ * copied. Fails only if the work was cancelled. */
 static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
                               const he_gltf_accessor *copies, bool *fits, he_error *err)
 {

@@ -9,16 +9,16 @@
  *
  * Numbers such as 3 are indices of accessors of UNSIGNED_INT SCALAR.
  *
- * The last vertices of the primitive may be copies of others, made because corners have different
- * values (io/splits.h). For each copy the accessor `copies` has the vertex of which it is one. The
- * mesh does not have the copies, and no index in these extras refers to them.
+ * The last vertices of the primitive may be copies of other vertices, made because corners at one
+ * vertex have different values (io/splits.h). For each copy the accessor `copies` has the vertex
+ * that was copied. The mesh does not get the copies, and no index in these extras refers to them.
  *
  * `degrees` has the degree of each polygon, `corners` the vertices of their corners. The triangles
  * for other programs are those into which the polygons were cut, in the order of the polygons.
  *
  * A column's accessor has the values of an attribute as they are in memory, little-endian (but a
- * bool takes a word): rows of the vertices, of the faces, or, with the domain "halfedge", of the
- * corners in the order of `corners`.
+ * bool takes a word): one for each vertex, for each face, or, with the domain "halfedge", for each
+ * corner in the order of `corners`.
  *
  * All extras are checked, because a program that changed the file may have kept them. Copies at
  * other positions than their vertices, polygons that do not match the triangles and columns of a

@@ -17,7 +17,8 @@ typedef struct block {
 
 typedef struct glb {
     he_import *into;
-    unsigned char head[HEADER]; /* the first bytes of an incomplete header of file or chunk */
+    unsigned char head[HEADER]; /* the first bytes of a header (of the file or a chunk) that is not
+                                   complete yet */
     size_t head_length;
     uint64_t offset; /* offset of the next byte */
     uint64_t length; /* length of the file, as its header says */

@@ -9,14 +9,15 @@
 /* A node whose children are being visited. */
 typedef struct level {
     he_gltf_frame frame;
-    uint32_t children, child; /* JSON array of the node's children; the next child, or HE_NONE */
+    uint32_t children, child; /* `children` is the JSON array of the node's children, `child` the
+                                 next one to visit or HE_NONE */
 } level;
 
 typedef struct scene {
     he_gltf *asset;
     he_gltf_surface surface;
-    uint64_t *visited, *used; /* bits for the nodes visited, and for the meshes used */
-    uint64_t instances;       /* how often a mesh was used that had been used before */
+    uint64_t *visited, *used; /* bits: nodes that were visited, and meshes that were used */
+    uint64_t instances;       /* how many nodes have a mesh that an earlier node has, too */
     level *levels;
     size_t depth, capacity;
 } scene;
@@ -40,7 +41,7 @@ static he_gltf_frame multiply(const he_gltf_frame *a, const he_gltf_frame *b)
 typedef struct numbers {
     const char *name;
     size_t count;
-    double *values; /* not changed if the member is missing */
+    double *values; /* where the numbers are stored; not changed if the member is missing */
     bool found;
 } numbers;
 
@@ -200,8 +201,8 @@ static he_status push(scene *s, const he_gltf_frame *frame, uint32_t children, u
     return HE_OK;
 }
 
-/* Visits node `index`: adds its mesh, and pushes its children. `value` is the JSON number that
- * refers to the node, which errors name. */
+/* Visits node `index`: adds its mesh, and pushes its children. Errors name the JSON number
+ * `value`, which refers to the node. */
 static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_frame *parent,
                        he_error *err)
 {
@@ -258,7 +259,7 @@ static he_status visit_rest(scene *s, he_error *err)
             continue;
         }
         uint32_t child = top->child;
-        he_gltf_frame frame = top->frame; /* a copy: the array of levels may move */
+        he_gltf_frame frame = top->frame; /* a copy, because s->levels may be reallocated */
         top->child = he_json_after(&s->asset->json, top->children, child);
         status = visit_named(s, child, &frame, err);
     }
@@ -337,8 +338,9 @@ static he_status find_parents(he_gltf *asset, parent *parents, he_error *err)
     return status;
 }
 
-/* Refuses a cycle of nodes. A node that no root leads to has a parent, and so has each of its
- * ancestors: going from parent to parent must therefore end in a cycle. */
+/* Refuses a cycle of nodes. A node that cannot be reached from a root (a node without a parent)
+ * has a parent, and so has each of its ancestors: going from parent to parent must therefore end
+ * in a cycle. */
 static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t node, he_error *err)
 {
     for (size_t i = 0; i < s->asset->nodes.count; i++) {

@@ -6,10 +6,10 @@
 
 enum { HE_GLTF_DEPTH = 1 << 16 }; /* most levels of nodes inside nodes */
 
-/* Fills the import with meshes: those of the scene that the asset's member `scene` names; without
- * this member those of the first scene; without scenes those of all nodes that are no children of
- * others; without nodes all meshes. The mesh of a node comes before those of its children, which
- * are in the order of the file. Returns the errors of he_gltf_add_mesh, too.
+/* Adds the meshes of one scene to the import: the scene that the asset's member `scene` names, or
+ * the first one if there is no such member. An asset without scenes gives the meshes of all its
+ * nodes; an asset without nodes gives all its meshes. The mesh of a node comes before those of its
+ * children, which are in the order of the file. Returns the errors of he_gltf_add_mesh, too.
  * Returns HE_BAD_VALUE if a node is reached twice or is inside itself.
  * Returns HE_BAD_INDEX if a reference is to nothing that exists.
  * Returns HE_LIMIT if a limit would be exceeded.

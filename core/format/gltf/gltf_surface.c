@@ -118,9 +118,9 @@ static he_status located(he_status status, uint64_t at, he_error *err)
 
 /* --- vertices and faces --- */
 
-/* Charges the memory that a primitive takes to the asset's limit: that of the soup, and that of
- * he_source_map, in which an element takes memory if its distance from the one before is
- * unusual. */
+/* Charges the memory that a primitive takes to the asset's limit: memory of the soup, and of
+ * he_source_map, in which an element takes memory if its distance in the file from the element
+ * before is unusual. */
 static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     he_import *into = s->asset->into;

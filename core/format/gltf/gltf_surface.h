@@ -21,9 +21,10 @@ typedef struct he_gltf_surface {
     he_gltf *asset;
     he_labels *names; /* names of the asset's materials, by their index */
     he_face_groups object, material;
-    he_ids own_objects,
-        own_materials; /* pairs: ranges of faces, from and to, whose names came from extras */
-    uint64_t given[HE_GLTF_ATTRIBUTES]; /* number of rows with a value in each column of the soup */
+    he_ids own_objects, own_materials;  /* ranges of faces whose names came from extras: pairs of a
+                                           first face and the face after the last */
+    uint64_t given[HE_GLTF_ATTRIBUTES]; /* number of rows of each column of the soup that got a
+                                           value from the file */
     uint64_t mirrored;                  /* number of faces that were reversed */
     bool begun;                         /* the import's he_source_map are initialised */
 } he_gltf_surface;

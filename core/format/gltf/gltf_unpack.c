@@ -54,15 +54,16 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
 
 /* --- compressed views --- */
 
-/* A member whose value is one of some words. */
+/* A member of a JSON object whose value must be one of `words`. */
 typedef struct choice {
     const char *name;
     const char *const *words;
     int count;
-    int absent; /* the word that a missing member stands for; -1 if it must not be missing */
+    int absent; /* index of the word that holds if the member is missing; -1 if it must exist */
 } choice;
 
-/* Reads a member that must be one of some words. *out becomes the index of the word. */
+/* Reads a member of a JSON object that must be one of the words of `c`. *out becomes the index
+ * of this word. */
 static he_status find_word(const he_gltf *asset, uint32_t object, const choice *c, int *out,
                            he_error *err)
 {

@@ -60,7 +60,8 @@ static bool read_indices(const he_gltf *asset, uint32_t primitive, indices *out)
            is_member(json, accessor, "count", &out->count);
 }
 
-/* Returns true if two JSON objects have the same names in the same order, with equal numbers. */
+/* Returns true if two JSON objects have members of equal names in the same order, and the values
+ * of these members are equal numbers. */
 static bool same_attributes(const he_json *json, uint32_t a, uint32_t b)
 {
     uint32_t i = he_json_first(json, a), k = he_json_first(json, b);
@@ -198,7 +199,8 @@ he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scene, bool *whol
 
 /* --- the order of faces --- */
 
-/* Reads the order of faces. Sets *fits to false unless each number below the count occurs once. */
+/* Reads the number that each face has in the mesh. Sets *fits to false unless each number below
+ * the number of faces occurs once. */
 static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t *order, bool *fits,
                             he_error *err)
 {
@@ -221,8 +223,8 @@ static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t 
     return status;
 }
 
-/* Sorts the positions of faces in the input into the order of the faces: face i becomes face
- * order[i]. */
+/* Renumbers the faces of a map that says where in the input each face begins: face i becomes
+ * face order[i]. */
 static he_status order_source_map(he_source_map *map, const uint32_t *order, size_t count,
                                   he_error *err)
 {

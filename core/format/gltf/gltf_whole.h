@@ -7,10 +7,10 @@
  *
  * are at the root of the asset. `primitive` has all faces (gltf_private.h), in the order of the
  * primitives of the scene, which are for other programs; `order`, an accessor of UNSIGNED_INT
- * SCALAR, has the number in the mesh of each of these faces. They are used if the scene is as hedge
- * wrote it: nodes have no transformations, primitives have the attributes of `primitive`, their
- * triangles are consecutive ranges of its triangles, and the materials have the names listed here.
- * Otherwise the scene is read like any other, with a warning. */
+ * SCALAR, has the number in the mesh of each of these faces. hedge uses these extras if the
+ * scene is as hedge wrote it: nodes have no transformations, primitives have the attributes of
+ * `primitive`, their triangles are consecutive ranges of its triangles, and the materials have
+ * the names listed here. Otherwise the scene is read like any other, with a warning. */
 #ifndef HE_FORMAT_GLTF_GLTF_WHOLE_H
 #define HE_FORMAT_GLTF_GLTF_WHOLE_H
 

@@ -15,8 +15,9 @@ enum { ELEMENT_ROOM = 128 };
 
 typedef struct glb_writer {
     he_glb_parts g;
-    uint32_t *at;    /* if vertices are split, the number that each has in the present face */
-    uint32_t *ranks; /* number of each face among the live faces, NULL if it is the id */
+    /* if vertices are split, the number in the file of each vertex of the present face */
+    uint32_t *at;
+    uint32_t *ranks; /* number of each face among the live faces; NULL if the ids are the numbers */
     stage stage;
     size_t json;       /* the next byte of the JSON */
     size_t part;       /* the part being written */
@@ -147,7 +148,8 @@ static uint32_t next_row(glb_writer *w, he_kind domain)
     return domain == HE_VERTEX ? next_vertex(w) : domain == HE_FACE ? next_face(w) : next_corner(w);
 }
 
-/* Sets the numbers that the vertices of a face have in it, because some may be copies. */
+/* Sets the numbers by which a face refers to its vertices: for some of them, the numbers of
+ * copies. */
 static void enter_face(const glb_writer *w, uint32_t face)
 {
     const he_content *c = &w->g.mesh->c;

@@ -10,8 +10,8 @@ const char *const he_meshopt_filters[HE_MESHOPT_FILTERS] = {"NONE", "OCTAHEDRAL"
 /* The first byte of a stream in each mode; it is combined with the version. */
 static const unsigned char marks[HE_MESHOPT_MODES] = {0xA0, 0xE0, 0xD0};
 
-/* Chooses the versions of the codecs that the extension uses. The library stores them for the whole
- * process, so they are set before other threads start. */
+/* Chooses the versions of the codecs that EXT_meshopt_compression requires. The library stores
+ * these versions for the whole process, so they are set before other threads start. */
 __attribute__((constructor)) static void choose_version(void)
 {
     meshopt_encodeVertexVersion(HE_MESHOPT_ATTRIBUTES_VERSION);
@@ -40,10 +40,10 @@ const char *he_meshopt_fits(const he_meshopt_stream *s)
     return NULL;
 }
 
-/* Returns the fewest bytes that a stream can have. All begin with a byte of mode and version.
- * Attributes then need, for each byte of an element, at least two bits for every 16 elements, and
- * the first element as a whole; triangles need one byte each and a table of 16 bytes; indices need
- * one byte each and 4 more. */
+/* Returns the fewest bytes that a stream can have. Every stream begins with a byte of mode and
+ * version. Attributes then need, for each byte of an element, at least two bits for every 16
+ * elements, and the first element as a whole; triangles need one byte each and a table of 16
+ * bytes; indices need one byte each and 4 more. */
 uint64_t he_meshopt_least(const he_meshopt_stream *s)
 {
     switch (s->mode) {

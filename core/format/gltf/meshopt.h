@@ -27,7 +27,7 @@ typedef enum he_meshopt_filter {
     HE_MESHOPT_FILTERS
 } he_meshopt_filter;
 
-/* The names of the modes and filters in the JSON of the extension. */
+/* The names that modes and filters have in the JSON of the extension EXT_meshopt_compression. */
 extern const char *const he_meshopt_modes[HE_MESHOPT_MODES];
 extern const char *const he_meshopt_filters[HE_MESHOPT_FILTERS];
 

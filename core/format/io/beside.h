@@ -17,11 +17,11 @@ typedef struct he_beside_file {
     const char *name;
     const char *bytes;
     size_t length;
-    bool used; /* a reader has looked it up */
+    bool used; /* a reader has looked up this file */
 } he_beside_file;
 
-/* The files that came together with the one that is read. The caller of the reader fills and keeps
- * this. */
+/* The files that came together with the one that is read. The caller of the reader fills and
+ * keeps this list. */
 typedef struct he_beside {
     he_beside_file *files;
     size_t count;

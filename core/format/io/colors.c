@@ -29,7 +29,8 @@ he_status he_colors_add(he_colors *colors, size_t element, const double *values,
     double *row = colors->rows[element];
     memcpy(row, values, count * sizeof *row);
     if (count == 3) {
-        row[3] = (double)NAN; /* no alpha was given; infinity means that no colour was given */
+        /* the colour has no alpha; infinity would mean that the element has no colour */
+        row[3] = (double)NAN;
     }
     for (size_t i = 0; i < 3; i++) {
         colors->broken = colors->broken || values[i] != floor(values[i]);

@@ -17,7 +17,8 @@
 /* {0} is empty. */
 typedef struct he_colors {
     double (*rows)[4];
-    size_t count, capacity; /* number of rows, one for each element up to the last with a colour */
+    size_t count, capacity; /* `count` rows, one for each element (vertex or face) up to the last
+                               that has a colour */
     size_t given;           /* number of elements that have a colour */
     bool fractions;         /* the format has no integers, or some number was not an integer */
     bool broken;            /* a number other than an alpha is not whole */
@@ -25,18 +26,18 @@ typedef struct he_colors {
 } he_colors;
 
 void he_colors_clear(he_colors *colors);
-/* Adds the colour of an element. Elements must come in order, and some may be left out. `count` is
- * the number of values, 3 or 4.
+/* Adds the colour of an element (a vertex or a face). Elements must come in order; those without a
+ * colour are left out. `count` is the number of values, 3 or 4.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_colors_add(he_colors *colors, size_t element, const double *values,
                                      size_t count, he_error *err);
-/* Makes the attribute for `elements` elements, if any had a colour. */
+/* Makes the colour attribute of all `elements` vertices or faces, if any of them has a colour. */
 HE_NODISCARD he_status he_colors_finish(const he_colors *colors, he_soup *soup,
                                         he_warnings *warnings, he_kind domain, size_t elements,
                                         he_error *err);
 
-/* Finds the attribute of colours to write; NULL unless it has floats or doubles in three or four
- * components. */
+/* Returns the attribute of colours that is to be written; NULL unless its values are three or
+ * four floats or doubles. */
 const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_warnings *warnings);
 /* Returns the byte that is nearest to a colour component between 0 and 1. */
 uint32_t he_color_byte(double component);

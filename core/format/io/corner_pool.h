@@ -11,11 +11,11 @@
 typedef struct he_corner_pool {
     double (*values)[3];
     size_t count, capacity;
-    /* The index of the value of each corner, HE_NONE if it has none. The list may be shorter than
-     * the number of corners. */
+    /* The index in the pool of each corner's value; HE_NONE for a corner without a value. The
+     * list may be shorter than the number of corners. */
     he_ids of;
     size_t named;     /* number of corners that have a value */
-    uint32_t highest; /* highest index that a corner refers to */
+    uint32_t highest; /* highest index of a value that a corner refers to */
 } he_corner_pool;
 
 void he_corner_pool_clear(he_corner_pool *pool);

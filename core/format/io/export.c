@@ -193,7 +193,7 @@ typedef struct table {
     const he_column *const *columns;
     size_t count;
     bool apart;
-    uint32_t *slots; /* number of a distinct value + 1, or 0 in a free slot */
+    uint32_t *slots; /* hash table: a slot has the number of a distinct value + 1, a free slot 0 */
     size_t mask;
 } table;
 

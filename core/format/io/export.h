@@ -9,9 +9,9 @@
 #include <float.h>
 #include <math.h>
 
-/* Returns the float nearest to a value, the largest float if the value is beyond it. The variable
- * is volatile because gcc 12.2 omits the rounding if it narrows and widens two values side by
- * side. */
+/* Returns the float nearest to a value; the largest float, with the sign of the value, if the
+ * value is beyond it. The variable is volatile because gcc 12.2 omits the rounding if it narrows
+ * and widens two values side by side. */
 static inline float he_narrow(double value)
 {
     volatile float narrow = (float)fmin(fmax(value, -(double)FLT_MAX), (double)FLT_MAX);
@@ -27,9 +27,11 @@ static inline bool he_are_floats(he_vec3 p)
     return he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z);
 }
 
-/* Counts the positions that are changed by writing them as floats. It begins with {0}. */
+/* Counts the positions that are changed by writing them as floats. The caller initialises it
+ * with {0}. */
 typedef struct he_narrowed {
-    uint64_t rounded, beyond; /* positions that are no floats; positions beyond the largest float */
+    uint64_t rounded, beyond; /* `rounded` counts the positions that no floats represent exactly,
+                                 `beyond` those beyond the largest float */
     uint32_t first;           /* first vertex of those beyond */
 } he_narrowed;
 
@@ -61,16 +63,17 @@ void he_export_note_materials(const he_mesh *mesh, he_warnings *warnings);
 double he_export_number(const he_column *column, size_t row, uint32_t component);
 /* Copies a text of any length to `to`, without its NUL, and returns the end of the copy. */
 char *he_export_text(const char *text, char *to);
-/* Writes one component of an attribute's value, at most HE_NUMBER_TEXT bytes, and returns the
- * end. */
+/* Writes one component of an attribute's value to `to`, at most HE_NUMBER_TEXT bytes, and
+ * returns the end of this text. */
 char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to);
-/* Writes a blank and a value for each component of a row, and returns the end. */
+/* Writes to `to` a blank and a number for each component of a row, and returns the end of this
+ * text. */
 char *he_export_row(const he_column *column, size_t row, char *to);
 
 /* The distinct values of attributes at all corners, compared bit by bit and numbered in the order
  * of faces, so that each is written to a file only once. */
 typedef struct he_distinct {
-    uint32_t *number; /* number of the value at each half-edge that has a face */
+    uint32_t *number; /* number of the value at the corner of each half-edge that has a face */
     he_ids first;     /* the first half-edge with each value, by the value's number */
 } he_distinct;
 

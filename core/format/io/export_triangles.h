@@ -11,7 +11,8 @@
 typedef struct he_export_triangles {
     const he_mesh *mesh;
     he_ids corners;            /* three vertices for each triangle into which a polygon was cut */
-    uint64_t polygons, turned; /* number of faces that were cut; of those with flipped triangles */
+    uint64_t polygons, turned; /* `polygons` counts the faces that were cut, `turned` those of them
+                                  that have flipped triangles */
     uint64_t steps;            /* steps of work that cutting took */
 } he_export_triangles;
 
@@ -25,7 +26,7 @@ void he_export_triangles_clear(he_export_triangles *triangles);
 /* Returns the number of triangles of all faces together. */
 uint64_t he_export_triangles_count(const he_export_triangles *triangles);
 
-/* A walk over all triangles, face by face. It begins with {0}. */
+/* A walk over all triangles, face by face. The caller initialises it with {0}. */
 typedef struct he_export_triangle_walk {
     uint32_t face; /* the next face, or the one being visited */
     uint32_t left; /* triangles of the face being visited that are still to come */

@@ -74,8 +74,8 @@ he_status he_face_groups_set_label(he_face_groups *groups, size_t face, const ch
             return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
         }
     }
-    /* Faces without a name have the value 0, so label 0 must be the empty name, even after a failed
-     * attempt. */
+    /* Faces without a name have the value 0, so label 0 must be the empty name, even if an
+     * earlier call failed before it was added. */
     if (he_labels_count(groups->labels) == 0) {
         status = he_labels_add(groups->labels, "", 0, &value, err);
     }
@@ -90,7 +90,8 @@ he_status he_line_name(const he_line *line, const char *p, he_warnings *warnings
 {
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
-    char *name = he_mem_alloc(3 * room); /* the name takes `room` bytes, twice that in UTF-8 */
+    /* `room` bytes for the name, and twice as many for the name in UTF-8 */
+    char *name = he_mem_alloc(3 * room);
     if (name == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);
     }
@@ -143,7 +144,7 @@ he_status he_face_groups_merge(he_face_groups *groups, size_t faces, he_column *
         status = he_column_extend(column, faces - column->rows, err);
     }
     for (size_t f = 0; f < faces && status == HE_OK;) {
-        if (k < own->count && f >= own->ids[k]) { /* skip the faces that have names of their own */
+        if (k < own->count && f >= own->ids[k]) { /* skip faces in `own`: they keep their names */
             f = own->ids[k + 1] > f ? own->ids[k + 1] : f;
             k += 2;
             continue;

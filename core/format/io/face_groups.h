@@ -26,14 +26,14 @@ HE_NODISCARD he_status he_face_groups_set_label(he_face_groups *groups, size_t f
                                                 const char *text, size_t length, he_error *err);
 /* A name that was read from a file. */
 typedef struct he_name {
-    const char *text; /* UTF-8, does not end in NUL; lies in `own` */
+    const char *text; /* the name in UTF-8, not ended by a NUL; points into `own` */
     size_t length;
     char *own; /* the caller frees it */
 } he_name;
 
 /* Reads a name in a line: the text from `p` to the end of the line, without blanks around it; each
- * continuation inside it becomes a blank. Bytes that are not UTF-8 are converted from Latin-1, with
- * a warning in `warnings` (may be NULL).
+ * continuation (a backslash before a line end) inside it becomes a blank. Bytes that are not UTF-8
+ * are converted from Latin-1, with a warning in `warnings` (may be NULL).
  * Returns HE_SYNTAX if the name contains a control character.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_line_name(const he_line *line, const char *p, he_warnings *warnings,

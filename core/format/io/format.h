@@ -23,9 +23,9 @@
  *
  *     he_writer_new -> he_writer_read ... -> 0
  *
- * Live vertices are numbered 0, 1, 2... in the order of their ids, faces are written in the order
- * of theirs. The document is never in memory as a whole. What the format cannot represent is known
- * from the start (he_writer_warnings). After he_writer_new nothing can fail. */
+ * Live vertices are numbered 0, 1, 2... in the order of their ids, and faces are written in the
+ * order of their ids. The document is never in memory as a whole. What the format cannot
+ * represent is known from the start (he_writer_warnings). After he_writer_new nothing can fail. */
 #ifndef HE_FORMAT_IO_FORMAT_H
 #define HE_FORMAT_IO_FORMAT_H
 
@@ -48,8 +48,9 @@ void he_import_clear(he_import *import);
  * an error of he_build. */
 void he_import_locate(const he_import *import, he_error *err);
 
-/* The functions of a format's reader, to which `state` belongs. `into` is the import that the
- * reader fills; it outlives the state. After a call has failed, only `close` is called. */
+/* The functions of a format's reader. `open` makes the reader's `state`, which the other
+ * functions get. `into` is the import that the reader fills; it outlives `state`. After a call
+ * has failed, only `close` is called. */
 typedef struct he_reading {
     he_status (*open)(he_import *into, void **state, he_error *err);
     he_status (*feed)(void *state, const void *bytes, size_t n, he_error *err);
@@ -59,8 +60,9 @@ typedef struct he_reading {
                     `progress` */
 } he_reading;
 
-/* The functions of a format's writer. `step` writes the next bytes at `*p` and advances it; at
- * least HE_WRITE_ROOM bytes are free there, up to `end`. It returns false after the last bytes. */
+/* The functions of a format's writer (he_writing). `step` writes the next bytes at `*p`, where
+ * at least HE_WRITE_ROOM bytes are free up to `end`, and advances `*p`. It returns false after
+ * the last bytes. */
 enum { HE_WRITE_ROOM = 512 };
 
 typedef struct he_writing {
@@ -69,25 +71,25 @@ typedef struct he_writing {
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
     bool cuts; /* the writer cuts polygons into triangles (export_triangles.h), so the caller may
-                  fill the mesh's cache of long faces (long_faces.h) before */
+                  first fill the mesh's cache of long faces (long_faces.h) */
 } he_writing;
 
 typedef struct he_format {
     const char *name;
     const char *doc;
     const char *const
-        *media_types; /* NULL ends this list and the next ones; exports get the first media type */
+        *media_types; /* NULL ends this and the other lists; exports get the first media type */
     const char *const *extensions;
     const char *const *encodings; /* encodings of the writer, the default first */
     const char *const *carries;   /* what files preserve: "polygons", attributes as "face color" */
-    /* Returns true if these could be the first bytes of a file in this format. */
+    /* Returns true if `bytes` could be the first bytes of a file in this format. */
     bool (*sniff)(const char *bytes, size_t n);
     const he_reading *reading; /* NULL: the format cannot be read */
     const he_writing *writing; /* NULL: the format cannot be written */
 } he_format;
 
-/* Returns the i-th format of the table; NULL after the last. Files of unknown format are tried in
- * this order. */
+/* Returns the i-th format of the table; NULL after the last. A file of unknown format is tested
+ * for each format in this order. */
 const he_format *he_format_at(size_t i);
 /* These functions find a format by its name, media type, file extension or first bytes, and return
  * NULL if there is none. A media type may be followed by parameters. Letter case does not matter,

@@ -28,7 +28,7 @@ he_status he_source_map_begin_run(he_source_map *map, uint32_t element, uint64_t
 
 uint64_t he_source_map_find(const he_source_map *map, uint32_t element)
 {
-    size_t low = 0, high = map->count; /* the run sought is one of [low, high) */
+    size_t low = 0, high = map->count; /* the run that has the element is one of [low, high) */
     while (high - low > 1) {
         size_t middle = low + (high - low) / 2;
         if (map->runs[middle].first <= element) {

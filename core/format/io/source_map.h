@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 typedef struct he_source_run {
-    uint64_t at; /* line or byte of element `first` */
+    uint64_t at; /* line or byte at which element `first` begins */
     uint32_t first;
 } he_source_run;
 

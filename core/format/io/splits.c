@@ -8,8 +8,8 @@ void he_splits_clear(he_splits *splits)
     *splits = (he_splits){0};
 }
 
-/* Gives each distinct combination of values the number of a vertex of the file, and writes that
- * over the half-edge in distinct->first. */
+/* Gives each distinct combination of corner values the number of a vertex in the file, and
+ * overwrites the half-edge in distinct->first with this number. */
 static he_status number_vertices(const he_mesh *m, const uint32_t *numbers, he_distinct *distinct,
                                  he_splits *out, he_error *err)
 {

@@ -14,9 +14,11 @@
 
 /* The vertices of a file after splitting. {0} means that no vertex is split. */
 typedef struct he_splits {
-    uint32_t *number; /* number of the vertex that is written for each half-edge with a face */
-    uint32_t *own;    /* half-edge whose values each vertex has; HE_NONE if it has no face */
-    he_ids copies;    /* a half-edge for each copy: its origin is the vertex that was copied */
+    uint32_t *number; /* number in the file of the vertex that is written for each half-edge with a
+                         face */
+    uint32_t *own; /* half-edge whose values each vertex is written with; HE_NONE if the vertex has
+                      no face */
+    he_ids copies; /* a half-edge for each copy: its origin is the vertex that was copied */
 } he_splits;
 
 /* Splits the vertices. `numbers` are the vertex numbers that he_export_numbers computes; `progress`

@@ -1,6 +1,6 @@
-/* mtl.h - the material library of OBJ files (MTL): the functions of the format's row in format.c,
- * and a reader that fills a table of materials. What is "noted" is reported as a warning
- * (warnings.h).
+/* mtl.h - the material library of OBJ files (MTL): the functions for its row in the table of
+ * formats (format.c), and a reader that fills a table of materials. What is "noted" is reported as
+ * a warning (warnings.h).
  *
  * Read:
  *   newmtl NAME         a material; the name is the rest of the line
@@ -17,8 +17,8 @@
  * takes them for sRGB. A number out of range is set to the end of its range, which is noted; of two
  * materials with one name the second is ignored, which is noted if they differ.
  *
- * Written: all rows, with every number. The format cannot say that a material shows both sides,
- * which is noted. */
+ * Written: all rows of the mesh's table of materials, with every number. The format cannot say
+ * that a material shows both sides, which is noted. */
 #ifndef HE_FORMAT_OBJ_MTL_H
 #define HE_FORMAT_OBJ_MTL_H
 

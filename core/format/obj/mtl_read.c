@@ -8,9 +8,9 @@
 typedef struct library {
     he_import *into;
     he_lines lines;
-    he_labels *names; /* names of all materials in the table, and of those read */
-    he_ids slots;     /* slot in the table for each name, HE_NONE if there was no room for it */
-    char *name;       /* name of the present material, "" if there is none */
+    he_labels *names; /* names of all materials in the table and in this library */
+    he_ids slots; /* index in the table of each name's material, HE_NONE if the table was full */
+    char *name;   /* name of the material being read, "" if there is none */
     size_t length, room;
     he_look look;
     bool has_opacity;    /* the opacity came from d, which takes precedence over Tr */
@@ -25,7 +25,8 @@ static void note(library *l, const char *code, const char *text, const char *sub
         &(he_occurrence){.code = code, .text = text, .subject = subject, .length = length});
 }
 
-/* Finds the number of a name among l->names, or adds the name; *fresh says whether it is new. */
+/* Finds the number of a name among l->names, or adds the name; *fresh says whether the name is
+ * new. */
 static he_status number_name(library *l, const char *name, size_t length, uint32_t *number,
                              bool *fresh, he_error *err)
 {
@@ -275,7 +276,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     return he_line_locate(read_keyword(l, line, p, length, err), line, err);
 }
 
-/* Lists the names of the materials that the table has already. */
+/* Lists the names of the materials that the table had before this library was read. */
 static he_status list_names(library *l, he_error *err)
 {
     const he_materials *table = &l->into->soup.materials;

@@ -11,7 +11,7 @@ typedef struct mtl_writer {
     size_t row; /* the next row of the table to write */
     bool begun; /* the first line of the file is written */
     he_obj_name name;
-    bool look; /* the name of the row is written, and its numbers come next */
+    bool look; /* the row's name has been written; its numbers come next */
 } mtl_writer;
 
 size_t he_mtl_names(const he_mesh *mesh, const char *names[HE_COLUMN_COMPONENTS])

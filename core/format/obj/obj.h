@@ -1,5 +1,5 @@
-/* obj.h - Wavefront OBJ: the functions of the format's row in format.c. What is "noted" is reported
- * as a warning (warnings.h).
+/* obj.h - Wavefront OBJ: the functions for its row in the table of formats (format.c). What is
+ * "noted" is reported as a warning (warnings.h).
  *
  * Read                      as
  *   v x y z                   a vertex

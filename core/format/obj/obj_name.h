@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-/* Returns '_' in place of a byte that would end the line, join it with the next one, or not read
- * back; any other byte is returned as it is. `first` says whether *p is the first byte of the
+/* Returns the byte *p of a name, or '_' in its place if the byte would end the line, join the
+ * line with the next one, or not be read back. `first` says whether *p is the first byte of the
  * name. */
 static inline char he_obj_printable(const char *p, bool first)
 {
@@ -24,7 +24,7 @@ void he_obj_note_name(const char *name, he_warnings *warnings);
 
 /* A name of any length that is being written; {0} means that none is being written. */
 typedef struct he_obj_name {
-    const char *rest; /* what is still to be written, or NULL */
+    const char *rest; /* the part of the name that is still to be written, or NULL */
     bool begun;
 } he_obj_name;
 

@@ -17,7 +17,7 @@ typedef struct obj {
     he_colors colors;
     he_face_groups object, group, material, smoothing;
     he_labels *libraries; /* names on the lines of mtllib, NULL while there are none */
-    he_ids library_lines; /* line on which each library is named first */
+    he_ids library_lines; /* line on which the name of each library comes first */
     uint32_t highest;     /* highest vertex that a corner refers to */
     uint64_t last_line;   /* number of the last line read */
     uint64_t understood;  /* number of lines with a keyword of the format */
@@ -35,8 +35,8 @@ static void note(obj *o, const he_line *line, he_occurrence warning)
 /* The numbers of a line, however many there are. */
 typedef struct numbers {
     double *values;      /* the first ones */
-    const size_t most;   /* how many of them are stored */
-    const size_t finite; /* how many of them must be finite */
+    const size_t most;   /* how many numbers are stored */
+    const size_t finite; /* how many numbers must be finite */
     size_t count;        /* how many the line has */
 } numbers;
 
@@ -91,7 +91,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     }
     if (count == 5 || count > 7) {
         note_extra(o, line);
-        count = 3; /* more numbers have no known meaning */
+        count = 3; /* the meaning of the numbers after the position is not known */
     }
     size_t vertex = soup->vertex_count;
     status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
@@ -371,7 +371,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (he_at_end(p, end)) {
         return HE_OK;
     }
-    if (*p == '$') { /* some programs begin comments with this byte */
+    if (*p == '$') { /* some programs begin comments with '$' */
         note(o, line,
              (he_occurrence){.code = "ignored_keyword",
                              .text = "ignored: lines that begin with",

@@ -27,13 +27,14 @@ typedef struct values {
 
 typedef struct obj_writer {
     const he_mesh *mesh;
-    uint32_t *numbers; /* number of each vertex in the file; NULL if it is the id */
+    uint32_t *numbers; /* number of each vertex in the file; NULL if the ids are the numbers */
     const he_column *color;
     values uv, normal;
     const he_column *groups[GROUPS];
-    uint32_t said[GROUPS]; /* value of the last line of each kind, HE_NONE before the first one */
+    uint32_t said[GROUPS]; /* value in the last line of each kind (OBJECT, GROUP ...), HE_NONE
+                              before the first line */
     part part;
-    uint32_t row;      /* the next vertex, value or face */
+    uint32_t row;      /* the next vertex, value or face to write */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
     he_obj_name name;
     const char *libraries[HE_COLUMN_COMPONENTS];
@@ -64,8 +65,8 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, u
     return HE_OK;
 }
 
-/* Counts the vertices without a face that have a value other than the default; no corner in the
- * file refers to these values. */
+/* Counts the vertices without a face whose texture coordinate or normal is not the default. No
+ * corner in the file refers to such a value. */
 static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 {
     uint64_t count = 0;

@@ -1,5 +1,5 @@
-/* off.h - Object File Format: the functions of the format's row in format.c. What is "noted" is
- * reported as a warning (warnings.h).
+/* off.h - Object File Format: the functions for its row in the table of formats (format.c). What is
+ * "noted" is reported as a warning (warnings.h).
  *
  *     [ST][C][N]OFF        in any order; may be missing: then the counts come first
  *     V F E                on the same line or a later one; E is ignored and may be missing
@@ -11,7 +11,7 @@
  * without the values that are missing, which is noted; but not in a file in which some vertex
  * continues on the next line. Colours have 3 or 4 numbers; they become the attribute "color" of
  * vertices and faces: integers count from 0 to 255 if all numbers of all vertices, or of all faces,
- * are integers (colors.h). They are written as four fractions. Normals and texture coordinates
+ * are integers (colors.h). Colours are written as four fractions. Normals and texture coordinates
  * become the vertex attributes "normal" and "uv", v upward. A single number in place of a colour
  * (an index into a colour map) and numbers that the header does not declare are noted and ignored.
  *

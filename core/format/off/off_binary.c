@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Sizes in bytes. The shortest face is a triangle: five words for its degree, three corners, and
- * the number of numbers in its colour. */
+/* Sizes in bytes. The shortest face is a triangle: five words of 32 bits for its degree, three
+ * corners, and the number of numbers in its colour. */
 enum { WORD = 4, SHORTEST_FACE = 5 * WORD };
 
 static size_t vertex_numbers(const he_off_binary *b)
@@ -32,13 +32,14 @@ static uint32_t word_at(const unsigned char *p)
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/* Returns the byte of the input at which the part of `size` bytes begins that was just read. */
+/* Returns the offset in the input of the part that was just read, which has `size` bytes. */
 static uint64_t begin_of(const he_off_binary *b, size_t size)
 {
     return b->offset - size;
 }
 
-/* Returns a number of the input; 0, with a warning, if it is not finite. */
+/* Returns a number of the input. In place of a number that is not finite, returns 0 and adds a
+ * warning. */
 static double value_at(const he_off_binary *b, const unsigned char *p, uint64_t at)
 {
     uint32_t bits = word_at(p);

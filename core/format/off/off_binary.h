@@ -11,8 +11,8 @@
 
 #include "format/off/off_values.h"
 
-/* The bytes of a vertex with all its values. No other part that must be complete before it is read
- * is longer. */
+/* The bytes of a vertex with all its values. The reader reads a part of the body when all bytes
+ * of the part have come; no part is longer than such a vertex. */
 enum { HE_OFF_LONGEST = 4 * (3 + 3 + 4 + 2) };
 
 typedef enum he_off_part {
@@ -31,8 +31,8 @@ typedef struct he_off_binary {
     he_off_part part; /* what comes next */
     uint64_t offset;  /* offset of the next byte */
     uint64_t vertices, faces;
-    /* How many corners of the face, or numbers of its colour, are still to come; how many numbers
-     * the colour has in all. */
+    /* `left` is how many corners of the face, or numbers of its colour, are still to come;
+     * `color_count` is how many numbers the colour has in all. */
     uint32_t left, color_count;
     double color[4];
     unsigned char held[HE_OFF_LONGEST];
@@ -40,7 +40,8 @@ typedef struct he_off_binary {
     uint64_t trailing;
 } he_off_binary;
 
-/* Prepares to read a binary body. `offset` is the length of the header, which was read before. */
+/* Prepares to read a binary body. `offset` is the length of the header, which the caller has
+ * read. */
 void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned has,
                         uint64_t offset);
 /* Reads the next bytes of the body; an error names the byte.

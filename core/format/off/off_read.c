@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The sections of a file. `section` says to which one the next token belongs. */
+/* The sections of an OFF file. The member `section` of the reader says to which of them the next
+ * token belongs. */
 typedef enum section {
     HEADER,
     VERTEX_COUNT,
@@ -18,7 +19,8 @@ typedef enum section {
     DONE
 } section;
 
-/* Room for more numbers than a vertex can have, which is 3 + 3 + 4 + 2. */
+/* The most numbers that are stored. A vertex has at most 3 + 3 + 4 + 2 numbers, for position,
+ * normal, colour and texture coordinates. */
 enum { VERTEX_NUMBERS = 16 };
 
 typedef struct off {
@@ -29,7 +31,7 @@ typedef struct off {
     uint64_t vertices, faces;       /* how many the header declares */
     double numbers[VERTEX_NUMBERS]; /* numbers of the present vertex, or of the present face's
                                        colour */
-    size_t number_count;            /* how many numbers were read; not all may be stored */
+    size_t number_count;            /* how many numbers were read; surplus ones are not stored */
     uint64_t number_line;           /* line on which the first of `numbers` was read */
     bool spread;                    /* some vertex continues on the next line */
     uint64_t lacking;  /* line of the first vertex that ends before its last number, or 0 */
@@ -38,7 +40,7 @@ typedef struct off {
     uint64_t missing;
     he_off_values values;
     bool is_binary;
-    he_off_binary binary; /* reads the body if the header says BINARY */
+    he_off_binary binary; /* state of reading the body if the header says BINARY */
     uint64_t header_bytes;
 } off;
 
@@ -180,8 +182,8 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     return status;
 }
 
-/* Returns true if a number is written as an integer. The colours 1 and 1.0 are different, so the
- * text decides. */
+/* Returns true if a number is written as an integer. In a colour, 1 is one of 255 steps and 1.0
+ * is full intensity, so the text of the number decides. */
 static bool is_integer(const char *begin, const char *end, double value)
 {
     for (const char *p = begin; p < end; p++) {
@@ -213,8 +215,8 @@ typedef struct parts {
     size_t normal, color, uv;
 } parts;
 
-/* Divides the `count` numbers of a vertex among the values that the header declares. Values at the
- * end may be missing. Returns false if the numbers do not fit. */
+/* Divides the `count` numbers of a vertex among the values that the header declares. Values at
+ * the end may be missing. Returns false if `count` does not fit the header. */
 static bool divide(const off *o, size_t count, parts *out)
 {
     parts p = {(o->has & HE_OFF_NORMALS) != 0 ? 3 : 0, 0, (o->has & HE_OFF_UV) != 0 ? 2 : 0};
@@ -464,7 +466,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     he_soup *soup = &o->into->soup;
     const char *begin = he_skip_blanks(line->begin, line->end), *p = begin;
     he_status status = HE_OK;
-    bool counts = false; /* true if the first two counts are on this line */
+    bool counts = false; /* the numbers of vertices and faces are on this line */
     while (status == HE_OK && !he_at_end(p, line->end)) {
         switch (o->section) {
         case HEADER:
@@ -622,8 +624,8 @@ static he_status off_finish(void *state, he_error *err)
 
 const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};
 
-/* Returns true if these bytes begin with the header of an OFF file; a file without it cannot be
- * recognised. */
+/* Returns true if these bytes begin with the header of an OFF file; an OFF file without a header
+ * cannot be recognised. */
 bool he_off_sniff(const char *bytes, size_t n)
 {
     const char *p = bytes, *end = bytes + n;

@@ -1,5 +1,5 @@
-/* ply.h - Polygon File Format (the Stanford triangle format): the functions of the format's row in
- * format.c. What is "noted" is reported as a warning (warnings.h).
+/* ply.h - Polygon File Format (the Stanford triangle format): the functions for its row in the
+ * table of formats (format.c). What is "noted" is reported as a warning (warnings.h).
  *
  *     ply
  *     format ascii 1.0              or binary_little_endian, binary_big_endian

@@ -16,9 +16,9 @@
  * (io/splits.h). A comment and a property of vertices mark them:
  *
  *     comment hedge corners normal uv        these attributes are of corners
- *     property uint hedge_vertex             for a copy the row of its vertex; for others their own
+ *     property uint hedge_vertex             row of the vertex copied, or else the vertex's own row
  *
- * Faces also have "texcoord" lists, two numbers a corner, for programs that read those. */
+ * Faces also have "texcoord" lists, two numbers a corner, for programs that read such lists. */
 #define HE_PLY_CORNERS_MARK "hedge corners"
 #define HE_PLY_VERTEX_MARK  "hedge_vertex"
 #define HE_PLY_TEXCOORD     "texcoord"
@@ -29,7 +29,7 @@ typedef struct he_ply_group {
     const char *attribute;
     uint32_t least, most; /* members */
     bool color;
-    bool written; /* several groups may be read as the attribute; this is the one that is written */
+    bool written; /* of several groups that are read as one attribute, this group is written */
     const char *names[HE_PLY_GROUP];
 } he_ply_group;
 

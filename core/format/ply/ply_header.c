@@ -256,7 +256,7 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
 {
     const char *p = line->begin;
     word w = next_word(line, &p);
-    if (w.begin == w.end || *w.begin == '#') { /* lines.h may drop a line that begins with '#' */
+    if (w.begin == w.end || *w.begin == '#') { /* lines.h may drop a '#' line, so it is skipped */
         return HE_OK;
     }
     if (!h->begun) {

@@ -46,16 +46,18 @@ typedef struct he_ply_property {
 typedef struct he_ply_element {
     char name[HE_WARNING_SUBJECT];
     uint64_t rows;
-    size_t first, properties; /* index of its first property in the header, and their number */
-    bool lists;               /* some property is a list, so rows differ in length */
-    size_t stride;            /* bytes of a row without lists */
+    /* `first` is the index in the header of the element's first property, `properties` is the
+     * number of its properties */
+    size_t first, properties;
+    bool lists;    /* some property is a list, so rows differ in length */
+    size_t stride; /* bytes of a row without lists */
     uint64_t line;
 } he_ply_element;
 
 /* {0} is empty. */
 typedef struct he_ply_header {
     bool begun, ended;
-    char corners[HE_WARNING_SUBJECT]; /* the rest of a comment that begins with "hedge corners" */
+    char corners[HE_WARNING_SUBJECT]; /* the rest of the comment that begins with "hedge corners" */
     he_ply_encoding encoding;
     he_ply_element *elements;
     size_t count, capacity;

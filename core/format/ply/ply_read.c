@@ -42,7 +42,7 @@ static he_status too_short(const ply *o, const he_line *line, he_error *err)
                         o->rows.element->name);
 }
 
-/* Reads a whole number that must be a whole token of the line. */
+/* Reads a token of the line that must be a whole number. */
 static he_status read_whole(const he_line *line, const char **p, const char *what, int64_t *value,
                             he_error *err)
 {
@@ -53,8 +53,8 @@ static he_status read_whole(const he_line *line, const char **p, const char *wha
         return he_token_fail(err, HE_SYNTAX, line, *p, what);
     }
     if (status != HE_OK) {
-        *value = **p == '-' ? INT64_MIN
-                            : INT64_MAX; /* the caller refuses it, depending on what it is for */
+        *value = **p == '-' ? INT64_MIN : INT64_MAX; /* out of range: the caller refuses this value
+                                                        with a message of its own */
     }
     *p += plus + used;
     return HE_OK;
@@ -280,7 +280,7 @@ static he_status take_row(ply *o, const unsigned char *bytes, he_error *err)
     return status == HE_OK ? he_ply_rows_end(&o->rows, err) : status;
 }
 
-/* Skips rows of fixed length that belong to an element that is not wanted. */
+/* Skips rows of fixed length of an element of which nothing is stored. */
 static void skip_rows(ply *o, const unsigned char **p, const unsigned char *end)
 {
     const unsigned char *bytes;
@@ -375,12 +375,12 @@ static he_status take_property(ply *o, const unsigned char **p, const unsigned c
     return status;
 }
 
-/* Rows of up to this many corners are read by take_plain. The byte with their number can declare
- * more. */
+/* take_plain reads rows of up to this many corners. The byte that declares their number can
+ * declare more corners. */
 enum { PLAIN_CORNERS = 16 };
 
-/* Returns true if each row is only a list of corners, with a byte for the length and 32 bits for
- * each corner, as in nearly every file. */
+/* Returns true if each row of the element is only a list of corners, with a byte for the length
+ * and 32 bits for each corner, as in nearly every file. */
 static bool is_plain(const ply *o)
 {
     const he_ply_element *e = o->rows.element;
@@ -390,7 +390,8 @@ static bool is_plain(const ply *o)
            (property->type == HE_PLY_INT32 || property->type == HE_PLY_UINT32);
 }
 
-/* Adds rows that are only lists of corners, quickly, up to one that is unusual or incomplete. */
+/* Adds rows that are only lists of corners, quickly, up to the first row that is unusual or
+ * incomplete. */
 static he_status take_plain(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {
@@ -465,7 +466,7 @@ static he_status take_bytes(ply *o, const unsigned char *p, const unsigned char 
     return status;
 }
 
-/* --- the functions of the format's row in format.c --- */
+/* --- the functions that the table of formats (format.c) contains --- */
 
 static void ply_close(void *state)
 {

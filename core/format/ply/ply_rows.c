@@ -315,7 +315,7 @@ he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
     return at_place(rows, status, err);
 }
 
-/* Up to these numbers, a float and a double can represent every whole number. */
+/* A float can represent every whole number up to FLOAT_WHOLE, a double up to DOUBLE_WHOLE. */
 static const double FLOAT_WHOLE = 1 << 24, DOUBLE_WHOLE = 9007199254740992;
 
 static bool is_whole(double value, double low, double high)

@@ -29,29 +29,30 @@ typedef enum he_ply_role {
 typedef struct he_ply_target {
     he_ply_role role;
     uint32_t component;
-    double full; /* the number in the file that means 1 in the attribute */
+    double full; /* the number in the file that becomes 1 in the attribute */
     he_column *column;
 } he_ply_target;
 
 typedef struct he_ply_rows {
     he_import *into;
     const he_ply_header *header;
-    he_ply_target *targets; /* one for each property of the header */
+    he_ply_target *targets; /* where the values of each property of the header go */
     he_place unit;
     uint64_t at;       /* line or byte of the row or value, for errors */
     uint64_t vertices; /* number of vertices that the header declares */
 
-    const he_ply_element *element; /* element being read; NULL before the first, after the last */
-    bool vertex;                   /* the rows of the element are vertices */
-    bool wanted;                   /* some property of the element is stored */
-    uint64_t left;                 /* rows of the element that have not ended */
-    size_t row;                    /* row of the attributes' columns that is being filled */
+    /* element being read; NULL before the first and after the last */
+    const he_ply_element *element;
+    bool vertex;   /* the rows of the element are vertices */
+    bool wanted;   /* some property of the element is stored */
+    uint64_t left; /* rows of the element that have not ended */
+    size_t row;    /* row of the attributes' columns that is being filled */
     double position[3];
     uint32_t strip[2]; /* the last two corners of the strip of triangles */
     bool turned;       /* the next triangle of the strip is reversed */
     unsigned strip_length;
-    he_column *uv; /* attribute of corners, from lists of faces; NULL if there is none */
-    double *uvs;   /* texture coordinates of the row, two numbers a corner */
+    he_column *uv; /* attribute uv of corners, read from lists of faces; NULL if there is none */
+    double *uvs;   /* texture coordinates of the face being read, two numbers a corner */
     size_t uv_count, uv_capacity;
 } he_ply_rows;
 
@@ -88,9 +89,10 @@ HE_NODISCARD he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int6
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value,
                                         he_error *err);
-/* Adds a number to a list of floats or doubles. As a corner, a number that is not whole, or so
- * large that its type skips whole numbers, is no vertex. As a texture coordinate any number is
- * allowed. Returns the errors of he_ply_rows_item. */
+/* Adds a number to a list of floats or doubles. In a list of corners, a number that is not
+ * whole, or so large that its type cannot represent every whole number, is refused as no vertex.
+ * In a list of texture coordinates any number is allowed. Returns the errors of
+ * he_ply_rows_item. */
 HE_NODISCARD he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
                                             he_error *err);
 /* Adds a row that consists only of a list of corners: `vertices` holds the `count` numbers of their

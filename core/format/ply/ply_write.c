@@ -16,7 +16,8 @@ enum { VALUE_ROOM = 160 };
 /* One number of a row. */
 typedef struct output {
     const char *name;
-    const he_column *column; /* attribute; NULL for the position, or for what `own` says */
+    /* attribute; NULL if the number is one of the position, or if `own` is set */
+    const he_column *column;
     uint32_t component;
     he_ply_type type;
     bool color; /* the number is a component of a colour, written as a byte */
@@ -30,16 +31,16 @@ typedef struct ply_writer {
     /* The attributes of corners that are written as properties of vertices. */
     const he_column *corners[HE_PLY_GROUPS];
     size_t corner_count;
-    const he_column *texcoord; /* the one of them that faces also have as a list, or NULL */
+    const he_column *texcoord; /* attribute of `corners` that is also written as lists of faces */
     he_ply_encoding encoding;
-    output *outputs; /* the properties of vertices, then those of faces */
+    output *outputs; /* the numbers in a row of a vertex, then those in a row of a face */
     size_t vertex_outputs, count;
     he_ply_type degree; /* type in which a face's number of corners is written */
-    he_ply_type list;   /* type in which twice that number is written, before texcoord lists */
+    he_ply_type list;   /* type in which the length of a face's texcoord list is written */
     part part;
-    size_t line;       /* the next output in the header */
+    size_t line;       /* index in `outputs` of the next property to write in the header */
     uint32_t row;      /* the next vertex, copy or face */
-    size_t output;     /* the next output of the row */
+    size_t output;     /* index in `outputs` of the next number to write in the row */
     bool in_list;      /* the texture coordinates of the row have begun */
     bool in_face;      /* the corners of the row have begun */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
@@ -238,7 +239,8 @@ static he_status choose_outputs(ply_writer *w, he_progress *progress, he_warning
 static he_status ply_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
                           he_warnings *warnings, void **state, he_error *err)
 {
-    /* This array has the order in which the format's row in format.c lists its encodings. */
+    /* This array has the order in which the table of formats (format.c) lists the encodings of
+     * PLY. */
     static const he_ply_encoding encodings[] = {HE_PLY_LITTLE_ENDIAN, HE_PLY_ASCII,
                                                 HE_PLY_BIG_ENDIAN};
     ply_writer *w = he_mem_zero(1, sizeof *w);
@@ -302,8 +304,8 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
     return p + he_u32_print(value, p);
 }
 
-/* Writes the next output of the row, which the caller then counts: `row` is the vertex or face;
- * attributes of corners are read at the half-edge `corner`. */
+/* Writes the next number of a row, w->outputs[w->output]; the caller then increments w->output.
+ * `row` is the vertex or face; attributes of corners are read at the half-edge `corner`. */
 static char *write_output(const ply_writer *w, uint32_t row, uint32_t corner, char *p)
 {
     const output *o = &w->outputs[w->output];

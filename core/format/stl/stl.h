@@ -1,5 +1,5 @@
-/* stl.h - STL, triangles for stereolithography: the functions of the format's row in format.c. What
- * is "noted" is reported as a warning (warnings.h).
+/* stl.h - STL, triangles for stereolithography: the functions for its row in the table of formats
+ * (format.c). What is "noted" is reported as a warning (warnings.h).
  *
  *     solid NAME                         binary, little-endian:
  *       facet normal x y z                 80 bytes of anything

@@ -25,8 +25,9 @@ typedef struct stl {
     he_lines lines;
     he_face_groups object;
     bool in_facet, in_solid, begun;
-    unsigned corner_count,
-        numbers; /* corners of the facet read so far; numbers of a corner still to come */
+    /* `corner_count` corners of the facet were read; `numbers` numbers of the next corner are to
+     * come */
+    unsigned corner_count, numbers;
     double number[3];
     uint64_t facet_line;
     uint64_t unknown; /* the first line with an unknown word, 0 if there is none */
@@ -339,7 +340,7 @@ static he_status finish_binary(const stl *o, he_error *err)
     return HE_OK;
 }
 
-/* --- the functions of the format's row in format.c --- */
+/* --- the functions that the table of formats (format.c) contains --- */
 
 /* Returns true if the text begins with "solid", after blanks. */
 static bool begins_solid(const char *p, const char *end)
@@ -387,7 +388,7 @@ static he_status decide(stl *o, he_error *err)
     bool text =
         begins_solid(head, head + o->head_count) && memchr(head, '\0', o->head_count) == NULL;
     o->kind = text ? TEXT : BINARY;
-    /* In text most facets take seven lines. */
+    /* The usual distance from facet to facet is seven lines in text. */
     he_source_map_init(&o->into->vertices, text ? HE_PLACE_LINE : HE_PLACE_BYTE, 0);
     he_source_map_init(&o->into->faces, text ? HE_PLACE_LINE : HE_PLACE_BYTE, text ? 7 : FACET);
     return feed_known(o, o->head, o->head_count, err);

@@ -38,8 +38,8 @@ static void note_cuts(const he_export_triangles *cuts, he_warnings *warnings)
                           cuts->turned);
 }
 
-/* The mesh that a reader will make of the file, in which vertices at equal positions are merged. It
- * is made in order to warn about differences. */
+/* The mesh that a reader will make of the file, in which vertices at equal positions are merged.
+ * The writer makes it in order to warn about differences from the mesh that is written. */
 typedef struct again {
     he_soup soup;
     he_weld weld;
@@ -72,8 +72,8 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_warnings *warni
     return status == HE_OK ? he_narrowed_finish(&narrowed, warnings, err) : status;
 }
 
-/* Counts the defects for which a reader will refuse the facets. They arise because vertices at
- * equal positions are merged, or because two faces were cut along the same diagonal. */
+/* Counts the defects for which a reader will refuse the facets. The defects arise because
+ * vertices at equal positions are merged, or because two faces were cut along the same diagonal. */
 static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
 {
     he_export_triangle_walk walk = {0};
@@ -187,7 +187,8 @@ static he_vec3 normal_of(const he_vec3 *p)
     return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 becomes 0 */
 }
 
-/* Writes three numbers in text: with all digits of doubles if `all`, else with those of floats. */
+/* Writes three numbers in text: with all digits of doubles if `all` is set, else with the digits
+ * of floats. */
 static char *put_numbers(he_vec3 v, bool all, char *p)
 {
     const double values[3] = {v.x, v.y, v.z};

@@ -40,6 +40,7 @@ bool he_base64_decode(const char *text, size_t length, unsigned char *to, size_t
         }
     }
     *decoded = n;
-    /* A single character left over encodes no byte, and bits left over must be zero. */
+    /* A single character after the last group of four encodes no byte, and the bits that fill no
+     * byte must be zero. */
     return length % 4 != 1 && (bits & ((1u << held) - 1)) == 0;
 }

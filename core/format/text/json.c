@@ -68,7 +68,8 @@ uint32_t he_json_find(const he_json *json, uint32_t object, const char *name)
 
 /* --- strings --- */
 
-/* Returns true if the string begins with `text`. `*whole` says whether it also ends there. */
+/* Returns true if the string begins with `text`. `*whole` says whether the string has nothing
+ * after `text`. */
 static bool compare(const he_json *json, uint32_t value, const char *text, bool *whole)
 {
     if (he_json_type(json, value) != '"') {

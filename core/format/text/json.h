@@ -4,8 +4,9 @@
  * caller keeps the text; the tree adds eight bytes for each value, so it takes at most four times
  * the length of the text, and parsing does not recurse.
  *
- * A value is named by its number, the root is 0, and HE_NONE is a value that is absent. A number is
- * converted to a double only when it is read. Every error names the byte and the path:
+ * A value is named by its number: 0 is the outermost value, and HE_NONE stands for a value that is
+ * absent. A number is converted to a double only when it is read. Every error names the byte and
+ * the path:
  *
  *     accessors/3/count: 0 is not a whole number from 1 to 9007199254740992 */
 #ifndef HE_FORMAT_TEXT_JSON_H
@@ -18,11 +19,11 @@
 enum { HE_JSON_PATH = 100 };
 #define HE_JSON_VALUES ((size_t)1 << 23)         /* most values of one text, names included */
 #define HE_JSON_TEXT   ((size_t)UINT32_MAX / 2u) /* most bytes of one text */
-#define HE_JSON_WHOLE  ((uint64_t)1 << 53)       /* doubles hold every whole number up to this */
+#define HE_JSON_WHOLE  ((uint64_t)1 << 53) /* up to this number, doubles hold every whole one */
 
 typedef struct he_json_value {
-    uint32_t at;   /* offset of its first byte in the text, which determines its type */
-    uint32_t next; /* number of the first value after this one and all values inside it */
+    uint32_t at;   /* offset in the text of the value's first byte, which determines its type */
+    uint32_t next; /* number of the first value after this value and all values inside it */
 } he_json_value;
 
 /* {0} is empty. */
@@ -74,7 +75,8 @@ size_t he_json_string(const he_json *json, uint32_t value, char *to, size_t size
 const char *he_json_raw(const he_json *json, uint32_t value, size_t *length);
 
 /* he_json_number reads any number, he_json_whole a whole number from `least` to `most`.
- * Returns HE_BAD_VALUE, with the byte and the path of the value, if it is not such a number. */
+ * Returns HE_BAD_VALUE, with the byte and the path of the value, if the value is not such a
+ * number. */
 HE_NODISCARD he_status he_json_number(const he_json *json, uint32_t value, double *out,
                                       he_error *err);
 HE_NODISCARD he_status he_json_whole(const he_json *json, uint32_t value, uint64_t least,
@@ -82,8 +84,8 @@ HE_NODISCARD he_status he_json_whole(const he_json *json, uint32_t value, uint64
 
 /* Writes the path of a value for people, such as "meshes/0/primitives/2"; names are cut to fit. */
 void he_json_path(const he_json *json, uint32_t value, char *to, size_t size);
-/* Fails like he_fail_at with the byte of the value; the message begins with the path of the
- * value. */
+/* Fails like he_fail_at at the byte where the value begins; the message begins with the path of
+ * the value. */
 he_status he_json_fail(const he_json *json, uint32_t value, he_error *err, he_status status,
                        const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Returns the byte of the input where the value begins. */

@@ -171,8 +171,8 @@ static void carry_name(he_lexer *x, const char *bytes, size_t length)
     }
 }
 
-/* Reads the string on up to `to`, and carries the bytes passed if they belong to a name in a text
- * that comes in pieces. */
+/* Moves on to the byte `to` of the string being read. In a text that comes in pieces, the bytes
+ * of a name are copied to the carry buffer. */
 static void pass_string(he_lexer *x, const char *to)
 {
     if (x->state == HE_JSON_IN_NAME && x->carry != NULL) {
@@ -242,8 +242,8 @@ static bool is_plain(char c)
     return (unsigned char)c >= 0x20 && (unsigned char)c < 0x80 && c != '"' && c != '\\';
 }
 
-/* Returns how far a string may be read at once: to the end of the piece, but for at most
- * HE_JSON_STRING bytes, and in a name only up to the byte that makes it too long. */
+/* Returns how far a string may be read at once: to the end of the piece of text, but at most
+ * HE_JSON_STRING bytes, and in a name only up to the byte that makes the name too long. */
 static const char *string_stop(const he_lexer *x)
 {
     size_t most = HE_JSON_STRING, left = (size_t)(x->end - x->at);

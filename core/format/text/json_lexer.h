@@ -29,7 +29,7 @@
 enum {
     HE_JSON_DEPTH = 128,     /* most open arrays and objects */
     HE_JSON_CARRY = 1024,    /* most bytes of a number in a text that comes in pieces */
-    HE_JSON_NAMES = 512,     /* most bytes of all names on the path to a value, in such a text */
+    HE_JSON_NAMES = 512,     /* most bytes of the names on a path, if the text comes in pieces */
     HE_JSON_STRING = 1 << 16 /* a longer string comes as several tokens (HE_TOKEN_PART) */
 };
 
@@ -38,20 +38,20 @@ typedef enum he_token {
     HE_TOKEN_END,   /* a text in one piece has ended */
     HE_TOKEN_FAULT, /* the fault x.fault is at x.fault_place; the lexer cannot go on */
     HE_TOKEN_PART,  /* HE_JSON_STRING bytes of a string; the next token continues it */
-    HE_TOKEN_KEY,   /* a member's name and its colon; the innermost frame has the name */
+    HE_TOKEN_KEY, /* a member's name and its colon; the last frame (he_lexer_frame) has the name */
     HE_TOKEN_STRING,
     HE_TOKEN_NUMBER, /* the number is x.number, x.length bytes long */
     HE_TOKEN_TRUE,
     HE_TOKEN_FALSE,
     HE_TOKEN_NULL,
-    HE_TOKEN_OBJECT, /* an opening bracket; its frame is the innermost one */
+    HE_TOKEN_OBJECT, /* an opening bracket; the last frame stands for the object */
     HE_TOKEN_ARRAY,
-    HE_TOKEN_CLOSE /* a closing bracket; x.frames[x.depth] still has its frame */
+    HE_TOKEN_CLOSE /* a closing bracket; x.frames[x.depth] is still the frame of what it closes */
 } he_token;
 
-/* The kinds of faults. A fault is reported at the byte where its token begins; HE_FAULT_STRING at
- * the byte where the bad character begins; and something too long at the first byte beyond the
- * limit. */
+/* The kinds of faults. A fault is reported at the byte where its token begins; HE_FAULT_STRING
+ * at the byte where the bad character begins; and a name or number that is too long at the first
+ * byte beyond the limit. */
 typedef enum he_fault {
     HE_FAULT_NONE,
     HE_FAULT_VALUE,      /* no value begins here */
@@ -76,7 +76,7 @@ typedef enum he_lexer_state {
     HE_JSON_NAME,         /* after ',' in an object */
     HE_JSON_AFTER,        /* ',' or a closing bracket */
     HE_JSON_DONE,         /* only blanks may follow */
-    HE_JSON_IN_STRING,    /* this state and all after it are inside a token */
+    HE_JSON_IN_STRING,    /* in this state and all below, a token is not complete */
     HE_JSON_IN_NUMBER,
     HE_JSON_IN_WORD,
     HE_JSON_IN_NAME,
@@ -87,7 +87,7 @@ typedef enum he_lexer_state {
 typedef struct he_lexer_frame {
     bool object;
     uint32_t names; /* bytes that the names of the enclosing objects take in the carry buffer */
-    size_t index;   /* index of the item or member */
+    size_t index;   /* index of the present item or member */
     /* The name of the member as it stands in the text, without quotes. It is NULL before it is
      * read, and also if a piece of the text ended inside it and `carry` has no room for it. */
     const char *name;
@@ -102,7 +102,8 @@ typedef struct he_lexer_carry {
     char names[HE_JSON_NAMES];
 } he_lexer_carry;
 
-/* The state of a lexer. All code may read the fields; the caller may set only the three limits. */
+/* The state of a lexer. All code may read the fields; the caller may set only the limits
+ * depth_most, number_most and name_most. */
 typedef struct he_lexer {
     const char *begin, *at, *end; /* the piece is [begin, end); `at` is the next byte in it */
     uint64_t offset;              /* offset of the piece in the text */
@@ -111,12 +112,13 @@ typedef struct he_lexer {
 
     size_t depth_most;  /* most open arrays and objects, at most HE_JSON_DEPTH (the default) */
     size_t number_most; /* most bytes of a number in a text in pieces, at most HE_JSON_CARRY */
-    size_t name_most;   /* most bytes of a name as written */
+    size_t name_most;   /* most bytes of a name as it stands in the text */
 
     uint64_t start; /* offset of the token's first byte in the text */
     double number;
     size_t length;
-    const char *word; /* true, false or null, of which the first `matched` letters were read */
+    /* word being read (true, false, null): its first `matched` letters were read */
+    const char *word;
     size_t matched;
     size_t name_length; /* bytes of the present name in the carry buffer */
     bool name_lost;     /* the present name did not fit into the carry buffer */
@@ -137,9 +139,9 @@ void he_lexer_feed(he_lexer *x, const char *bytes, size_t length);
 
 he_token he_lexer_next(he_lexer *x);
 
-/* Skips blanks and a comma. Returns true if then a value begins at x.at, or only a value can stand
- * there. Returns false if the piece ends before the value or inside a token, or if something other
- * than a value must follow. */
+/* Skips blanks and a comma. Returns true if after this a value begins at x.at, or nothing but a
+ * value may stand there. Returns false if the piece ends before the value or inside a token, or
+ * if something other than a value must follow. */
 bool he_lexer_value_ahead(he_lexer *x);
 /* These functions read a whole array at once, if it is the next value: he_lexer_take_numbers at
  * most `most` numbers, he_lexer_take_indices at most `most` whole numbers below HE_DEAD in decimal

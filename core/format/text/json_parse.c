@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* The number of bytes after which progress is reported to the watch again. */
+/* The number of bytes of text between two reports of progress. */
 enum { STRIDE = 1 << 16 };
 
 typedef struct scan {
@@ -51,8 +51,8 @@ static he_status poll(scan *s)
     return s->lexer.at - s->told < STRIDE ? HE_OK : tell(s);
 }
 
-/* Adds to the tree the value or name that begins at byte `place` of the input, with nothing inside
- * yet. */
+/* Adds to the tree the value or name that begins at byte `place` of the input. The values inside
+ * it are added later. */
 static he_status add_value(scan *s, uint64_t place)
 {
     he_json *json = s->json;

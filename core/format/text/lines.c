@@ -163,7 +163,7 @@ static he_status feed_returns(he_lines *lines, const char *p, const char *end, h
     return status;
 }
 
-/* Feeds the bytes that came before the end of the first line showed how lines end. */
+/* Feeds the bytes that were held back while it was not known how the lines of the text end. */
 static he_status feed_held(he_lines *lines, he_error *err)
 {
     char *held = lines->rest;

@@ -32,7 +32,7 @@ typedef struct he_lines {
     char *rest; /* the unfinished line */
     size_t length, capacity;
     uint64_t number; /* number of the line being collected */
-    uint64_t joined; /* line ends inside the unfinished line, after backslashes */
+    uint64_t joined; /* number of line ends inside the unfinished line, after backslashes */
     bool in_comment; /* the unfinished line is a comment, so it is not kept */
     /* How lines end: the end of the first line decides for all. */
     enum { HE_ENDS_UNKNOWN, HE_ENDS_FEED, HE_ENDS_RETURN } ends;

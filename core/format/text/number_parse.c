@@ -13,8 +13,8 @@ static bool is_digit(char c)
     return (unsigned char)(c - '0') < 10;
 }
 
-/* Returns true if all eight bytes of a word are digits. If they are, the addition carries no bit
- * from one byte into the next. */
+/* Returns true if all eight bytes of a word are digits. If they are, adding 6 to each byte
+ * carries no bit from one byte into the next. */
 static bool are_eight_digits(uint64_t word)
 {
     return ((word & 0xF0F0F0F0F0F0F0F0) |
@@ -32,9 +32,9 @@ static uint32_t eight_digits(uint64_t word)
     return (uint32_t)((first + second) >> 32);
 }
 
-/* Converts the digits at the start of a word, if they are fewer than eight. Returns their number; 0
- * if there are none or eight. The addition sets the top bit of the first byte that is no digit;
- * carries only affect later bytes. */
+/* Converts the digits at the start of a word, if they are fewer than eight. Returns the number
+ * of digits; 0 if there are none or eight. Adding 0x76 to each byte sets the top bit of the
+ * first byte that is no digit; carries of this addition only affect later bytes. */
 static size_t few_digits(uint64_t word, uint64_t *value)
 {
     uint64_t digits = word ^ 0x3030303030303030;
@@ -68,8 +68,8 @@ static const char *read_digits(const char *p, const char *end, uint64_t *value)
 }
 
 /* Returns the bits of the double nearest to w * 10^q, with w > 0, by the method of Eisel and
- * Lemire. *decided is set to false if 128 bits of the power do not suffice to tell which one it
- * is. */
+ * Lemire. *decided is set to false if 128 bits of 10^q do not suffice to tell which double is
+ * nearest. */
 static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
 {
     *decided = true;
@@ -80,7 +80,7 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
         return INFINITY_BITS;
     }
     he_pow5 power = he_pow5_get((int)q);
-    if (q < 0 && q >= -27) { /* the method needs the inverses of exact powers rounded up */
+    if (q < 0 && q >= -27) { /* the method rounds inverses of exact powers up */
         power.low++;
         power.high += power.low == 0;
     }
@@ -88,14 +88,14 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
     w <<= zeros;
     he_u128 product = (he_u128)w * power.high;
     uint64_t high = (uint64_t)(product >> 64), low = (uint64_t)product;
-    if ((high & 0x1FF) == 0x1FF) { /* all bits below the rounding bit are set: use the next word */
+    if ((high & 0x1FF) == 0x1FF) { /* all bits below the rounding bit are set: use power.low */
         uint64_t more = (uint64_t)((he_u128)w * power.low >> 64);
         low += more;
         high += low < more;
         *decided = low != UINT64_MAX || (q >= -27 && q <= 55);
     }
     unsigned top = (unsigned)(high >> 63);
-    uint64_t mantissa = high >> (top + 9); /* 53 bits and one for rounding */
+    uint64_t mantissa = high >> (top + 9); /* 53 bits, and one bit for rounding */
     int exponent = he_floor_log2_of_ten((int)q) + 63 + (int)top - zeros + 1023;
     if (exponent <= 0) {
         if (exponent <= -63) {
@@ -177,9 +177,9 @@ static size_t word_length(const char *p, const char *end)
     return 0;
 }
 
-/* Reads the exponent that begins with the letter at `p`, and adds it to *exponent. Returns its end,
- * or NULL if it has no digits. A huge exponent is capped; even then no number of digits that fits
- * into memory could bring the value back into the range of doubles. */
+/* Reads the exponent that begins with the letter at `p`, and adds it to *exponent. Returns the
+ * end of the exponent, or NULL if there are no digits. A huge exponent is capped; even then no
+ * number of digits that fits into memory could bring the value back into the range of doubles. */
 static const char *read_exponent(const char *p, const char *end, int64_t *exponent)
 {
     const int64_t large = INT64_C(1) << 60;

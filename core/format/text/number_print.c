@@ -123,7 +123,7 @@ static decimal shortest(uint64_t c, int q, int narrow)
     int k = narrow ? (q * 1262611 - 524031) >> 22 : (q * 1262611) >> 22; /* log10, floor */
     int h = q + he_floor_log2_of_ten(-k) + 1;
     he_pow5 g = he_pow5_get(-k);
-    if (-k < 0 || -k > 55) { /* the power is not exact: the paper needs it rounded up */
+    if (-k < 0 || -k > 55) { /* the power is not exact, and the paper needs it rounded up */
         g.low++;
         g.high += g.low == 0;
     }

@@ -2,7 +2,7 @@
  *
  * A warning has a code and a subject; another occurrence with that code and subject is only
  * counted. The places in the input of the first HE_WARNING_SPOTS occurrences are kept. There is
- * room for HE_WARNINGS of them, and no memory is allocated; `more` counts the occurrences that
+ * room for HE_WARNINGS warnings, and no memory is allocated; `more` counts the occurrences that
  * found no room. */
 #ifndef HE_FORMAT_TEXT_WARNINGS_H
 #define HE_FORMAT_TEXT_WARNINGS_H
@@ -14,8 +14,8 @@
 enum { HE_WARNINGS = 32, HE_WARNING_SUBJECT = 80, HE_WARNING_SPOTS = 100 };
 
 typedef struct he_warning {
-    const char *code;                 /* a stable slug, static */
-    const char *text;                 /* one sentence without the subject; a string literal */
+    const char *code; /* a stable slug, static */
+    const char *text; /* one sentence, which the subject completes; a string literal */
     char subject[HE_WARNING_SUBJECT]; /* what the warning is about: printable ASCII, may be "" */
     uint64_t count;                   /* how often it occurred */
     he_place place;                   /* unit of `at` */
@@ -25,16 +25,16 @@ typedef struct he_warning {
 /* One occurrence of a warning, as a reader or writer reports it. */
 typedef struct he_occurrence {
     const char *code;    /* a stable slug, static */
-    const char *text;    /* one sentence without the subject, static */
-    const char *subject; /* what it is about; NULL if there is nothing to name */
+    const char *text;    /* one sentence, which the subject completes; static */
+    const char *subject; /* what the warning is about; NULL if there is nothing to name */
     size_t length;       /* bytes of the subject, which need not end in NUL */
-    he_place place;      /* HE_PLACE_NONE if it has no place in the file */
+    he_place place;      /* HE_PLACE_NONE if the occurrence has no place in the file */
     uint64_t at;
 } he_occurrence;
 
 /* The place of one occurrence that a warning counts. */
 typedef struct he_warning_spot {
-    size_t warning; /* index of the note */
+    size_t warning; /* index of the warning */
     uint64_t at;
 } he_warning_spot;
 
