@@ -158,7 +158,7 @@ static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
     edit_log_add_column(other, &another, 2);
     another = (md_random){3};
     edit_log_add_column(other, &another, 1);
-    /* the slot that the delta would use is free, but not the name */
+    /* the slot that the delta would use is free, but another column has the name */
     assert_int_equal(he_mesh_drop_column(other, 0, NULL), HE_OK);
     expect_refusal(delta, other, m, 0);
     he_delta_free(delta);

@@ -80,7 +80,7 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     assert_string_equal(name_of(m, 0), "");
     assert_string_equal(name_of(m, 2), "b");
     assert_string_equal(name_of(m, 3), "c");
-    assert_int_equal(label_count(m), 3); /* the empty name counts as a label, too */
+    assert_int_equal(label_count(m), 3); /* labels: b, c and the empty name */
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
     script_prepare(m, "material_delete name=c to=b");
     assert_string_equal(name_of(m, 3), "b");

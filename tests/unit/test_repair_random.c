@@ -237,8 +237,8 @@ static void expect_same_rim(const runs *a, const runs *b)
     }
 }
 
-/* Checks the faces with which the repair replaced face f of the soup; they begin at face `at` of
- * the result. Returns how many there are. */
+/* Checks the faces with which the repair replaced face f of the soup; the first of them is face
+ * `at` of the result. Returns by how many faces f was replaced. */
 static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
                             const uint32_t *from, size_t at)
 {

@@ -19,8 +19,8 @@
 
 /* --- a clock that the test moves --- */
 
-/* The time by which the test moves the clock: an hour. Even on a busy machine, no part of a request
- * really takes a tenth of it. */
+/* The test moves the clock by an hour. Even on a busy machine, no part of a request really takes a
+ * tenth of an hour. */
 static const uint64_t passing = UINT64_C(3600) * 1000000;
 
 typedef enum moment { NEVER, AT_LOCK, AT_WORK, AT_POOL, AT_STORE } moment;
@@ -279,7 +279,8 @@ static void time_before_a_thread_is_free_is_in_the_queue(void **state)
 {
     (void)state;
     atomic_store(&armed, AT_POOL);
-    put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}"); /* runs on a thread for long work */
+    /* making such a large mesh runs on a thread for long work */
+    put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}");
     assert_int_equal(sem_trywait(&reached), 0);
     stop_and_find("queue_us");
 }

@@ -383,7 +383,8 @@ static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *s
     he_delta *delta = NULL;
     he_error err = {.status = HE_OK};
     unsigned char *exact = malloc(damaged.size + 1);
-    memcpy(exact + 1, damaged.bytes, damaged.size); /* a sanitizer detects reads past their end */
+    /* The block ends with the bytes, so that a sanitizer detects reads past the end. */
+    memcpy(exact + 1, damaged.bytes, damaged.size);
     he_status status =
         he_stored_edit_forward(exact + 1, damaged.size, run->issued, m, &delta, &err);
     if (status != HE_OK) {
