@@ -338,8 +338,8 @@ static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up
 }
 
 /* Returns whether faces can be reversed so that the two faces of each edge use it in opposite
- * directions. A union-find has two entries for each face, one as it is and one reversed; if both
- * are in one class, the answer is no. */
+ * directions. A union-find has two entries for each face, one for the face as it is and one for the
+ * reversed face; if both entries are in one class, the function returns false. */
 static bool is_orientable(const he_soup *soup)
 {
     size_t n = soup->face_count;

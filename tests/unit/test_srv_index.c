@@ -67,8 +67,8 @@ static void make_store(size_t meshes)
     store_sql_run(folder, text);
 }
 
-/* Flips one bit of the id, wherever the id is stored in the table or its index, and starts the
- * store; repeats this for each bit. Returns how many starts were refused. */
+/* Finds the places where the table and its index store the id. At one place after another, flips a
+ * bit of the id and requires that the store then refuses to start. Returns the number of places. */
 static unsigned expect_refusals(const char *id)
 {
     size_t size;

@@ -34,7 +34,7 @@ static void pass(void)
     atomic_fetch_add(&passed, passing);
 }
 
-/* Moves the clock, once, when the server reaches the point for which the test has armed it. */
+/* Moves the clock, once, when the server reaches the point that the test has stored in `armed`. */
 static void come_to(moment here)
 {
     moment expected = here;
@@ -227,7 +227,8 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     send_text(fd, request);
 }
 
-/* Reads until the server closes the connection, closes it, too, and returns the number of bytes. */
+/* Reads until the server closes the connection, then closes the client's socket and returns the
+ * number of bytes that were read. */
 static size_t read_all(int fd)
 {
     static char bytes[1 << 16];
