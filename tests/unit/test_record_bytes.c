@@ -2,7 +2,8 @@
  * was written, every later release must be able to read the bytes below, and damaged records must
  * be refused with the offset of the damage.
  *
- * `test_record_bytes --write FOLDER` writes the records of this test as seeds of fuzz_record. */
+ * `test_record_bytes --write FOLDER` writes the records of this test as first inputs of the fuzzer
+ * fuzz_record. */
 #include "journal/record_bytes.h"
 
 #include "journal/crc32c.h"

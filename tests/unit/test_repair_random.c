@@ -225,8 +225,8 @@ static bool runs_twice(const runs *r)
     return twice;
 }
 
-/* Requires that a and b have the same directed edges, not counting edges used in both directions,
- * which cancel out. */
+/* Requires that the loops in `a` and those in `b` have the same directed edges, not counting edges
+ * used in both directions, which cancel out. */
 static void expect_same_rim(const runs *a, const runs *b)
 {
     for (uint32_t v = 0; v < 11; v++) {
@@ -323,7 +323,8 @@ static void expect_no_duplicates(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Counts the faces that have the edge a-b, separately for each direction. */
+/* Counts the faces that have the edge between the vertices `a` and `b`: those that use it from a to
+ * b, and those that use it from b to a. */
 static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
 {
     *up = *down = 0;

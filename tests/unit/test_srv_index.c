@@ -98,7 +98,7 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     expect_start(folder);
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
-    /* The schema of the database now names, for one index of the table, the root page of another
+    /* The schema of the database now names, for one index of the table, the first page of another
      * index. */
     store_sql_run(
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "

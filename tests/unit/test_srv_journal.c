@@ -408,8 +408,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     loaded_clear(&l);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT min(number) FROM record"), 23);
-    /* A new base (a record with the whole content) whose number no record ever had must be ignored
-     * and deleted. */
+    /* A new base (a record with the whole content) whose number and revision are those of different
+     * records must be ignored and deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
