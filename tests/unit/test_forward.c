@@ -133,7 +133,7 @@ static void another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     uint32_t issued[HE_KIND_COUNT];
     edit_log_marks(m, issued);
     assert_int_equal(he_delta_forward(moved, other, issued, NULL, NULL), HE_OK);
-    /* vertex 1 has its new position already, so the recorded changes do not fit to this mesh */
+    /* vertex 1 has its new position already, so the recorded changes do not fit this mesh */
     expect_refusal(moved, other, m, 0);
     he_delta_free(moved);
     he_mesh_free(m);

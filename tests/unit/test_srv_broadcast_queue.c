@@ -168,8 +168,8 @@ static void who_is_slow_is_behind_once(void **state)
         add(stamp, stamp);
     }
     assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
-    /* A slow listener may read the position from which it can continue only when this position is
-     * durable. */
+    /* A slow listener has missed messages. It may learn from which position it can continue only
+     * when this position is durable. */
     assert_step(&slow, ST_QUEUE_WAIT);
     st_queue_allow(&feed, stamp - 3);
     assert_step(&slow, ST_QUEUE_BEHIND);

@@ -61,7 +61,7 @@ static void count(st_wait *wait)
     in_order = in_order && wait->shown.position >= last;
     last = wait->shown.position;
     resumed++;
-    wait->resume = NULL; /* a second call of `resume` would crash */
+    wait->resume = NULL; /* a second call of `resume` for this wait would crash */
 }
 
 /* Adds a wait; returns false if it has ended already. */
