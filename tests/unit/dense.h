@@ -20,7 +20,7 @@ he_mesh *dense_built(he_soup *takes);
  * is height(x, y) for x and y from 0 to 1, or 0 if `height` is NULL; all coordinates are multiplied
  * by `scale`. */
 he_mesh *dense_grid(uint32_t side, double (*height)(double x, double y), double scale);
-double dense_waves(double x, double y); /* can be passed to dense_grid() as `height` */
+double dense_waves(double x, double y); /* a height with waves, for dense_grid() */
 he_mesh *dense_torus(uint32_t side);
 /* Makes a mesh of triangles of the primitive shape `name`; `value` is the value of its parameter
  * `param`, which may be NULL. */

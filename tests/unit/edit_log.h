@@ -22,7 +22,7 @@ typedef struct edit_log {
     /* for each edit in `steps`, index of the last entry that applied or undid it */
     size_t applied[EDIT_LOG_MOST];
     size_t step_count;
-    /* stacks of the edits that can be undone and of those that can be redone */
+    /* stacks of indices in `steps`: of edits that can be undone, and of edits that can be redone */
     size_t done[EDIT_LOG_MOST], undone[EDIT_LOG_MOST];
     size_t done_count, undone_count;
     edit_log_entry entries[EDIT_LOG_MOST + 1]; /* entries[0] is the initial state of the mesh */

@@ -101,8 +101,8 @@ static bytes pack_bytes(api_coding coding, const bytes *plain)
     return out;
 }
 
-/* By how many bytes one call of the decompressor may exceed API_DECOMPRESS_TURN: a block of zstd,
- * or what zlib has buffered. */
+/* The largest number of bytes by which one call of the decompressor may exceed its limit
+ * API_DECOMPRESS_TURN: a block of zstd, or what zlib has buffered. */
 enum { LEFT = 1 << 17 };
 
 /* Decompresses a body that comes in pieces of `step` bytes; if the body is refused, sets `problem`
@@ -222,7 +222,8 @@ static int64_t break_off(void *context, char *buffer, size_t size)
 }
 
 typedef struct nothing {
-    /* bytes not yet read, and bytes read during the present call of the compressor */
+    /* how many zeros are left to be read, and how many were read in the present call of the
+     * compressor */
     size_t left, read;
 } nothing;
 
@@ -568,7 +569,7 @@ static void a_frame_has_the_length_it_says(void **state)
     (void)state;
     static const unsigned char frame[] = {
         0x28, 0xB5, 0x2F, 0xFD,           /* magic number */
-        0x20, 5,                          /* header of the frame: one segment, of five bytes */
+        0x20, 5,                          /* frame header: declares five bytes of content */
         0x18, 0,    0,    'a',  'b', 'c', /* an uncompressed block of three bytes */
         0x01, 0,    0,                    /* the last block, which is empty */
     };

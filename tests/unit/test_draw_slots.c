@@ -142,7 +142,7 @@ static uint32_t owner_of(const uint32_t *owner, uint32_t slot)
     return (owner[slot] & HE_DRAW_SLOT_DEAD) != 0 ? HE_NONE : owner[slot];
 }
 
-/* Requires that each slot whose face differs from that in `before` is in the list of changes, and
+/* Requires that the list of changes has each slot that belonged to another face in `before`, and
  * that if the list has any slot of a face, it has the first slot of this face, too. */
 static void check_changes(const world *w, const uint32_t *before, uint32_t count)
 {

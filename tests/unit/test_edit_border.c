@@ -206,7 +206,7 @@ static void deleting_the_walls_undoes_edge_extrude(void **state)
             assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
             if (strcmp(cases[i].mesh, STRANGE) != 0) {
                 /* The walls are gone again, but a bow-tie may store another half-edge than before:
-                 * it is set to the old one, so that the meshes can be compared. */
+                 * the test gives it the old half-edge, so that the meshes can be compared. */
                 store_like(m, before);
                 assert_true(he_mesh_equal_live(m, before));
             }

@@ -173,7 +173,8 @@ static void collapsing_the_new_edge_undoes_vertex_split_corners(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
-    /* The new edge divides the corner of each face at vertex 3 and becomes a side of both faces. */
+    /* Two faces meet at vertex 3: the new edge divides the corner of each face there, and becomes a
+     * side of both faces. */
     script_prepare(m, "vertex_split_corners a=3-2 b=3-5");
     assert_counts(m, 7, 8, 2);
     script_prepare(m, "edge_collapse halfedge=6-3 t=1");

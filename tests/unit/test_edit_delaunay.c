@@ -127,9 +127,10 @@ static void an_edge_is_kept_where_a_flip_is_impossible(void **state)
     } cases[] = {
         {"012", KITE},          /* edge 0-1, which the edit would flip, is on the boundary */
         {"012,1034", pentagon}, /* edge 0-1 is a side of a quadrilateral */
-        /* two triangles in a plane, whose other diagonal exists as an edge already */
+        /* a flip would make the edge 2-3 of 012 and 103, but the triangles 213 and 023 have this
+         * edge */
         {"012,103,213,023", KITE},
-        {"012,103,234", KITE}, /* the other diagonal is an edge of a face elsewhere */
+        {"012,103,234", KITE}, /* face 234 has the edge 2-3 already */
         {"012,021", KITE},     /* two triangles back to back */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -1,6 +1,6 @@
-/* A weld with the option `keep` preserves attribute values of vertices: where the values of merged
- * vertices differ, the attribute becomes one of the corners of faces, and undo makes it one of the
- * vertices again. */
+/* A weld with the option `keep` preserves attribute values of vertices: if the values of merged
+ * vertices differ, the attribute of vertices becomes an attribute of face corners, and undo makes
+ * it an attribute of vertices again. */
 #include "unit/edit_script.h"
 
 #include "mesh/check.h"
@@ -169,8 +169,8 @@ static void an_attribute_that_corners_have_is_not_changed(void **state)
     }
 }
 
-/* The value of a vertex without faces cannot move to corners: if it is not the default, the
- * attribute must stay one of the vertices. */
+/* The value of a vertex without faces cannot move to corners: if such a value is not the default,
+ * the attribute must stay an attribute of vertices. */
 static void vertices_without_corners_keep_the_attribute(void **state)
 {
     (void)state;

@@ -85,9 +85,9 @@ static void the_first_loop_survives_loop_join(void **state)
     script_prepare(m, "loop_join a=2-0 b=4-6");
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
-    /* The target of half-edge b is merged into the origin of half-edge a, and so are the vertices
-     * that follow along both loops. Of each pair here, the first vertex is merged into the
-     * second. */
+    /* The edit loop_join has the half-edges a and b as arguments. It merges the target of b into
+     * the origin of a, and then the vertices that follow along both loops. The list has pairs: the
+     * first vertex of a pair is merged into the second. */
     static const uint32_t merged[] = {6, 2, 4, 0, 5, 1};
     assert_int_equal(changes.merged[HE_VERTEX].count, 6);
     for (unsigned i = 0; i < 6; i++) {
@@ -115,8 +115,9 @@ static void loop_split_reports_the_new_vertices_edges_and_faces(void **state)
     assert_int_equal(he_loop_split(m, a, c, b, &parts, NULL), HE_OK);
     assert_valid(m);
     assert_int_equal(euler_of(m), 4);
-    /* Half-edge 2a runs from 0 to 1 in face 0. The loop 0-1-2 is cut open: faces 3 to 5 get copies
-     * 5, 6 and 7 of its vertices, and both sides are closed by a face. */
+    /* Half-edge 2a of edge `a` runs from 0 to 1 in face 0. The mesh is cut open along the loop
+     * 0-1-2: faces 3 to 5 get copies 5, 6 and 7 of the loop's vertices, and both holes are closed
+     * by a face. */
     static const char *const faces[] = {"013", "123", "203", "654", "764", "574", "102", "567"};
     for (uint32_t f = 0; f < 8; f++) {
         assert_face(m, f, faces[f]);
@@ -276,7 +277,8 @@ static double bridge_disks(he_mesh *m, uint32_t n, uint32_t k)
         assert_true(he_origin(m, rung).i < n && he_target(m, rung).i >= n);
         assert_int_equal(he_face_of(m, he_twin(rung)).i, bridge.faces.ids[i]);
     }
-    /* The first edge of the bridge must begin at the origin of half-edge a. */
+    /* The first edge of the bridge must begin at the origin of half-edge `a`, the first argument of
+     * the edit. */
     assert_int_equal(he_origin(m, (he_halfedge){2 * bridge.edges.ids[0]}).i, 1);
     he_bridge_clear(&bridge);
     return most;

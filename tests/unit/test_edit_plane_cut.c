@@ -128,8 +128,8 @@ static void the_halves_of_a_cut_make_up_the_whole(void **state)
     }
 }
 
-/* A face that lies in the cutting plane belongs to that part of the mesh of which it is a part of
- * the surface. */
+/* A face that lies in the cutting plane must go to the part of the mesh, above or below the plane,
+ * to whose surface it belongs. */
 static void a_face_in_the_plane_goes_to_the_part_it_bounds(void **state)
 {
     (void)state;

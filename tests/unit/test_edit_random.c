@@ -115,7 +115,8 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
     case HE_PARAM_NUMBER:
         arg->number = param->min + random_unit() * (param->max - param->min);
         if (param->flags &
-            /* the number is limited, as many steps would make the mesh large or remove all of it */
+            /* whole numbers are kept small: an edit of many steps could make the mesh very large or
+             * remove all of it */
             HE_WHOLE) {
             arg->number = param->max < 1e6 ? param->min : random_below(100);
         }
@@ -158,7 +159,7 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         if (param->group != 0) {
-            /* Two alternative parameters follow each other in the list; the loop chose one of them
+            /* This parameter and the one before it are alternatives: the loop chose one of the two
              * when it came to the first. */
             if (i > 0 && op->params[i - 1].group == param->group) {
                 continue;

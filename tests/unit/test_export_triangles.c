@@ -5,10 +5,10 @@
 #include "format/io/export_triangles.h"
 #include "tests/failing.h"
 
-/* Makes quadrilaterals with the corners 0, a, 1, b, where a and b differ for each. Both diagonals
- * of each exist as edges: 0-1 in one triangle in the middle, and a-b in a triangle beside each
- * quadrilateral. Vertex 2 is connected to every second a, so vertices 0, 1 and 2 have a high
- * degree. */
+/* Makes quadrilaterals with the corners 0, a, 1, b; each quadrilateral has an a and a b of its own.
+ * Both diagonals of a quadrilateral exist as edges: 0-1 in one triangle in the middle, and a-b in a
+ * triangle beside the quadrilateral. Vertex 2 is connected to every second a, so vertices 0, 1 and
+ * 2 have a high degree. */
 static he_mesh *two_hubs(uint32_t quads)
 {
     he_soup soup;

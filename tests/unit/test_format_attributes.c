@@ -149,8 +149,8 @@ static void round_trip(const char *format, const char *encoding, const attribute
         he_warnings warnings;
         size_t length;
         char *bytes = write_encoded(format, encoding, m, 777, &warnings, &length);
-        /* only GLB stores positions as floats, and warns of attributes that other programs cannot
-         * see */
+        /* whether the format is GLB: only GLB stores positions as floats, and only its writer warns
+         * of attributes that other programs cannot see */
         bool narrow = strcmp(format, "glb") == 0;
         assert_true(narrow || warnings.count == 0);
         he_import import = {0};

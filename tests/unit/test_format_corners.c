@@ -207,7 +207,7 @@ static void marks_that_do_not_fit_are_not_believed(void **state)
 }
 
 /* Vertices and corners have attributes with the same name: in the file, other programs must see the
- * one of corners, and hedge must read both. */
+ * attribute of corners, and hedge must read both attributes. */
 static void corners_come_before_vertices(void **state)
 {
     (void)state;

@@ -206,9 +206,9 @@ static void the_scene_that_is_named_is_read(void **state)
 static void sparse_accessors(void **state)
 {
     (void)state;
-    /* A sparse accessor stores only some of its values. Here positions 1 and 2 replace zeros, or
-     * positions 0 and 2 replace those of the square; the new values are bytes 12 to 35 of the
-     * square's corners. */
+    /* A sparse accessor stores only the values that replace others. Here two positions, which are
+     * bytes 12 to 35 of the binary data, replace values 1 and 2 of a list of zeros, or corners 0
+     * and 2 of the square. */
     static const struct {
         const char *view, *indices;
         double at[4][3];

@@ -322,8 +322,8 @@ static void references_and_numbers(void **state)
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
         {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
-        /* if there are no scenes, the reader begins at nodes without parents; a cycle of nodes has
-         * none, so it must be found in another way */
+        /* if there are no scenes, the reader begins at nodes without parents; in a cycle each node
+         * has a parent, so the reader must find the cycle in another way */
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0,'children':[0]}]}", HE_BAD_VALUE,
          "nodes/0/children/0: node 0 is inside itself"},
         {"{" DATA "," MESHES

@@ -380,7 +380,8 @@ static void names_beside_names_in_extras(void **state)
     static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
                                  "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
     static const struct {
-        /* name of a column, and its labels in the second and third primitive */
+        /* `name` is a column; `first` has its labels in the second primitive of the file, `second`
+         * those in the third primitive */
         const char *name, *first, *second;
         const char *names[8];
     } rows[] = {

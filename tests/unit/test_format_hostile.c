@@ -267,8 +267,8 @@ static size_t mutate(char *text, size_t length, size_t room)
 }
 
 /* Reading a file of any bytes must succeed or give an error, and the result must not depend on the
- * pieces in which it comes. What was read must be built into a mesh or refused; a mesh must be
- * written and read again. */
+ * pieces in which the file is read. Building a mesh of the result must succeed or be refused; each
+ * mesh that was built must be written and read again. */
 static void mutated_files(void **state)
 {
     (void)state;

@@ -41,8 +41,8 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n", 3, 3},
         /* a face with two corners that differ as doubles but are equal as floats */
         {"v 1 0 0\nv 1.00000000001 0 0\nv 0 1 0\nf 1 2 3\n", 1, 0},
-        /* two faces with a corner at the same position, which become a bow-tie: a mesh can
-         * represent it */
+        /* two faces with a corner at the same position: they become a bow-tie, which a mesh can
+         * represent */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n", 0, 0},
         /* a closed fan of faces around a position, at which another face has a corner, too */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nv 0 0 0\nv 1 0 5\n"

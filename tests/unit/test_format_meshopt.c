@@ -199,7 +199,8 @@ static void directions_and_turns_are_undone(void **state)
 /* --- refusals --- */
 
 typedef struct row {
-    /* JSON of the extensions, with %zu in place of lengths; NULL for the valid one */
+    /* JSON of the compression extensions for corners and indices, with %zu in place of lengths;
+     * NULL stands for a valid extension */
     const char *corners, *indices;
     he_status status;
     const char *words;

@@ -1,6 +1,7 @@
-/* A store keeps old contents of a mesh and a log of edits. he_delta_forward brings such a content
- * forward by the deltas of edits that this content has not seen. After every entry of the log it
- * must equal the mesh that was edited, and undo and redo must work from there. */
+/* A store keeps an old content of a mesh and a log of later edits. he_delta_forward applies the
+ * recorded changes (delta) of an edit to the old content, to which the edit was never applied.
+ * After every entry of the log, the content must equal the mesh that was edited, and undo and redo
+ * must work from there. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -23,8 +24,8 @@ static edit_log *undone_log(md_random *random)
     return log;
 }
 
-/* Applies entry i of the log to the mesh like a store that loads it: an edit is brought forward the
- * first time, and later undone or redone. */
+/* Applies entry i of the log to the mesh, like a store that loads the mesh: an edit is applied by
+ * he_delta_forward the first time, and later undone or redone. */
 static he_status apply(const edit_log *log, size_t i, bool *seen, he_mesh *m)
 {
     const edit_log_entry *e = &log->entries[i];
@@ -132,7 +133,7 @@ static void another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     uint32_t issued[HE_KIND_COUNT];
     edit_log_marks(m, issued);
     assert_int_equal(he_delta_forward(moved, other, issued, NULL, NULL), HE_OK);
-    /* vertex 1 has the new position already, so the delta does not fit */
+    /* vertex 1 has its new position already, so the recorded changes do not fit this mesh */
     expect_refusal(moved, other, m, 0);
     he_delta_free(moved);
     he_mesh_free(m);
@@ -158,7 +159,7 @@ static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
     edit_log_add_column(other, &another, 2);
     another = (md_random){3};
     edit_log_add_column(other, &another, 1);
-    /* the slot that the delta would use is free, but not the name */
+    /* the slot that the delta would use is free, but another column has the name */
     assert_int_equal(he_mesh_drop_column(other, 0, NULL), HE_OK);
     expect_refusal(delta, other, m, 0);
     he_delta_free(delta);

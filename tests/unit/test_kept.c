@@ -12,7 +12,8 @@
 #include <zlib.h>
 #include <zstd.h>
 
-enum { LONGEST = 300 * 1000 }; /* more bytes than a compressor reads at once */
+/* length of the longest body: more bytes than a compressor reads at once */
+enum { LONGEST = 300 * 1000 };
 
 static char body[LONGEST], decoded[LONGEST];
 

@@ -80,7 +80,7 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     assert_string_equal(name_of(m, 0), "");
     assert_string_equal(name_of(m, 2), "b");
     assert_string_equal(name_of(m, 3), "c");
-    assert_int_equal(label_count(m), 3); /* the empty name counts as a label, too */
+    assert_int_equal(label_count(m), 3); /* labels: b, c and the empty name */
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
     script_prepare(m, "material_delete name=c to=b");
     assert_string_equal(name_of(m, 3), "b");
@@ -330,7 +330,7 @@ static void the_checker_sees_a_table_that_cannot_be(void **state)
 }
 
 /* The rows of the table of materials must be counted in the memory of the mesh; rows that an edit
- * changes must be counted in the memory of its delta. */
+ * changes must be counted in the memory of the edit's delta (the record of its changes). */
 static void memory_of_rows_is_counted(void **state)
 {
     (void)state;
@@ -343,7 +343,8 @@ static void memory_of_rows_is_counted(void **state)
     before = he_delta_bytes(delta);
     script_prepare(m, "material_set name=m1 metallic=1");
     assert_true(he_delta_bytes(delta) >= before + sizeof(he_record) + sizeof(he_material));
-    /* The memory of labels that an edit removes must be counted in its delta. */
+    /* The names of materials are labels (texts) of an attribute. If an edit removes labels, their
+     * memory must be counted in the edit's delta. */
     char name[HE_MATERIAL_NAME + 30];
     snprintf(name, sizeof name, "material_set name=%0200d face=0", 1);
     script_prepare(m, name);

@@ -255,7 +255,7 @@ static void random_text_parses_like_the_c_library(void **state)
         if (i % 2 == 0) {
             snprintf(text, sizeof text, "%.*e", precision, value);
         } else {
-            /* random digits, mostly not what is printed for any double */
+            /* random digits, mostly not the text that a double is printed as */
             snprintf(text, sizeof text, "%llu%s%0*llu%se%d",
                      (unsigned long long)next_random() >> next_random() % 64, i % 3 ? "." : "",
                      precision, (unsigned long long)next_random(), i % 5 ? "" : "00000",

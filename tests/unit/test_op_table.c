@@ -378,7 +378,8 @@ static const scenario *const groups[] = {scenarios,        border_scenarios,  we
 
 enum { MAX_OPS = 128 };
 
-/* Whether the scenarios of this run have produced this status, for each operation and status. */
+/* Whether a scenario of this run has made an operation (the first index) return a status (the
+ * second index). */
 static bool produced[MAX_OPS][HE_STATUS_COUNT];
 
 static void mark(const he_op *op, he_status status)

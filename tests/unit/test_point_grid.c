@@ -45,7 +45,8 @@ static void compare(double origin, double tolerance)
         HE_OK);
     for (uint32_t i = 0; i < POINTS; i++) {
         uint32_t home, wanted = HE_NONE;
-        bool sure = true; /* no distance is close to the tolerance */
+        /* whether no distance is so close to the tolerance that rounding decides the result */
+        bool sure = true;
         for (uint32_t k = i; k-- > 0;) {
             double d = distance(points[i], points[k]);
             sure &= !kept[k] || d == 0 || fabs(d / tolerance - 1) > 1e-9;

@@ -59,7 +59,8 @@ static bool hear(void *context, const char *phase, double done)
     return l->told != l->give_up_at;
 }
 
-enum { SIDE = 130 }; /* so large that each phase reports progress more than once */
+/* so many cells per side of a grid that each phase of work reports progress more than once */
+enum { SIDE = 130 };
 
 static he_status make(he_progress *progress, he_mesh **out)
 {

@@ -84,7 +84,7 @@ static void bowties_and_isolated_vertices_are_named(void **state)
     assert_int_equal(first(HE_DEFECT_BOWTIE)->id, 0);
     assert_true(first(HE_DEFECT_BOWTIE)->value == 3);
     he_mesh_free(m);
-    m = query_with_dead_rows(); /* vertex 3 is isolated; 4 and higher are deleted */
+    m = query_with_dead_rows(); /* vertex 3 is isolated; vertices 4 and higher are deleted */
     find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_ISOLATED].total, 1);
     assert_int_equal(first(HE_DEFECT_ISOLATED)->id, 3);

@@ -211,7 +211,7 @@ static void known_meshes_have_the_expected_topology(void **state)
     static const struct {
         const char *faces;
         uint32_t loops, isolated, bowties, components, by_edge;
-        int euler, genus; /* a genus of -1 stands for none */
+        int euler, genus; /* the genus is -1 if it is not defined */
     } rows[] = {
         {"", 0, 0, 0, 0, 0, 0, 0},
         {"012", 1, 0, 0, 1, 1, 1, 0},
@@ -226,7 +226,8 @@ static void known_meshes_have_the_expected_topology(void **state)
         he_mesh *m = fixture_mesh(rows[i].faces);
         he_topology t;
         assert_int_equal(he_topology_find(m, &t, NULL), HE_OK);
-        if (rows[i].bowties == 0) { /* at a bow-tie, loops depend on the order of the fans */
+        /* at a bow-tie, the number of boundary loops depends on the order of the fans */
+        if (rows[i].bowties == 0) {
             assert_int_equal(t.boundary_loops, rows[i].loops);
         }
         assert_int_equal(t.isolated_vertices, rows[i].isolated);

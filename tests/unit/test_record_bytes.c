@@ -2,7 +2,8 @@
  * was written, every later release must be able to read the bytes below, and damaged records must
  * be refused with the offset of the damage.
  *
- * `test_record_bytes --write FOLDER` writes the records of this test as seeds of fuzz_record. */
+ * `test_record_bytes --write FOLDER` writes the records of this test as first inputs of the fuzzer
+ * fuzz_record. */
 #include "journal/record_bytes.h"
 
 #include "journal/crc32c.h"
@@ -212,7 +213,8 @@ static void a_cut_or_a_flipped_bit_is_refused(void **state)
         size_t size = frame_of(&specimens[i].record, CHAIN, bytes);
         for (size_t n = 0; n < 9 * size; n++) {
             size_t cut = n < size ? n : size, bit = n - size;
-            unsigned char *exact = malloc(cut + 1); /* a sanitizer detects reads past its end */
+            /* a block that ends with the record, so that a sanitizer detects reads past the end */
+            unsigned char *exact = malloc(cut + 1);
             memcpy(exact + 1, bytes, cut);
             if (n >= size) {
                 exact[1 + bit / 8] ^= (unsigned char)(1u << bit % 8);

@@ -225,8 +225,8 @@ static bool runs_twice(const runs *r)
     return twice;
 }
 
-/* Requires that a and b have the same directed edges, not counting edges used in both directions,
- * which cancel out. */
+/* Requires that the loops in `a` and those in `b` have the same directed edges, not counting edges
+ * used in both directions, which cancel out. */
 static void expect_same_rim(const runs *a, const runs *b)
 {
     for (uint32_t v = 0; v < 11; v++) {
@@ -237,8 +237,8 @@ static void expect_same_rim(const runs *a, const runs *b)
     }
 }
 
-/* Checks the faces with which the repair replaced face f of the soup; they begin at face `at` of
- * the result. Returns how many there are. */
+/* Checks the faces with which the repair replaced face f of the soup; the first of them is face
+ * `at` of the result. Returns by how many faces f was replaced. */
 static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
                             const uint32_t *from, size_t at)
 {
@@ -323,7 +323,8 @@ static void expect_no_duplicates(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Counts the faces that have the edge a-b, separately for each direction. */
+/* Counts the faces that have the edge between the vertices `a` and `b`: those that use it from a to
+ * b, and those that use it from b to a. */
 static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
 {
     *up = *down = 0;
@@ -338,8 +339,8 @@ static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up
 }
 
 /* Returns whether faces can be reversed so that the two faces of each edge use it in opposite
- * directions. A union-find has two entries for each face, one as it is and one reversed; if both
- * are in one class, the answer is no. */
+ * directions. A union-find has two entries for each face, one for the face as it is and one for the
+ * reversed face; if both entries are in one class, the function returns false. */
 static bool is_orientable(const he_soup *soup)
 {
     size_t n = soup->face_count;

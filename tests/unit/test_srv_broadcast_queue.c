@@ -78,7 +78,7 @@ static void everybody_reads_everything_once(void **state)
     join(&late, &late_wakes);
     add(9, 5);
     st_queue_allow(&feed, 9);
-    assert_int_equal(early_wakes, 0); /* the listener is not waiting yet */
+    assert_int_equal(early_wakes, 0); /* `early` is not waiting, so it must not be woken */
     assert_reads(&early, "8;9;");
     assert_reads(&late, "9;");
     add(10, 5);
@@ -86,7 +86,7 @@ static void everybody_reads_everything_once(void **state)
     assert_int_equal(early_wakes, 1);
     add(12, 6);
     st_queue_allow(&feed, 12);
-    assert_int_equal(early_wakes, 1); /* one wake-up for each time it waits */
+    assert_int_equal(early_wakes, 1); /* a listener is woken once per wait, not once per message */
     assert_int_equal(late_wakes, 1);
     assert_reads(&early, "10;12;");
     assert_reads(&late, "10;12;");
@@ -110,7 +110,8 @@ static void what_is_not_allowed_is_not_read(void **state)
     assert_int_equal(wakes, 1);
     assert_reads(&listener, "8;9;");
     st_queue_end(&feed);
-    assert_step(&listener, ST_QUEUE_WAIT); /* the end of the stream waits for position 10, too */
+    /* message 10 must be read before the queue ends, but it is not released yet */
+    assert_step(&listener, ST_QUEUE_WAIT);
     st_queue_allow(&feed, 10);
     assert_reads(&listener, "10;");
     assert_step(&listener, ST_QUEUE_ENDED);
@@ -167,8 +168,8 @@ static void who_is_slow_is_behind_once(void **state)
         add(stamp, stamp);
     }
     assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
-    /* A slow listener may read the position from which it can continue only when this position is
-     * durable. */
+    /* A slow listener has missed messages. It may learn from which position it can continue only
+     * when this position is durable. */
     assert_step(&slow, ST_QUEUE_WAIT);
     st_queue_allow(&feed, stamp - 3);
     assert_step(&slow, ST_QUEUE_BEHIND);
@@ -204,7 +205,8 @@ static void bytes_are_bounded_too(void **state)
     st_queue_shed(&feed); /* messages are kept while there is a listener */
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
     st_queue_leave(&slow);
-    assert_true(st_queue_is_followed(&feed)); /* the last listener left only now */
+    /* a queue counts as followed until some time after its last listener left */
+    assert_true(st_queue_is_followed(&feed));
     st_queue_shed(&feed);
     assert_int_equal(feed.count, 0);
     assert_int_equal(feed.bytes, 0);
@@ -277,7 +279,7 @@ typedef struct reader {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool woken, leaves;
-    uint64_t last; /* stamp of the last message that it read */
+    uint64_t last; /* stamp of the last message that the reader has read */
     unsigned behind;
 } reader;
 

@@ -204,8 +204,8 @@ static void await_all(writer writers[WRITERS])
     }
 }
 
-/* Allocates all memory that the budget has left, and returns the number of blocks. It must try
- * repeatedly, because other threads free memory meanwhile. */
+/* Allocates all memory that the budget has left, and returns the number of blocks. The function
+ * tries repeatedly, because other threads free memory meanwhile. */
 static size_t take_all(void **blocks, size_t count)
 {
     for (size_t size = LARGE; size >= SMALL / 16; size /= 4) {

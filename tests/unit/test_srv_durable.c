@@ -224,7 +224,7 @@ static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
 
 typedef struct answer {
     st_wait wait;
-    uint64_t needs[MESHES]; /* newest record of each mesh that the answer shows */
+    uint64_t needs[MESHES]; /* for each mesh, position of its newest record that the answer shows */
     _Atomic bool over;
 } answer;
 
@@ -405,8 +405,8 @@ static void read_one(worker *w)
     if (!info.removed) {
         show_mesh(w->store, &w->answers[w->made++], &info);
     } else if (mesh == NULL) {
-        /* The mesh was not found, so the answer depends on its last deletion, unless that was
-         * durable before the search. */
+        /* The mesh was not found, so the answer depends on the last deletion of the mesh, unless
+         * this deletion was durable before the search. */
         bool shows = removed > since && removed < st_waits_newest(st_store_waits(w->store));
         const uint64_t needs[MESHES] = {shows ? removed : 0};
         send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);

@@ -184,7 +184,9 @@ static void snapshots_of_earlier_revisions(void **state)
         take_picture(&pictures, mesh);
         uint64_t revision = 1 + md_below(&random, (uint32_t)pictures.head);
         expect_snapshot(&pictures, mesh, revision);
-        if (i % 16 == 0) { /* a snapshot that is held keeps its copy */
+        /* the test holds a snapshot through 16 changes, so the store must keep this copy of the
+         * mesh */
+        if (i % 16 == 0) {
             if (held != NULL) {
                 st_snapshot_release(held);
             }

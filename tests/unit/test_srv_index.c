@@ -67,8 +67,8 @@ static void make_store(size_t meshes)
     store_sql_run(folder, text);
 }
 
-/* Flips one bit of the id, wherever the id is stored in the table or its index, and starts the
- * store; repeats this for each bit. Returns how many starts were refused. */
+/* Finds the places where the table and its index store the id. At one place after another, flips a
+ * bit of the id and requires that the store then refuses to start. Returns the number of places. */
 static unsigned expect_refusals(const char *id)
 {
     size_t size;
@@ -98,7 +98,8 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     expect_start(folder);
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
-    /* The table gets the index of another column in place of its own. */
+    /* The schema of the database now names, for one index of the table, the first page of another
+     * index. */
     store_sql_run(
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
                 "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "

@@ -282,7 +282,8 @@ static void a_staged_content_is_that_of_its_record(void **state)
     st_stage *stage;
     const st_journal *j = &told.journal;
     kept_append(j, kept_edit(&mesh), &mesh, "x", 1);
-    /* The edit replaces the content and can be undone, so the old base must stay. */
+    /* The edit replaces the content and can be undone, so the old base (the record with the whole
+     * old content) must stay. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     st_record record = kept_edit(&mesh);
     record.stage = stage;
@@ -384,7 +385,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     for (unsigned char i = 0; i < 20; i++) {
         kept_append(j, kept_edit(&mesh), &mesh, &i, 1);
     }
-    kept_mesh behind = mesh; /* the new base has the state after record 22 */
+    /* the new base (a record with the whole content) has the state after record 22 */
+    kept_mesh behind = mesh;
     st_record facts = kept_edit(&behind);
     facts.name = mesh.name;
     facts.inverts = 3;
@@ -406,7 +408,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     loaded_clear(&l);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT min(number) FROM record"), 23);
-    /* A base whose record number never existed must be ignored and deleted. */
+    /* A new base (a record with the whole content) whose number and revision are those of different
+     * records must be ignored and deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
@@ -491,7 +494,8 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         st_card at_once;
         assert_int_equal(j->open(j->self, "bad", &at_once, NULL), ST_DAMAGED);
         assert_true(at_once.damage[0] != '\0');
-        /* From now on, the row of the mesh in the list of meshes must describe the damage. */
+        /* After the damage was found, the row of the mesh in the list of meshes must describe
+         * this damage. */
         kept_mesh other = mesh_as("other", NULL);
         he_mesh *content = script_mesh("012", NULL);
         other.content = content;

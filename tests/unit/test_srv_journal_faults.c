@@ -368,8 +368,8 @@ static void what_was_made_and_lost_was_never_there(void **state)
 
 enum { EDITS = 12 };
 
-/* Appends one record after another while the N-th sync fails; the first record creates the mesh.
- * Returns how many records were acknowledged. */
+/* Appends one record after another; the first record creates the mesh. The caller has chosen a sync
+ * of the disk that fails. Returns how many records were acknowledged. */
 static unsigned append_while_failing(told_journal *told, kept_mesh *mesh)
 {
     const st_journal *j = &told->journal;
@@ -418,7 +418,7 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
         open_store(&told, 0);
         unsigned records = 0;
         st_status status = count_records(&told.journal, "a", &records);
-        /* One more record than was acknowledged may be there: it was written before the sync
+        /* There may be one record that was not acknowledged, because it was written before the sync
          * failed. */
         assert_true(status == ST_OK ? records + 1 >= acknowledged && records <= acknowledged
                                     : status == ST_ABSENT && acknowledged == 0);

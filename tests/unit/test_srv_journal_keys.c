@@ -216,7 +216,7 @@ static void a_key_of_a_request_that_changed_nothing_is_kept(void **state)
 static bool count_key(void *context, const st_kept_key *key)
 {
     uint64_t *at = context;
-    assert_true(key->key.digest[1] > at[1]); /* keys are in the order of time */
+    assert_true(key->key.digest[1] > at[1]); /* keys must come in the order of time */
     at[1] = key->key.digest[1];
     at[0]++;
     return true;

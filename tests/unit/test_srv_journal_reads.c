@@ -209,8 +209,9 @@ static void a_record_of_a_newer_release_is_refused_with_both_versions(void **sta
     assert_int_equal(read_to_end(), ST_OK);
 }
 
-/* A content was written to the disk to become the new base, but a PUT replaced the content of the
- * mesh before that: the unused content must be deleted. */
+/* A content was written to the disk as a new base (the record from which a mesh is loaded), but
+ * before it was used, a PUT replaced the content of the mesh: the unused content must be
+ * deleted. */
 static void a_base_before_the_base_leaves_nothing(void **state)
 {
     (void)state;
@@ -232,8 +233,8 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 0);
 }
 
-/* Reads the mesh "a", and requires its base, record 2, whose edit is `bytes` in several parts, and
- * record 3. */
+/* Reads the mesh "a", and requires that it has its base (the record with a whole content), then
+ * record 2, an edit whose parts together are `bytes`, then record 3. */
 static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes, size_t size)
 {
     st_reader *reader = NULL;

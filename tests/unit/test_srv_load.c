@@ -150,8 +150,9 @@ static uint64_t dropped_by(st_mesh *mesh)
 
 /* Applies undo (or redo) to both meshes as often as possible, and requires equal states. Each step
  * makes a revision, for which the histories may have to drop old entries. Some entries take more
- * bytes in one mesh than in the other, so `is` may drop a step earlier; then the function returns
- * false. The journal must have been told to ignore these steps. */
+ * bytes in one mesh than in the other, so the history of `is` may drop an entry earlier than that
+ * of `was`; then the function returns false. The caller must make the journal ignore these
+ * steps. */
 static bool expect_stack(st_mesh *was, st_mesh *is, st_action which)
 {
     while (writing_step(was, which, 1) == ST_OK) {
@@ -449,8 +450,9 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
     kept_journal_free(journal);
 }
 
-/* A content was written to the disk as a new base, but undo can still lead to states before it, so
- * it must wait. If the content of the mesh is replaced now, the waiting base must be deleted. */
+/* A content was written to the disk as a new base (the record from which a mesh is loaded), but is
+ * not used yet, because undo can still lead to earlier states. If the content of the mesh is
+ * replaced now, the unused base must be deleted. */
 static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
 {
     (void)state;
@@ -464,11 +466,13 @@ static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
         assert_true(writing_commit(&w, "vertex_move", NULL));
     }
     await_bases(pool);
-    assert_int_equal(kept_journal_out(journal), 1); /* the new base waits on the disk */
+    /* one new base is on the disk, but not in use */
+    assert_int_equal(kept_journal_out(journal), 1);
     assert_int_equal(writing_replace(mesh, script_mesh("012,023", NULL), NULL, NULL), ST_OK);
     assert_int_equal(kept_journal_out(journal), 0);
     assert_int_equal(kept_journal_facts(journal, "m").base, 1);
-    /* The replacement wrote the whole content, so the store must not write another base. */
+    /* The replacement wrote the whole content, so the store must not write the content again as a
+     * new base. */
     await_bases(pool);
     assert_int_equal(kept_journal_out(journal), 0);
     end_rebased(mesh, store, pool);

@@ -21,8 +21,9 @@ enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
 
 typedef struct tally {
     _Atomic uint32_t runs[PARTS];
-    const he_parallel *parallel; /* NULL, or a pool on which each part runs further parts */
-    uint32_t failing;            /* parts with this number or a higher one fail */
+    /* NULL, or a pool on which each part of the work runs further parts */
+    const he_parallel *parallel;
+    uint32_t failing; /* parts of the work with this index or a higher one fail */
 } tally;
 
 static he_status count_part(void *context, uint32_t part, he_error *err)

@@ -118,7 +118,8 @@ static void new_limits_hold_at_once_for_a_bucket_that_is_there(void **state)
     assert_true(admit(rates, 1, &small, START, &said));
     assert_true(admit(rates, 1, &small, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    assert_true(admit(rates, 1, &large, START, &said)); /* admits two more requests, not four */
+    /* the bucket admits two more requests, not four, because two were made before */
+    assert_true(admit(rates, 1, &large, START, &said));
     assert_true(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
@@ -458,7 +459,8 @@ static void a_request_costs_as_much_among_many_clients_as_among_few(void **state
     }
     printf("note: limits cost a request %.2f us with 16 clients, %.2f us with %d\n", costs[0],
            costs[1], API_ADDRESS_RATES);
-    assert_true(costs[0] < 20 && costs[1] < 20); /* generous, for sanitizers on slow machines */
+    /* a generous limit, for sanitizers on slow machines */
+    assert_true(costs[0] < 20 && costs[1] < 20);
 }
 
 int main(void)

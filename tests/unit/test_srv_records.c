@@ -57,8 +57,8 @@ static he_mesh *copy_of_content(void)
     return copy;
 }
 
-/* Requires that the newest record has these properties and the present facts of the mesh; returns
- * it. */
+/* Requires that the newest record has these properties and the present name, revision and other
+ * facts of the mesh; returns the record. */
 static const st_record *expect(st_record_kind kind, bool barrier, const char *ops, uint64_t inverts)
 {
     const st_record *r = &journal.record;

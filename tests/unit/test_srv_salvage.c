@@ -168,8 +168,8 @@ static void a_damaged_page_costs_what_was_on_it(void **state)
            "at least are whole\n",
            size / PAGE, refused, named, lists, least, MESHES);
     assert_int_equal(refused, 1);
-    /* At most three pages may lead to a whole table: the roots of the tables of meshes and of
-     * records, and one page below the root of records. */
+    /* At most three pages may lead to a whole table: the first page of the table of meshes, the
+     * first page of the table of records, and one page to which that page leads. */
     assert_true(lists <= 3);
     assert_true(named + refused + 8 > size / PAGE);
     assert_true(least > MESHES / 2);

@@ -19,8 +19,8 @@
 
 /* --- a clock that the test moves --- */
 
-/* The time by which the test moves the clock: an hour. Even on a busy machine, no part of a request
- * really takes a tenth of it. */
+/* The test moves the clock by an hour. Even on a busy machine, no part of a request really takes a
+ * tenth of an hour. */
 static const uint64_t passing = UINT64_C(3600) * 1000000;
 
 typedef enum moment { NEVER, AT_LOCK, AT_WORK, AT_POOL, AT_STORE } moment;
@@ -34,7 +34,7 @@ static void pass(void)
     atomic_fetch_add(&passed, passing);
 }
 
-/* Moves the clock, once, when the server reaches the point for which the test has armed it. */
+/* Moves the clock, once, when the server reaches the point that the test has stored in `armed`. */
 static void come_to(moment here)
 {
     moment expected = here;
@@ -227,7 +227,8 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     send_text(fd, request);
 }
 
-/* Reads until the server closes the connection, closes it, too, and returns the number of bytes. */
+/* Reads until the server closes the connection, then closes the client's socket and returns the
+ * number of bytes that were read. */
 static size_t read_all(int fd)
 {
     static char bytes[1 << 16];
@@ -279,7 +280,8 @@ static void time_before_a_thread_is_free_is_in_the_queue(void **state)
 {
     (void)state;
     atomic_store(&armed, AT_POOL);
-    put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}"); /* runs on a thread for long work */
+    /* making such a large mesh runs on a thread for long work */
+    put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}");
     assert_int_equal(sem_trywait(&reached), 0);
     stop_and_find("queue_us");
 }

@@ -45,7 +45,9 @@ typedef struct expected {
     uint64_t revision; /* revision of the mesh "m" */
     double x;          /* x of vertex 0 of the mesh "m" */
     uint32_t vertices;
-    double undo[STEPS], redo[STEPS]; /* x after each undo or redo, the next one last */
+    /* x of vertex 0 after each possible undo and redo; the last element is for the next undo or
+     * redo */
+    double undo[STEPS], redo[STEPS];
     uint32_t undos, redos;
     bool renamed;
 } expected;

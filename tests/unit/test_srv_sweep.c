@@ -70,12 +70,13 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
 {
     (void)state;
     pairs p;
-    const srv_deadline_options options = {.max_connections = LATE}; /* idle for 0 s at most */
+    /* connections may be idle for 0 s */
+    const srv_deadline_options options = {.max_connections = LATE};
     srv_deadlines *d = srv_deadlines_new(&options);
     assert_non_null(d);
     open_pairs(d, &p);
     char byte;
-    for (int i = 0; i < LATE; i++) { /* waits until each connection is closed */
+    for (int i = 0; i < LATE; i++) { /* waits until the server has closed each connection */
         assert_int_equal(recv(p.others[i], &byte, 1, 0), 0);
     }
     assert_true(closed >= LATE);

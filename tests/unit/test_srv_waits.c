@@ -61,7 +61,7 @@ static void count(st_wait *wait)
     in_order = in_order && wait->shown.position >= last;
     last = wait->shown.position;
     resumed++;
-    wait->resume = NULL; /* a second call of `resume` would crash */
+    wait->resume = NULL; /* a second call of `resume` for this wait would crash */
 }
 
 /* Adds a wait; returns false if it has ended already. */
@@ -102,8 +102,8 @@ static void one_notice_releases_a_thousand(void **state)
     }
 }
 
-/* A wait for any position of a lost interval, including both its ends, must end as lost; but only a
- * wait for the mesh whose records were lost. */
+/* A wait for any position of a lost interval, including both ends of the interval, must end as
+ * lost, but only if it waits for the mesh whose records were lost. */
 static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
 {
     (void)state;
@@ -198,8 +198,8 @@ static void *stop_waits(void *context)
     return NULL;
 }
 
-/* While this wait is being resumed, another thread stops all waits. It is given enough time that it
- * would return too early, if it did not wait for this function to end. */
+/* Resumes a wait while another thread calls st_waits_stop. This function takes so long that
+ * st_waits_stop would return earlier, if it did not wait until all waits are resumed. */
 static void resume_slowly(st_wait *wait)
 {
     pthread_t stops;

@@ -2,8 +2,9 @@
  * and damaged bytes must be refused with a reason and an offset. test_op_table.c converts every
  * operation to bytes and back.
  *
- * `test_stored --write FOLDER` writes the golden files of a new version of the format; those of a
- * released version must never change. They are also the seeds of fuzz_stored. */
+ * `test_stored --write FOLDER` writes the golden files (expected bytes) of a new version of the
+ * format; those of a released version must never change. They are also the first inputs of the
+ * fuzzer fuzz_stored. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -282,8 +283,8 @@ static void contents_and_edits_come_back_from_their_bytes(void **state)
     }
 }
 
-/* Writes a golden file to memory: the length of the content, the content, the numbers of ids issued
- * after the edit, and the edit. Returns its size. */
+/* Writes a golden file (the expected bytes of an edit) to memory: the length of the content, the
+ * content, how many ids were issued after the edit, and the edit. Returns the size of the file. */
 static size_t golden_of(const specimen *s, unsigned char *to)
 {
     specimen_run run = run_of(s);
@@ -299,8 +300,9 @@ static size_t golden_of(const specimen *s, unsigned char *to)
     return size;
 }
 
-/* Reads the golden files and encodes the contents again, which must give the same bytes. This does
- * not use the operations, which may change. */
+/* Reads the golden files (expected bytes of each version of the format) and encodes the contents
+ * again, which must give the same bytes. The test runs no operations on meshes, because their
+ * results may change. */
 static void golden_files_are_read_and_written_again(void **state)
 {
     (void)state;
@@ -383,7 +385,8 @@ static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *s
     he_delta *delta = NULL;
     he_error err = {.status = HE_OK};
     unsigned char *exact = malloc(damaged.size + 1);
-    memcpy(exact + 1, damaged.bytes, damaged.size); /* a sanitizer detects reads past their end */
+    /* The block ends with the bytes, so that a sanitizer detects reads past the end. */
+    memcpy(exact + 1, damaged.bytes, damaged.size);
     he_status status =
         he_stored_edit_forward(exact + 1, damaged.size, run->issued, m, &delta, &err);
     if (status != HE_OK) {
@@ -535,7 +538,8 @@ static void a_small_content_gets_no_large_memory(void **state)
 
 /* --- contents in several parts --- */
 
-/* Makes a mesh whose content takes many parts; its labels alone take more than one part. */
+/* Makes a mesh whose content takes many parts; the labels (texts) of its attribute alone take more
+ * than one part. */
 static he_mesh *large_mesh(void)
 {
     he_mesh *m = script_mesh("012,023,034,045", NULL);
