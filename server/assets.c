@@ -111,7 +111,7 @@ static char *read_all(int fd, size_t length)
 typedef struct file {
     int folder;
     const char *name;
-    const char *prefix; /* comes before the name in the path of a request */
+    const char *prefix; /* `prefix` precedes the file's name in the path of a request */
 } file;
 
 /* Reads a file of the page into memory and adds it, or skips it if it is not a regular file.

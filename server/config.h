@@ -28,8 +28,9 @@ typedef struct srv_config {
     const char *config; /* the configuration file; "" if there is none */
     const char *listen;
     bool insecure;
-    const char *tokens;             /* the file of tokens; "" if requests need no token */
-    const char *tls_cert, *tls_key; /* files; both are "" if the daemon uses no TLS */
+    const char *tokens; /* path of the file of tokens; "" if requests need no token */
+    /* Paths of the certificate and the key; both are "" if the daemon uses no TLS. */
+    const char *tls_cert, *tls_key;
     srv_policy policy; /* which requests browsers may send; `trusted_proxies` fills its proxies */
     srv_names trusted_proxies;
     const char *web;   /* folder of the page; "": it is searched beside the executable */
@@ -38,7 +39,7 @@ typedef struct srv_config {
     uint64_t log;        /* srv_log_kind */
     uint64_t log_format; /* srv_log_format */
     uint64_t log_level;  /* srv_level of server/log/line.h */
-    uint64_t slow;       /* milliseconds; 0: slow requests are not logged */
+    uint64_t slow;       /* milliseconds from which on a request is logged as slow; 0: none is */
 
     uint64_t max_upload;    /* bytes */
     uint64_t memory_budget; /* bytes; 0: three quarters of st_memory_limit_find */
@@ -52,16 +53,19 @@ typedef struct srv_config {
     uint64_t max_connections;
     uint64_t max_listeners, max_mesh_listeners;
 
-    api_limits token_limits, address_limits; /* of each token and each address: api/limit/limit.h */
-    uint64_t limit_burst;                    /* seconds */
+    /* Limits of each token and of each address: api/limit/limit.h. */
+    api_limits token_limits, address_limits;
+    uint64_t limit_burst; /* seconds */
 
     uint64_t heartbeat;                                                 /* seconds */
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 
-    const char *backup, *restore, *dump; /* two files and a folder; NULL if not given */
+    /* Paths given with --backup, --restore (files) and --dump (a folder); NULL if not given. */
+    const char *backup, *restore, *dump;
     bool help, version, print_config, healthcheck, verify, new_token;
-    const char *healthcheck_url;         /* NULL: /livez at the address of `listen` */
+    /* The URL that --healthcheck asks; NULL: /livez at the address of `listen`. */
+    const char *healthcheck_url;
     const char *verified;                /* the file that --verify reads; NULL: the store */
     const char *token_name, *token_role; /* arguments of --new-token; NULL if not given */
 

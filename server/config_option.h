@@ -25,7 +25,8 @@ typedef enum srv_option_kind {
 } srv_option_kind;
 
 typedef struct srv_option {
-    const char *name; /* --name; the variable is HEDGE_ and the name in capitals with '_' */
+    /* The flag without its dashes; the variable is HEDGE_ and the name in capitals with '_'. */
+    const char *name;
     srv_option_kind kind;
     size_t member;
     const char *fallback; /* the default, as a user would write it */

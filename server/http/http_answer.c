@@ -14,7 +14,9 @@
 enum {
     /* The size of the buffer that libmicrohttpd allocates for an answer sent piece by piece. */
     ANSWER_BLOCK = 64 * 1024,
-    LIVE_BLOCK = 1024 /* for a stream of events, of which there may be thousands; HTTP/1.0 only */
+    /* Size of that buffer for a stream of events to an HTTP/1.0 client; there may be thousands of
+     * streams. */
+    LIVE_BLOCK = 1024
 };
 
 /* --- answers sent piece by piece --- */

@@ -88,12 +88,13 @@ typedef struct srv_connection {
     gnutls_session_t session; /* NULL if the connection does not use TLS */
     api_metrics *metrics;     /* count the handshake; NULL: not counted */
     srv_certificates *certificates;
-    srv_certificate *certificate; /* reference to what the handshake shows; NULL before it */
-    bool is_proxy;                /* whether the peer is a trusted proxy: proxy.h */
-    api_rate_key client;          /* key of the peer's address, by srv_address_key */
-    uint32_t of_peer;             /* what srv_peers_enter returned for the connection */
-    _Atomic bool beyond;          /* the peer's address has more connections than allowed */
-    uint32_t buffer;              /* number of the connection's buffer in http_buffer.h */
+    /* Reference to the certificate that the handshake shows; NULL before the handshake. */
+    srv_certificate *certificate;
+    bool is_proxy;       /* whether the peer is a trusted proxy: proxy.h */
+    api_rate_key client; /* key of the peer's address, by srv_address_key */
+    uint32_t of_peer;    /* what srv_peers_enter returned for the connection */
+    _Atomic bool beyond; /* the peer's address has more connections than allowed */
+    uint32_t buffer;     /* number of the connection's buffer in http_buffer.h */
     /* The members from here on are used by the worker only. */
     srv_syntax syntax;
     uint64_t requests;   /* number of requests of the connection that libmicrohttpd has begun */
@@ -103,7 +104,8 @@ typedef struct srv_connection {
     bool counts_sent;    /* `sent` is used, because a Unix socket does not report bytes sent */
     _Atomic uint64_t sent; /* bytes sent, if they are counted; the thread reads it, too */
     /* The members from here on are used by the thread only, except `peer`. */
-    uint64_t acked;                /* number of bytes that the client had received when checked */
+    /* Number of bytes that the client had received at the last check. */
+    uint64_t acked;
     uint64_t window, window_acked; /* time and `acked` when measuring the rate began; 0: not yet */
     uint64_t taken;  /* `since` of an IDLE stage in which all of the answer was read; 0: none */
     uint64_t kept;   /* bytes in the kernel's buffer at the last check */

@@ -12,7 +12,9 @@
 #include <strings.h>
 
 enum {
-    SWALLOW = 256 * 1024, /* if more of a refused body is to come, the connection is closed */
+    /* Most bytes of a refused body that are skipped; if more are to come, the connection is
+     * closed. */
+    SWALLOW = 256 * 1024,
     WORKER_MICROS = 20000 /* time for a read on a worker, before the read moves to the pool */
 };
 
@@ -135,7 +137,8 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
-    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* until a worker continues with the request */
+    /* The request now waits until a worker continues with it. */
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE);
     MHD_resume_connection(r->connection);
 }
 

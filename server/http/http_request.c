@@ -129,7 +129,8 @@ void srv_request_end(srv_request *r)
         tell_log(r, now);
     }
     bool counted = r->counted;
-    srv_request_resumed(r); /* does something only if the connection ended while suspended */
+    /* A connection that ended while it was suspended still counts as suspended. */
+    srv_request_resumed(r);
     if (r->block > 0) {
         atomic_fetch_sub(&http->downloads, 1);
         st_memory_count(-(int64_t)r->block);

@@ -136,8 +136,8 @@ static void *run(void *context)
 static void wake_thread(srv_streams *streams)
 {
     uint64_t one = 1;
-    (void)!write(streams->changed, &one,
-                 sizeof one); /* fails only if it is full: then it wakes, too */
+    /* The write fails only if the eventfd's counter is full: then the thread wakes up anyway. */
+    (void)!write(streams->changed, &one, sizeof one);
 }
 
 static void release(srv_streams *streams)

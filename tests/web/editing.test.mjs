@@ -69,7 +69,7 @@ test('arrows show the half-edge selected, next, prev and twin, then are gone', a
     const context = await openMesh(t, GRID);
     const { daemon, mesh, page } = context;
     const place = await projector(page, daemon, mesh);
-    // The edge must lie between two faces.
+    // The edge chosen here must lie between two faces, so that both half-edges have a face.
     const { halfedges: [id] } = (await getAll(daemon, mesh, 'edges')).find((e) => !e.boundary);
     const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);
     const { next, prev, twin } = halfedge;

@@ -48,7 +48,8 @@ export class Refining {
             this.#position = Number(slider.value);
             this.#schedule();
         });
-        // Esc must work on the button, too, which has the focus until the coarsest level is shown.
+        // The Esc key must also work while the focus is on the button, until the coarsest level is
+        // shown.
         for (const element of [button, box]) {
             element.addEventListener('keydown', (event) => {
                 if (event.key === 'Escape') {

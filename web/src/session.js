@@ -175,7 +175,8 @@ export class Session {
             return;
         }
         this.#fetch(wanted).catch((error) => {
-            // Without a connection the event stream ends, too. This is shown, so the error is not.
+            // Without a connection the event stream ends, too. The page shows that the connection
+            // is lost, so it shows no error of this request.
             if (error.status !== 0) {
                 this.#onError(error);
             }

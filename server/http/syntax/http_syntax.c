@@ -140,7 +140,8 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
         if (s->digits == MINOR ? !is_digit : *at != version[s->digits]) {
             return fail(s, at, line_fault(*at, SRV_FAULT_VERSION));
         }
-        s->old = *at == '0'; /* decided by the last character, the minor version */
+        /* The last character, the minor version, decides whether the version is HTTP/1.0. */
+        s->old = *at == '0';
         s->digits++;
     }
     if (at == end) {
