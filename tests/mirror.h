@@ -39,7 +39,7 @@ typedef struct mirror_column {
 
 typedef struct mirror {
     uint64_t revision;
-    /* one for each kind of element; that of edges is not used */
+    /* one table of rows for each kind of element; the table of edges is not used */
     mirror_table tables[HE_KIND_COUNT];
     mirror_column *columns;
     size_t column_count;
@@ -72,8 +72,8 @@ mirror_step mirror_apply(mirror *m, const cJSON *data);
  * difference. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
-/* Returns the first live element with an id from `from` on, continuing at 0 after the last id;
- * HE_NONE if no element is live. An edge is live if its half-edges are in the copy. */
+/* Returns the first live element in the copy with an id from `from` on, continuing at 0 after the
+ * last id; HE_NONE if no element is live. An edge is live if its half-edges are in the copy. */
 uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
 size_t mirror_count(const mirror *m, he_kind kind);
 

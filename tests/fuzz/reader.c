@@ -198,7 +198,7 @@ static void mend_as_advised(subject *s, unsigned which)
     md_random random = s->random;
     unsigned advised = mend(s, which);
     if (advised != 0) {
-        s->random = random; /* so that the same tolerance is drawn */
+        s->random = random; /* both repairs must draw the same tolerance */
         FUZZ_REQUIRE(mend(s, advised) == 0, "%#x, advised after %#x, is not enough", advised,
                      which);
     }

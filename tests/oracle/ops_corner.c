@@ -70,7 +70,7 @@ static bool holds(const uint32_t *list, uint32_t count, uint32_t x)
     return false;
 }
 
-/* Inserts the vertex w as a corner in front of the corner i. */
+/* Inserts the vertex w as a corner of a face in front of the corner with the index i. */
 static void insert_at(or_face *f, uint32_t i, uint32_t w)
 {
     assert(f->count < OR_CORNERS);

@@ -15,7 +15,7 @@ static uint32_t left_of(const or_mesh *o, uint32_t a, uint32_t b)
     return o->left[a][b];
 }
 
-/* Inserts w as a corner of the face between a and the next corner. */
+/* Inserts the vertex w as a corner of the face, between the corner a and the next corner. */
 static void insert_after(or_face *f, uint32_t a, uint32_t w)
 {
     uint32_t i = or_place(f, a) + 1;
@@ -32,8 +32,8 @@ static void remove_corner(or_face *f, uint32_t v)
     f->count--;
 }
 
-/* Splits the edge e at t by a new vertex; the part that keeps the id has the origin of half-edge
- * 2e. Returns the new vertex. */
+/* Splits the edge e by a new vertex at the fraction t of its length; the part that keeps the id has
+ * the origin of half-edge 2e. Returns the new vertex. */
 static uint32_t cut_edge(or_mesh *o, uint32_t e, double t)
 {
     uint32_t a = o->edge[e].a;
@@ -100,7 +100,8 @@ uint64_t or_edge_join(or_mesh *o, uint32_t v)
     return 0;
 }
 
-/* Returns the corner after b in the face left of a->b; the diagonal of the split ends there. */
+/* Returns the corner after b in the face left of the side a->b; when that side is split, the
+ * diagonal ends there. */
 static uint32_t corner_beyond(const or_mesh *o, uint32_t a, uint32_t b)
 {
     uint32_t f = left_of(o, a, b);
@@ -322,7 +323,7 @@ void or_draw_together(or_mesh *o, const or_collapse *c)
         if (edge->alive && (edge->a == u || edge->b == u)) {
             uint32_t other = edge->a == u ? edge->b : edge->a;
             if (o->joined[v][other] != OR_NONE) {
-                edge->alive = false; /* v has an edge to this neighbour already */
+                edge->alive = false; /* the vertex v has an edge to this neighbour of u already */
             } else {
                 *(edge->a == u ? &edge->a : &edge->b) = v;
             }

@@ -10,7 +10,7 @@ typedef struct part {
     uint32_t faces[OR_LIST];
     uint32_t count;
     bool in[OR_FACES];
-    /* The directed sides on the rim of the part. */
+    /* The directed sides on the rim of the part: side i runs from from[i] to to[i]. */
     uint32_t from[OR_LIST * 4], to[OR_LIST * 4];
     uint32_t rim;
 } part;

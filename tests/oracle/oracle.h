@@ -58,9 +58,9 @@ typedef struct or_mesh {
     uint32_t vertices, edges, faces; /* numbers of ids issued */
     /* Number of faces that come after the first `faces` and have no ids yet. */
     uint32_t fresh;
-    /* Faces that hedge cut as it liked, with their old corners: into triangles or, by plane_split,
-     * into parts on one side of the plane. `id` is OR_NONE if all triangles are new, because they
-     * fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
+    /* Faces that hedge cut as it liked, with their old corners `was`: into triangles or, by
+     * plane_split, into parts on one side of the plane. `id` is OR_NONE if all triangles are new,
+     * because they fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
     struct {
         uint32_t id, start;
         or_face was;
@@ -69,15 +69,17 @@ typedef struct or_mesh {
     bool by_plane;
     bool chosen[OR_FACES];        /* faces that plane_split cuts */
     double distance[OR_VERTICES]; /* distance of each vertex from the plane; 0 in the plane */
-    /* The refusals that depend on how hedge cut those faces, or on rounding: hedge may report one
-     * of them or succeed. `before` has the lists to which the oracle returns if hedge refuses; NULL
-     * if nothing was changed. */
+    /* The refusals that depend on how hedge cut the faces in `cut`, or on rounding: hedge may
+     * report one of them or succeed. `before` has the lists to which the oracle returns if hedge
+     * refuses; NULL if nothing was changed. */
     uint64_t may;
     struct or_lists *before;
     bool bridging;     /* loop_bridge: hedge joins the loops in `bridge` by faces of its choice */
     or_face bridge[2]; /* the two loops, in the direction around their holes */
-    double twist;      /* the least twist without a doubled edge, if the loops are equally long */
-    bool either;       /* edge_join: one of the two edges in `joining` survives */
+    /* If the loops are equally long: the least twist (sum of the squared lengths of the new edges)
+     * without a doubled edge. */
+    double twist;
+    bool either; /* edge_join: one of the two edges in `joining` survives */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
