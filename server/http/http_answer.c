@@ -252,7 +252,8 @@ bool srv_answer_send(srv_request *r)
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     }
     if (is_live(r) || (!is_streamed(r) && wire.length > SRV_FIRST_SEND_BUFFER)) {
-        widen(r); /* a small send buffer would save nothing, because the answer is in memory */
+        /* A small send buffer would save no memory, because the whole answer is in memory. */
+        widen(r);
     }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;

@@ -16,11 +16,13 @@
 #include <unistd.h>
 
 enum {
-    REST_MICROS = 1000 * 1000, /* a buffer keeps its pages for this time without a request */
-    LOOK_MILLIS = 500,         /* time between checks for buffers whose pages can be returned */
-    AT_ONCE = 32,              /* most buffers whose pages are returned in one check */
-    KEPT = 64,                 /* free buffers that keep their pages for the next connections */
-    LANES = 64                 /* number of workers that --workers allows */
+    /* Microseconds without a request after which the pages of a buffer may be returned. */
+    REST_MICROS = 1000 * 1000,
+    /* Milliseconds between checks for buffers whose pages can be returned. */
+    LOOK_MILLIS = 500,
+    AT_ONCE = 32, /* most buffers whose pages are returned in one check */
+    KEPT = 64,    /* free buffers that keep their pages for the next connections */
+    LANES = 64    /* largest number of workers that --workers allows */
 };
 
 /* The states of a buffer. FREE: it belongs to no connection. USED: its connection has a request.

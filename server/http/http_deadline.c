@@ -21,10 +21,15 @@
 #include <unistd.h>
 
 enum {
-    SWEEP_MILLIS = 500,   /* time between the beginnings of two sweeps over all connections */
-    PAUSE_MILLIS = 10,    /* pause after SRV_CLOSES connections were closed */
-    CROWDED_SECONDS = 2,  /* limit of idle connections and handshakes while there are too many */
-    DRAINS = 64,          /* sockets drained at one time; further ones are closed undrained */
+    /* Milliseconds between the beginnings of two sweeps over all connections. */
+    SWEEP_MILLIS = 500,
+    /* Milliseconds for which no further connection is closed after SRV_CLOSES were closed. */
+    PAUSE_MILLIS = 10,
+    /* Seconds that an idle connection or a handshake may last while there are too many
+     * connections. */
+    CROWDED_SECONDS = 2,
+    /* Most sockets that are drained at one time; further sockets are closed undrained. */
+    DRAINS = 64,
     DRAIN_BYTES = 1 << 20 /* most bytes that are drained from a socket */
 };
 

@@ -15,7 +15,8 @@ enum {
     /* Most bytes of a refused body that are skipped; if more are to come, the connection is
      * closed. */
     SWALLOW = 256 * 1024,
-    WORKER_MICROS = 20000 /* time for a read on a worker, before the read moves to the pool */
+    /* Microseconds that a worker spends on a read before the read moves to the pool of threads. */
+    WORKER_MICROS = 20000
 };
 
 /* All functions of this file that return bool return false to close the connection, unless their
@@ -95,8 +96,8 @@ static void detach(srv_request *r)
     }
 }
 
-/* Returns true if the worker may continue a read, and false if it has spent WORKER_MICROS, because
- * its other connections are waiting. */
+/* Returns true if the worker may continue a request that only reads, and false if it has spent
+ * WORKER_MICROS on it, because the worker's other connections are waiting. */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;

@@ -14,8 +14,9 @@
 #include <unistd.h>
 
 enum {
-    GATHER_MILLIS = 20, /* longest time that the line of a request waits for others */
-    BATCH = 16,         /* most entries that are formatted and then written together */
+    /* Longest time, in milliseconds, that the line of a request waits for other lines. */
+    GATHER_MILLIS = 20,
+    BATCH = 16, /* most entries that are formatted and then written together */
     POLL_MILLIS = 100,
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,
@@ -44,7 +45,9 @@ struct srv_log {
     size_t capacity, first, count;
     uint64_t dropped; /* dropped lines that no line in the log has reported yet */
     _Atomic uint64_t all_dropped;
-    int waited; /* polls in vain since `ending` became true; used by the log's thread only */
+    /* How often the log's thread has polled in vain since `ending` became true; used by that thread
+     * only. */
+    int waited;
     pthread_t thread;
 };
 

@@ -15,8 +15,8 @@ void md_add_polygon(or_mesh *o, md_random *r, bool both_sides);
 /* Adds a prism over a polygon of 3 to 12 sides. `triangles` percent of its quads are split, `caps`
  * percent of its caps exist. */
 void md_add_prism(or_mesh *o, md_random *r, uint32_t triangles, uint32_t caps);
-/* Adds a fan of triangles around a vertex, closed below by another fan (0), by a polygon (1), or
- * not at all. */
+/* Adds a fan of triangles around a vertex. `below` says what closes the fan on its other side:
+ * another fan (0), a polygon (1), or nothing. */
 void md_add_pyramid(or_mesh *o, md_random *r, uint32_t below);
 /* Adds polygons that share one vertex and nothing else. */
 void md_add_bowtie(or_mesh *o, md_random *r);

@@ -185,8 +185,8 @@ uint64_t or_edge_flip(or_mesh *o, uint32_t e)
     return 0;
 }
 
-/* Returns whether the component is a tetrahedron: besides the triangles u,v,c and v,u,d there are
- * only u,c,d and v,d,c. */
+/* Returns whether the component is a tetrahedron: besides the two triangles u,v,c and v,u,d at the
+ * edge from u to v there are only the triangles u,c,d and v,d,c. */
 static bool is_tetrahedron(const or_mesh *o, uint32_t u, uint32_t v, uint32_t c, uint32_t d)
 {
     uint32_t f = left_of(o, u, c);
@@ -238,7 +238,7 @@ static uint32_t features_at(const or_mesh *o, uint32_t v)
     return n;
 }
 
-/* Returns which locks and feature edges forbid merging u into v. */
+/* Returns which locks and feature edges forbid merging the vertex u into the vertex v. */
 static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves)
 {
     uint64_t refused = 0;
@@ -259,8 +259,8 @@ static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves
     return refused | (spoilt ? OR_BIT(HE_FEATURE_EDGE) : 0);
 }
 
-/* Returns whether the point at t between u and v differs from v in any case, however it is
- * rounded. */
+/* Returns whether the point at the fraction t of the way between the vertices u and v differs from
+ * v in any case, however it is rounded. */
 static bool surely_off(double u, double v, double t)
 {
     double most = 8 * DBL_EPSILON * fmax(fabs(u), fabs(v)) + 8 * DBL_TRUE_MIN;

@@ -105,7 +105,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     assert.equal(await page.locator('#level-faces').textContent(), '320 of 320 faces');
     assert.ok(await page.locator('#level-progress').isHidden());
 
-    // The focus must be on the slider, for users of a keyboard.
+    // The focus must be on the slider, so that users of a keyboard can move it at once.
     assert.equal(await page.evaluate(() => document.activeElement.id), 'level');
     await page.keyboard.press('Home');
     await waitForFaces(page, 4);
