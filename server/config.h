@@ -25,25 +25,29 @@ typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_
 typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
 typedef struct srv_config {
-    const char *config; /* the configuration file; "" if there is none */
+    const char *config; /* path of the configuration file; "" if there is none */
     const char *listen;
     bool insecure;
     const char *tokens; /* path of the file of tokens; "" if requests need no token */
     /* Paths of the certificate and the key; both are "" if the daemon uses no TLS. */
     const char *tls_cert, *tls_key;
-    srv_policy policy; /* which requests browsers may send; `trusted_proxies` fills its proxies */
+    /* Rules for the requests that browsers send; its list of proxies is made from
+     * `trusted_proxies`. */
+    srv_policy policy;
     srv_names trusted_proxies;
-    const char *web;   /* folder of the page; "": it is searched beside the executable */
-    const char *store; /* "memory", or "sqlite:" and a folder: see srv_config_folder */
+    const char *web; /* folder of the page; "": the folder is searched beside the executable */
+    /* Where meshes are kept: "memory", or "sqlite:" and a folder; see srv_config_folder. */
+    const char *store;
     bool samples;
     uint64_t log;        /* srv_log_kind */
     uint64_t log_format; /* srv_log_format */
     uint64_t log_level;  /* srv_level of server/log/line.h */
     uint64_t slow;       /* milliseconds from which on a request is logged as slow; 0: none is */
 
-    uint64_t max_upload;    /* bytes */
-    uint64_t memory_budget; /* bytes; 0: three quarters of st_memory_limit_find */
-    uint64_t undo_budget;   /* bytes per mesh */
+    uint64_t max_upload; /* bytes */
+    /* Limit of the daemon's memory in bytes; 0: three quarters of st_memory_limit_find. */
+    uint64_t memory_budget;
+    uint64_t undo_budget; /* bytes per mesh */
     uint64_t max_meshes;
     bool no_compression;
 
@@ -66,7 +70,8 @@ typedef struct srv_config {
     bool help, version, print_config, healthcheck, verify, new_token;
     /* The URL that --healthcheck asks; NULL: /livez at the address of `listen`. */
     const char *healthcheck_url;
-    const char *verified;                /* the file that --verify reads; NULL: the store */
+    /* Path of the file that --verify reads; NULL: the store is verified. */
+    const char *verified;
     const char *token_name, *token_role; /* arguments of --new-token; NULL if not given */
 
     /* Texts that the configuration owns: copies of lists, into which the items of srv_names point,

@@ -29,7 +29,7 @@ typedef struct srv_option {
     const char *name;
     srv_option_kind kind;
     size_t member;
-    const char *fallback; /* the default, as a user would write it */
+    const char *fallback; /* the option's default, as a user would write it */
     const char *argument; /* placeholder in --help */
     uint64_t low, high;
     const char *doc;

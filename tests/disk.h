@@ -15,7 +15,7 @@ void disk_fill(bool full);
 void disk_fill_at(long write);
 /* Makes the N-th sync from now on fail; with 0 all succeed. */
 void disk_fail_at(long sync);
-/* Makes all syncs wait until this is called with false. */
+/* Makes all syncs wait until this function is called with false. */
 void disk_hold(bool held);
 /* Returns the number of syncs since the last disk_fill_at or disk_fail_at. */
 long disk_syncs(void);

@@ -40,7 +40,7 @@ typedef struct failing {
     failing_threads threads; /* option */
     /* Option: name of the call that is run, for the messages of failures. */
     const char *what;
-    bool is_over; /* the last run made fewer than n allocations */
+    bool is_over; /* whether the last run made fewer than n allocations, which ends the loop */
 } failing;
 
 /* Raises n and begins a run whose n-th allocation will fail. Returns false if the loop is over. */

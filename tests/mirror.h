@@ -18,7 +18,8 @@ enum { MIRROR_TEXT = 200, MIRROR_LINKS = 4, MIRROR_COMPONENTS = 16 };
 typedef struct mirror_row {
     bool live;
     double position[3];
-    uint32_t link[MIRROR_LINKS]; /* HE_NONE if the link is null */
+    /* Ids of the elements that the row's element links to; HE_NONE if a link is null. */
+    uint32_t link[MIRROR_LINKS];
 } mirror_row;
 
 typedef struct mirror_table {

@@ -13,7 +13,7 @@ typedef struct slow_journal {
     pthread_mutex_t lock;   /* protects the members below */
     pthread_cond_t changed; /* signalled when records were appended */
     uint64_t newest;        /* position of the newest record */
-    /* the newest position reported as durable; UINT64_MAX: all, also future ones */
+    /* The newest position reported as durable; UINT64_MAX: all positions are, also future ones. */
     uint64_t durable;
     uint64_t groups; /* number of groups of records appended so far */
     char key[32];    /* Idempotency-Key of the request that made the newest record */

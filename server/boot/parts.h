@@ -25,8 +25,10 @@ typedef struct srv_parts {
     st_parallel *parallel;
     st_store *store;
     srv_assets *assets;
-    srv_certificates *certificates; /* NULL if the daemon does not use TLS */
-    api_tokens *tokens;             /* NULL if requests need no token */
+    /* The certificates that clients see; NULL if the daemon does not use TLS. */
+    srv_certificates *certificates;
+    /* The tokens that requests may have; NULL if requests need no token. */
+    api_tokens *tokens;
     api_job_table *job_table;
     srv_backups backups;
     api_service *service;

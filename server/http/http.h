@@ -31,7 +31,9 @@ typedef struct srv_http_options {
     srv_log *log;    /* NULL if nothing is logged */
     const srv_policy *policy;
     srv_deadline_options deadlines;
-    size_t max_sockets; /* connections above deadlines.max_connections, up to this, get a 503 */
+    /* Connections beyond deadlines.max_connections, up to this number of sockets, are answered
+     * 503. */
+    size_t max_sockets;
     size_t address_connections; /* maximum of connections per address; 0: no limit */
     size_t workers;             /* number of worker threads, at least 1 */
     /* Longest time for a request that only reads, while its client waits. */

@@ -21,7 +21,7 @@ enum {
     /* Milliseconds between checks for buffers whose pages can be returned. */
     LOOK_MILLIS = 500,
     AT_ONCE = 32, /* most buffers whose pages are returned in one check */
-    KEPT = 64,    /* free buffers that keep their pages for the next connections */
+    KEPT = 64,    /* number of free buffers that keep their pages for the next connections */
     LANES = 64    /* largest number of workers that --workers allows */
 };
 
@@ -35,7 +35,7 @@ struct lane;
 typedef struct buffer {
     state state;
     uint32_t next, previous; /* neighbours in a list of free buffers or in the worker's list */
-    struct lane *lane;       /* list of the worker that took the buffer */
+    struct lane *lane;       /* the list of idle buffers of the worker that took the buffer */
     uint64_t since;          /* when the buffer became IDLE */
     size_t held;             /* bytes that st_memory_count counts for the buffer */
 } buffer;
@@ -48,7 +48,7 @@ typedef struct lane {
 } lane;
 
 static struct {
-    char *memory; /* the reserved range; NULL before srv_buffers_reserve */
+    char *memory; /* the reserved range of addresses; NULL before srv_buffers_reserve */
     size_t bytes; /* size of one buffer */
     size_t page;
     uint32_t most;

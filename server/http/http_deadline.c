@@ -53,9 +53,9 @@ struct srv_deadlines {
     bool ending;
     int wake; /* an eventfd that wakes the thread */
     pthread_t thread;
-    /* The members below are used by the thread only. */
+    /* The members below are used only by the thread that checks connections. */
     uint64_t swept;  /* when the last sweep over all connections began */
-    uint64_t paused; /* no connection is closed before this time */
+    uint64_t paused; /* time before which no connection is closed */
 };
 
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)

@@ -313,7 +313,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     r->path = framing.path;
     char *mark = strchr(r->target, '?');
     if (mark != NULL) {
-        *mark = '\0'; /* ends the path where the query begins */
+        *mark = '\0'; /* the NUL ends the path where the query begins */
     }
     bool ok = known && admit(r, &head, &framing);
     if (ok && r->client.cors != NULL && strcmp(method, "OPTIONS") == 0 &&

@@ -54,7 +54,7 @@ struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
     srv_deadlines *deadlines;
-    srv_peers *peers; /* NULL if the connections of an address are not limited */
+    srv_peers *peers; /* counts connections by address; NULL if they are not limited */
     srv_streams *streams;
     unsigned port;
     srv_ids ids;
@@ -72,18 +72,20 @@ typedef struct srv_request {
     srv_state state;
     bool counted; /* whether the gate (http_inflight.h) counts the request as running */
     bool aside;   /* whether the gate (http_inflight.h) counts the connection as suspended */
-    bool whole;   /* whether the whole body has arrived */
+    bool whole;   /* whether the whole body of the request has arrived */
     uint64_t started;
     uint64_t number; /* number of the request on its connection, from 1 */
     uint64_t bytes_in, bytes_out;
     uint64_t announced; /* Content-Length; UINT64_MAX: chunked */
-    uint64_t swallowed; /* bytes of the body skipped since the answer was known */
+    /* Number of bytes of the body that were skipped since the answer was known. */
+    uint64_t swallowed;
     char request_id[SRV_REQUEST_ID + 1];
     char *joined; /* values of headers with several lines (http_headers.h); NULL if none */
     srv_client client;
     bool close; /* whether the connection is to be closed after the answer */
 
-    api_exchange *exchange; /* NULL if the answer is `refusal` */
+    /* The exchange that makes the answer; NULL if the answer is `refusal`. */
+    api_exchange *exchange;
     api_step step;
     api_problem refusal;
     api_text text; /* the refusal as JSON */

@@ -45,7 +45,8 @@ typedef struct srv_access {
     /* Duration of each part in microseconds; filled for slow requests only. */
     uint64_t parts[SRV_PARTS];
     char peer[SRV_PEER];
-    char trace_id[SRV_TRACE_ID + 1]; /* "" if the client sent no traceparent: see trace.h */
+    /* Trace id of the request; "" if the client sent no traceparent: see trace.h. */
+    char trace_id[SRV_TRACE_ID + 1];
     /* Parent id that the client sent; "" if it sent none or a malformed one. */
     char parent_id[SRV_SPAN_ID + 1];
     char span_id[SRV_SPAN_ID + 1]; /* the id of this request, sent back in traceparent */

@@ -43,7 +43,7 @@ struct srv_log {
     bool urgent; /* a line of the daemon itself is in the ring, so it is written without delay */
     entry *ring;
     size_t capacity, first, count;
-    uint64_t dropped; /* dropped lines that no line in the log has reported yet */
+    uint64_t dropped; /* number of dropped lines that no line in the log has reported yet */
     _Atomic uint64_t all_dropped;
     /* How often the log's thread has polled in vain since `ending` became true; used by that thread
      * only. */

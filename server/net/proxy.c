@@ -187,7 +187,7 @@ static void read_addresses(srv_told *told, const srv_proxies *proxies, const cha
         char address[SRV_ADDRESS_TEXT];
         if (parse_address(text, length, address)) {
             take_address(told, proxies, address);
-        } else if (length > 0) { /* an empty element does not count: RFC 9110 5.6.1 */
+        } else if (length > 0) { /* an empty element of the list does not count: RFC 9110 5.6.1 */
             take_address(told, proxies, NULL);
             told->malformed = true;
         }
@@ -211,7 +211,8 @@ static bool read_schemes(srv_told *told, const char *value)
 typedef struct pair {
     const char *name;
     size_t name_length;
-    char value[MOST_ADDRESS]; /* without quotes; "" if it is too long to count */
+    /* The value without quotes; "" if it is too long to be an address or a scheme. */
+    char value[MOST_ADDRESS];
 } pair;
 
 static size_t token_length(const char *text)

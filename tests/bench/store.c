@@ -271,7 +271,7 @@ int main(int count, char **arguments)
     const double time = count > 3 ? strtod(arguments[3], NULL) : 1;
     double rates[ROWS][MOST_ROUNDS], median[ROWS];
     st_memory_install(0);
-    (void)run_sqlite(folder, 1, 1, 0.1); /* run once to find the size of a record */
+    (void)run_sqlite(folder, 1, 1, 0.1); /* the writers run once to find the size of a record */
     const size_t size = record_bytes / (records > 0 ? records : 1);
     for (size_t i = 0; i < rounds; i++) {
         rates[RAW][i] = run_raw(folder, size, time);

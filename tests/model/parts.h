@@ -5,7 +5,7 @@
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* Adds n vertices; returns the first. */
+/* Adds n vertices to the oracle at random places; returns the id of the first. */
 uint32_t md_add_vertices(or_mesh *o, md_random *r, uint32_t n);
 /* Adds a face whose corners are the n vertices from `first` on, in this order or backwards. */
 void md_add_row(or_mesh *o, uint32_t first, uint32_t n, bool backwards);
@@ -26,7 +26,7 @@ void md_add_bowtie(or_mesh *o, md_random *r);
 typedef struct md_sheet {
     uint32_t columns, rows;
     bool wrap_x, wrap_y, board;
-    uint32_t triangles; /* percentage of cells that are two triangles */
+    uint32_t triangles; /* percentage of the cells that consist of two triangles */
 } md_sheet;
 
 void md_add_grid(or_mesh *o, md_random *r, md_sheet sheet);

@@ -11,7 +11,7 @@ enum { MD_START_NAME = 64 };
 typedef struct md_start {
     char name[MD_START_NAME];
     double share; /* the start's share of all edits; the shares of all starts add up to 1 */
-    /* Fills the oracle with a random mesh; NULL for a file. */
+    /* The function that fills the oracle with a random mesh; NULL if the start is a file. */
     void (*fill)(or_mesh *o, md_random *r);
     he_mesh *file;
     /* Coordinates go up to the largest doubles, so operations that compute with them are not

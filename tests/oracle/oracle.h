@@ -74,12 +74,13 @@ typedef struct or_mesh {
      * refuses; NULL if nothing was changed. */
     uint64_t may;
     struct or_lists *before;
-    bool bridging;     /* loop_bridge: hedge joins the loops in `bridge` by faces of its choice */
+    /* Whether hedge joins the loops in `bridge` by faces of its choice, as in loop_bridge. */
+    bool bridging;
     or_face bridge[2]; /* the two loops, in the direction around their holes */
     /* If the loops are equally long: the least twist (sum of the squared lengths of the new edges)
      * without a doubled edge. */
     double twist;
-    bool either; /* edge_join: one of the two edges in `joining` survives */
+    bool either; /* whether either edge in `joining` may survive, as after edge_join */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
@@ -256,7 +257,7 @@ uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double dista
 bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
 bool or_is_flat(const or_mesh *o, uint32_t f);
 
-/* (ops_whole.c) `faces` NULL: the operation applies to all faces. */
+/* (ops_whole.c) If `faces` is NULL, the operation applies to all faces. */
 uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
@@ -277,9 +278,9 @@ typedef struct or_plane {
     he_vec3 point, normal;
     const double *tolerance;
 } or_plane;
-/* `faces` NULL: all faces; start[f] is the origin of the stored half-edge of face f. If a face has
- * more than two corners in the plane, hedge chooses which of them are joined, as long as every part
- * lies on one side of the plane. */
+/* If `faces` is NULL, all faces are split; start[f] is the origin of the stored half-edge of face
+ * f. If a face has more than two corners in the plane, hedge chooses which of them are joined, as
+ * long as every part lies on one side of the plane. */
 uint64_t or_plane_split(or_mesh *o, const or_plane *plane, const uint32_t *faces, uint32_t count,
                         const uint32_t *start);
 /* The maximum size of the result of plane_split, and whether a vertex is so close to the limit of

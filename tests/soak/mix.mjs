@@ -272,7 +272,7 @@ export class Mix {
         });
     }
 
-    // An edit of a whole guest; its counts are requested afterwards.
+    // Runs an operation on the whole mesh of a guest, then asks for the counts of the mesh.
     async whole() {
         const mesh = this.guests.at(-1);
         if (mesh === undefined) {

@@ -173,7 +173,7 @@ test('rings, lengths, angles and areas are those of the API', async (t) => {
     for (const name of ['outgoing', 'vertices', 'faces']) {
         assert.deepEqual(await ring(name), (await get(daemon, `/${mesh}/vertices/6/${name}`)).ids);
     }
-    // The ids of neighbours must be links, too.
+    // The ids of an element's neighbours must be links, too.
     const [first] = await ring('outgoing');
     await page.locator('[data-ring="outgoing"] button').first().click();
     await waitForFrame(page, { selection: `halfedge:${first}` });

@@ -121,7 +121,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     await waitForFaces(page, 204);
     await checkAccessible(page, 'levels', 'main');
 
-    // While a level is shown, nothing can be picked or edited.
+    // While a level is shown, a click must pick nothing, and a key must edit nothing.
     const { width, height } = await page.locator('#canvas').boundingBox();
     await click(page, { x: width / 2, y: height / 2 });
     await press(page, 'x');

@@ -97,7 +97,7 @@ test('who may look sees no buttons that edit', async (t) => {
     assert.equal(await page.locator('#history button:visible').count(), 0);
     await checkAccessible(page, 'looking only');
 
-    // The user can change to another token.
+    // The user must be able to change to another token.
     await page.locator('#who').click();
     await use(page, alice.token);
     await waitForFrame(page, { mesh: 'box', revision: 2 });

@@ -313,7 +313,7 @@ export async function tryEdit(mesh, operation, signal) {
     return answer.status === 200 ? answer.json() : null;
 }
 
-// Undoes the last step, or all steps since a revision.
+// Undoes the last step, or all steps since the revision `to`, on a mesh at `revision`.
 export function undo(mesh, revision, to = undefined) {
     const body = { expected_revision: revision, to_revision: to };
     return postJson(`${meshPath(mesh)}/undo`, body);

@@ -72,7 +72,7 @@ export class Levels {
         return vertexCount >= this.#base.vertices && this.#faces >= this.#base.faces;
     }
 
-    // Number of faces that have arrived.
+    // Number of faces of the finest level that has arrived.
     get faces() {
         return this.#faces;
     }

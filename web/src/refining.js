@@ -97,7 +97,7 @@ export class Refining {
             this.#mesh.faces = this.#levels.faces;
             this.#schedule();
         } catch (error) {
-            // No error is shown after the user cancelled.
+            // An error is not shown if the user has cancelled the showing of levels.
             if (!reading.signal.aborted) {
                 this.end();
                 this.#acts.onError(error);

@@ -35,7 +35,7 @@ typedef struct bench_result {
     bool has_exact, has_near;
 } bench_result;
 
-/* The argument of a row. The program keeps `mesh` between rows. */
+/* The argument of the function that runs a row. The program keeps `mesh` between rows. */
 typedef struct bench_side {
     bench_input input;
     const char *folder;

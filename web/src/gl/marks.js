@@ -47,7 +47,7 @@ const FIELD_WIDTH = 3;
 const RAISED = 0.996; // lines are drawn at this part of their distance from the camera
 
 export class Marks {
-    // The objects of three.js that are drawn.
+    // The objects of three.js by which the marks are drawn.
     chosen;
     boundary;
     arrows;
