@@ -107,7 +107,7 @@ static char *read_all(int fd, size_t length)
     return bytes;
 }
 
-/* A file of the page: the folder it lies in, and the path it is served under. */
+/* A file of the page: the folder in which it lies, and the path under which it is served. */
 typedef struct file {
     int folder;
     const char *name;

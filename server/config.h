@@ -16,11 +16,9 @@
 /* The largest total number of times that all list options together may be given. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
-/* The values of --log and --log-format, in the order in which the rows of these options name the
- * words.
- *
- * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury more important
- * ones. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
+/* The values of the options --log and --log-format, in the order in which the table of options
+ * names their words. SRV_LOG_AUTO logs requests unless stderr is a terminal, where their lines
+ * would bury more important lines. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
 typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_kind;
 typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
@@ -81,7 +79,7 @@ typedef struct srv_config {
     char *file_text;
 } srv_config;
 
-/* Where settings come from, beside the configuration file that one of them may name. */
+/* The sources of settings, except the configuration file, which one of these sources may name. */
 typedef struct srv_config_sources {
     int argc;
     char *const *argv;                      /* the arguments, without the program's name */

@@ -56,8 +56,8 @@ static struct {
     lane lanes[LANES];
     pthread_mutex_t lock; /* protects the members below */
     size_t lanes_used;
-    /* `warm` is the list of FREE buffers that still have pages, `cold` the list of those without,
-     * and `fresh` the index of the first buffer that was never used. */
+    /* `warm` is the list of FREE buffers that still have pages, `cold` the list of FREE buffers
+     * without pages, and `fresh` the index of the first buffer that was never used. */
     uint32_t warm, cold, fresh;
     uint64_t put; /* when a buffer was last added to the list `warm` */
     _Atomic size_t warm_count;

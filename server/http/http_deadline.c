@@ -335,7 +335,8 @@ static void *run(void *context)
         poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
-            /* The eventfd had nothing to read. That does no harm: the list is checked anyway. */
+            /* The eventfd had nothing to read, which does no harm: the thread checks the list of
+             * connections anyway. */
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);

@@ -19,7 +19,7 @@ struct srv_streams {
     pthread_mutex_t lock;
     pthread_t thread;
     srv_stream *first, *last; /* suspended streams, in the order of their deadlines */
-    srv_stream *ready;        /* suspended streams that the thread is to resume */
+    srv_stream *ready;        /* suspended streams whose requests the thread is to resume next */
     bool stopping, ending;
 };
 

@@ -125,7 +125,7 @@ static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], 
 }
 
 /* The function of the log's thread: writes the entries of the ring. No other thread touches an
- * entry in the ring until this one has subtracted it from `count`. */
+ * entry in the ring until the log's thread has subtracted it from `count`. */
 static void *run(void *context)
 {
     srv_log *log = context;

@@ -131,7 +131,7 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
 }
 
 /* Handles the next element of a list by rule T1 (proxy.h); `address` is NULL if the element has no
- * address. Returns true if this element is the client's, as far as the list was read. */
+ * address. Returns true if this element is that of the client, as far as the list was read. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);
@@ -251,7 +251,7 @@ static bool is_named(const pair *p, const char *name)
     return strlen(name) == p->name_length && strncasecmp(p->name, name, p->name_length) == 0;
 }
 
-/* What one element of a Forwarded header says; each of its members may occur once. */
+/* What one element of a Forwarded header says; its `for` and its `proto` may occur once each. */
 typedef struct element {
     bool empty, has_for, has_proto;
     char address[SRV_ADDRESS_TEXT]; /* "": none */

@@ -31,8 +31,8 @@ test('a mesh takes what it names', async () => {
     // images are not sent, and each other mesh file is sent in a request of its own
     assert.deepEqual(await grouped(['a.gltf'], ['a.png'], ['b.stl'], ['a.bin']),
         ['a.gltf a.bin', 'b.stl']);
-    // each of two mesh files is sent with the files that it names; a file that neither names is
-    // sent by itself
+    // each of two mesh files is sent with the files that it names; a file that no mesh
+    // file names is sent by itself
     assert.deepEqual(
         await grouped(['a.gltf', gltf('the%20first.bin')], ['b.obj', OBJ], ['a.mtl'],
             ['the first.bin'], ['c.bin']),

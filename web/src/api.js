@@ -178,7 +178,7 @@ export async function getAdjacent(mesh, kind, id, relation) {
     return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
 }
 
-// Returns the half-edge from one vertex to another, or null.
+// Returns the half-edge from one vertex to another, or null if there is none.
 export async function findHalfedge(mesh, from, to) {
     const [{ halfedge }] = await query(mesh, [{ find: 'halfedge', vertices: [from, to] }]);
     return halfedge;

@@ -61,7 +61,7 @@ export class Camera {
         this.look(center, direction, radius > 0 ? 1.8 * radius : 0.1);
     }
 
-    // Zooms in (true) or out by one step.
+    // Zooms in (true) or out (false) by one step.
     zoom(nearer) {
         const { target, minDistance, maxDistance } = this.#controls;
         const away = this.three.position.clone().sub(target);
