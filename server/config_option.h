@@ -53,7 +53,7 @@ bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
 /* Appends the value of a setting or a source to `out`, as a configuration file would have it. */
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
-/* The value that an option is given. */
+/* The value that one source of settings, such as a flag, gives an option. */
 typedef struct srv_option_value {
     const srv_option *row;
     const char *text;

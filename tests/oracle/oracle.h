@@ -155,8 +155,8 @@ bool or_same_cycle(const or_face *f, const or_face *g);
 
 /* --- operations (ops_*.c) --- */
 
-/* Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or no refusal. The operations below expect live
- * elements. */
+/* Returns the refusal HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the element is not live, else no
+ * refusal. The operations below expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
@@ -213,9 +213,9 @@ uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
 uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
 uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
 
-/* (ops_weld.c) or_weld merges each vertex v into to[v], which may be v itself; the result is at the
- * mean of all merged vertices, or at the position of to[v]. or_weld_near finds `to` for a
- * tolerance; it returns false if rounding decides. */
+/* (ops_weld.c) or_weld merges each vertex v into to[v], which may be v itself; the merged vertex is
+ * at the mean of all vertices merged into it, or stays at the position of to[v]. or_weld_near finds
+ * `to` for a tolerance; it returns false if rounding decides. */
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
 bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
 /* `starts` are the first neighbours of those fans around the vertex v that get a new vertex: hedge

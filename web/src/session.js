@@ -139,7 +139,8 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             this.#readMaterials(followed);
-            // If this page replaced the mesh itself, it may have fetched the new mesh already.
+            // If this page itself caused the replacement of the mesh, it may have fetched the new
+            // mesh already.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });

@@ -90,7 +90,7 @@ export class Camera {
         return { right, up, back, position, height: this.#canvas.clientHeight };
     }
 
-    // The matrix of view and projection, column-major, for view.js.
+    // The product of the projection and the view matrix, column-major, for view.js.
     get matrix() {
         this.three.updateMatrixWorld();
         return new Matrix4().multiplyMatrices(

@@ -60,7 +60,7 @@ export class Marks {
     #geometry = null;
     #pixel = { value: 1 };
 
-    // `material` is the material of selected triangles.
+    // `material` is the material with which three.js draws selected triangles.
     constructor(material) {
         // Selected triangles are drawn a second time, a little nearer than the rest of the mesh.
         this.chosen = new Mesh(new BufferGeometry(), material);
