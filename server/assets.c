@@ -107,11 +107,11 @@ static char *read_all(int fd, size_t length)
     return bytes;
 }
 
-/* A file of the page: the folder it lies in, and the path it is served under. */
+/* A file of the page: the folder in which it lies, and the path under which it is served. */
 typedef struct file {
     int folder;
     const char *name;
-    const char *prefix; /* comes before the name in the path of a request */
+    const char *prefix; /* `prefix` precedes the file's name in the path of a request */
 } file;
 
 /* Reads a file of the page into memory and adds it, or skips it if it is not a regular file.

@@ -16,8 +16,8 @@ typedef struct srv_assets srv_assets;
 
 enum { SRV_ASSET_COUNT = 512, SRV_ASSET_BYTES = 64 << 20 };
 
-/* Reads the files of the page; `folder` is NULL if there is none. Returns NULL when memory is out.
- * If the folder cannot be used, `message` says why; otherwise `message` is "". */
+/* Reads the files of the page from `folder`, which is NULL if there is none. Returns NULL when
+ * memory is out. If the folder cannot be used, `message` says why; otherwise `message` is "". */
 srv_assets *srv_assets_load(const char *folder, char *message, size_t size);
 void srv_assets_free(srv_assets *assets);
 /* Returns the file that is served under a path, NULL if there is none. The function is the `asset`

@@ -8,7 +8,8 @@
 
 #include <stdatomic.h>
 
-/* What backups share. Only one backup exists at a time, and `taken` is true while it does. */
+/* The state that all backups of a daemon share. Only one backup exists at a time, and `taken` is
+ * true while it does. */
 typedef struct srv_backups {
     const char *folder; /* folder of the store */
     _Atomic bool taken;

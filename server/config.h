@@ -16,33 +16,36 @@
 /* The largest total number of times that all list options together may be given. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
-/* The values of --log and --log-format, in the order in which the rows of these options name the
- * words.
- *
- * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury more important
- * ones. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
+/* The values of the options --log and --log-format, in the order in which the table of options
+ * names their words. SRV_LOG_AUTO logs requests unless stderr is a terminal, where their lines
+ * would bury more important lines. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
 typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_kind;
 typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
 typedef struct srv_config {
-    const char *config; /* the configuration file; "" if there is none */
+    const char *config; /* path of the configuration file; "" if there is none */
     const char *listen;
     bool insecure;
-    const char *tokens;             /* the file of tokens; "" if requests need no token */
-    const char *tls_cert, *tls_key; /* files; both are "" if the daemon uses no TLS */
-    srv_policy policy; /* which requests browsers may send; `trusted_proxies` fills its proxies */
+    const char *tokens; /* path of the file of tokens; "" if requests need no token */
+    /* Paths of the certificate and the key; both are "" if the daemon uses no TLS. */
+    const char *tls_cert, *tls_key;
+    /* Rules for the requests that browsers send; its list of proxies is made from
+     * `trusted_proxies`. */
+    srv_policy policy;
     srv_names trusted_proxies;
-    const char *web;   /* folder of the page; "": it is searched beside the executable */
-    const char *store; /* "memory", or "sqlite:" and a folder: see srv_config_folder */
+    const char *web; /* folder of the page; "": the folder is searched beside the executable */
+    /* Where meshes are kept: "memory", or "sqlite:" and a folder; see srv_config_folder. */
+    const char *store;
     bool samples;
     uint64_t log;        /* srv_log_kind */
     uint64_t log_format; /* srv_log_format */
     uint64_t log_level;  /* srv_level of server/log/line.h */
-    uint64_t slow;       /* milliseconds; 0: slow requests are not logged */
+    uint64_t slow;       /* milliseconds from which on a request is logged as slow; 0: none is */
 
-    uint64_t max_upload;    /* bytes */
-    uint64_t memory_budget; /* bytes; 0: three quarters of st_memory_limit_find */
-    uint64_t undo_budget;   /* bytes per mesh */
+    uint64_t max_upload; /* bytes */
+    /* Limit of the daemon's memory in bytes; 0: three quarters of st_memory_limit_find. */
+    uint64_t memory_budget;
+    uint64_t undo_budget; /* bytes per mesh */
     uint64_t max_meshes;
     bool no_compression;
 
@@ -52,17 +55,21 @@ typedef struct srv_config {
     uint64_t max_connections;
     uint64_t max_listeners, max_mesh_listeners;
 
-    api_limits token_limits, address_limits; /* of each token and each address: api/limit/limit.h */
-    uint64_t limit_burst;                    /* seconds */
+    /* Limits of each token and of each address: api/limit/limit.h. */
+    api_limits token_limits, address_limits;
+    uint64_t limit_burst; /* seconds */
 
     uint64_t heartbeat;                                                 /* seconds */
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 
-    const char *backup, *restore, *dump; /* two files and a folder; NULL if not given */
+    /* Paths given with --backup, --restore (files) and --dump (a folder); NULL if not given. */
+    const char *backup, *restore, *dump;
     bool help, version, print_config, healthcheck, verify, new_token;
-    const char *healthcheck_url;         /* NULL: /livez at the address of `listen` */
-    const char *verified;                /* the file that --verify reads; NULL: the store */
+    /* The URL that --healthcheck asks; NULL: /livez at the address of `listen`. */
+    const char *healthcheck_url;
+    /* Path of the file that --verify reads; NULL: the store is verified. */
+    const char *verified;
     const char *token_name, *token_role; /* arguments of --new-token; NULL if not given */
 
     /* Texts that the configuration owns: copies of lists, into which the items of srv_names point,
@@ -72,7 +79,7 @@ typedef struct srv_config {
     char *file_text;
 } srv_config;
 
-/* Where settings come from, beside the configuration file that one of them may name. */
+/* The sources of settings, except the configuration file, which one of these sources may name. */
 typedef struct srv_config_sources {
     int argc;
     char *const *argv;                      /* the arguments, without the program's name */

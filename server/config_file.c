@@ -53,7 +53,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* A line of the file; reading it overwrites its text. */
+/* A line of the configuration file; parsing the line overwrites its text. */
 typedef struct line {
     const char *path;
     size_t number; /* from 1 */

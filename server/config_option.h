@@ -25,10 +25,11 @@ typedef enum srv_option_kind {
 } srv_option_kind;
 
 typedef struct srv_option {
-    const char *name; /* --name; the variable is HEDGE_ and the name in capitals with '_' */
+    /* The flag without its dashes; the variable is HEDGE_ and the name in capitals with '_'. */
+    const char *name;
     srv_option_kind kind;
     size_t member;
-    const char *fallback; /* the default, as a user would write it */
+    const char *fallback; /* the option's default, as a user would write it */
     const char *argument; /* placeholder in --help */
     uint64_t low, high;
     const char *doc;
@@ -52,7 +53,7 @@ bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
 /* Appends the value of a setting or a source to `out`, as a configuration file would have it. */
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
-/* The value that an option is given. */
+/* The value that one source of settings, such as a flag, gives an option. */
 typedef struct srv_option_value {
     const srv_option *row;
     const char *text;

@@ -10,12 +10,12 @@ void disk_install(void);
 /* Makes all further writes fail for lack of space, or, called with false, lets them succeed
  * again. */
 void disk_fill(bool full);
-/* Makes the N-th write from now on and all later ones fail for lack of space; with 0 all
+/* Makes the N-th write from now on and all later writes fail for lack of space; with 0 all writes
  * succeed. */
 void disk_fill_at(long write);
-/* Makes the N-th sync from now on fail; with 0 all succeed. */
+/* Makes the N-th sync from now on fail; with 0 all syncs succeed. */
 void disk_fail_at(long sync);
-/* Makes all syncs wait until this is called with false. */
+/* Makes all syncs wait until this function is called with false. */
 void disk_hold(bool held);
 /* Returns the number of syncs since the last disk_fill_at or disk_fail_at. */
 long disk_syncs(void);

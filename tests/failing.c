@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-/* The variables are atomic because threads of the code under test allocate, too. */
+/* Threads of the code under test allocate, too, so the variables that they use are atomic. */
 static atomic_long calls, fail_at, blocks;
 static atomic_int pauses, threads;
 static atomic_bool lasts;

@@ -35,11 +35,12 @@ typedef struct failing {
     long n; /* number of the allocation that fails */
     /* option: the run may succeed although an allocation failed, because some are optional */
     bool may_succeed;
-    bool lasts;  /* option: all allocations after the n-th fail, too */
+    bool lasts;  /* option: in a run, all allocations after the n-th fail, too */
     long sparse; /* option: if not 0, each iteration raises n by 1 + n / sparse instead of 1 */
     failing_threads threads; /* option */
-    const char *what;        /* option: name of what is run, for the messages of failures */
-    bool is_over;            /* the last run made fewer than n allocations */
+    /* Option: name of the call that is run, for the messages of failures. */
+    const char *what;
+    bool is_over; /* whether the last run made fewer than n allocations, which ends the loop */
 } failing;
 
 /* Raises n and begins a run whose n-th allocation will fail. Returns false if the loop is over. */

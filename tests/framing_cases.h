@@ -20,8 +20,9 @@ typedef struct framing_case {
     size_t tail_length;
     int status;
     const char *code; /* error code of the expected problem; NULL: the answer is no problem */
-    bool fault;       /* the framing of the bytes is faulty; else a handler answers */
-    bool closes;      /* the daemon must close the connection, as after every fault */
+    bool fault;       /* whether the framing of the bytes is faulty; otherwise a handler answers */
+    /* Whether the daemon must close the connection, as it does after every fault. */
+    bool closes;
 } framing_case;
 
 size_t framing_case_count(void);

@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-/* Returns the member with this name; fails the test if there is none. */
+/* Returns the member of a JSON object with this name; fails the test if there is none. */
 const cJSON *json_member(const cJSON *object, const char *name);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct json_tokens {
     size_t length;
     he_token last; /* last token; HE_TOKEN_CUT if the text came in pieces that end inside a value */
     he_fault fault;
-    uint64_t place; /* position of the fault; 0 if there is none */
+    uint64_t place; /* byte position of the lexer's fault in the text; 0 if there is none */
 } json_tokens;
 
 void json_tokens_of_text(json_tokens *t, const char *text, size_t length);

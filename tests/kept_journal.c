@@ -27,7 +27,8 @@ struct st_stage {
 /* A stored record. `uses` counts its mesh and the readers of its mesh, all of which need it. */
 typedef struct kept_record {
     size_t uses;
-    st_record record; /* its texts and body are copies; its Idempotency-Key is not stored */
+    /* The record; its texts and body are copies, its Idempotency-Key is not stored. */
+    st_record record;
     char name[ST_MESH_NAME + 1];
     char ops[256];
     bool sum_is_wrong;

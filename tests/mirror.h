@@ -18,7 +18,8 @@ enum { MIRROR_TEXT = 200, MIRROR_LINKS = 4, MIRROR_COMPONENTS = 16 };
 typedef struct mirror_row {
     bool live;
     double position[3];
-    uint32_t link[MIRROR_LINKS]; /* HE_NONE if the link is null */
+    /* Ids of the elements that the row's element links to; HE_NONE if a link is null. */
+    uint32_t link[MIRROR_LINKS];
 } mirror_row;
 
 typedef struct mirror_table {
@@ -39,7 +40,7 @@ typedef struct mirror_column {
 
 typedef struct mirror {
     uint64_t revision;
-    /* one for each kind of element; that of edges is not used */
+    /* one table of rows for each kind of element; the table of edges is not used */
     mirror_table tables[HE_KIND_COUNT];
     mirror_column *columns;
     size_t column_count;
@@ -72,8 +73,8 @@ mirror_step mirror_apply(mirror *m, const cJSON *data);
  * difference. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
-/* Returns the first live element with an id from `from` on, continuing at 0 after the last id;
- * HE_NONE if no element is live. An edge is live if its half-edges are in the copy. */
+/* Returns the first live element in the copy with an id from `from` on, continuing at 0 after the
+ * last id; HE_NONE if no element is live. An edge is live if its half-edges are in the copy. */
 uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
 size_t mirror_count(const mirror *m, he_kind kind);
 

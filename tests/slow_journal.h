@@ -13,7 +13,7 @@ typedef struct slow_journal {
     pthread_mutex_t lock;   /* protects the members below */
     pthread_cond_t changed; /* signalled when records were appended */
     uint64_t newest;        /* position of the newest record */
-    /* the newest position reported as durable; UINT64_MAX: all, also future ones */
+    /* The newest position reported as durable; UINT64_MAX: all positions are, also future ones. */
     uint64_t durable;
     uint64_t groups; /* number of groups of records appended so far */
     char key[32];    /* Idempotency-Key of the request that made the newest record */
@@ -27,8 +27,9 @@ typedef struct slow_journal {
     /* number of times that the disk was full, as the journal reports it */
     uint64_t fulls;
     st_journal_measures measures; /* measurements that the journal reports */
-    void (*staging)(void);        /* called while an edit is written in advance; NULL: not called */
-    size_t staged_edits;          /* number of edits that were written in advance */
+    /* Function that the journal calls while an edit is written in advance; NULL: none. */
+    void (*staging)(void);
+    size_t staged_edits; /* number of edits that were written in advance */
     /* number of rooms and stages that were neither appended nor given back */
     size_t out;
     pthread_mutex_t telling; /* held while the journal calls its listener */

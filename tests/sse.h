@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 typedef struct sse {
-    char *bytes; /* bytes that were received but not parsed yet */
+    char *bytes; /* bytes of the event stream that were received but not parsed yet */
     size_t length, capacity;
     char *block; /* lines of the event that was parsed last */
     char id[64]; /* the id received last, with or without an event */
@@ -16,7 +16,8 @@ typedef struct sse {
 
 typedef struct sse_event {
     const char *name; /* name of the event; "message" if it has none */
-    const char *data; /* NUL-terminated; name and data are valid until the next call */
+    /* Data of the event, NUL-terminated; name and data are valid until the next call. */
+    const char *data;
 } sse_event;
 
 void sse_clear(sse *s);

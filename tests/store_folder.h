@@ -15,8 +15,8 @@ void folder_remove(const char *folder);
 /* Copies the files of a store that is open, so that the copy is what a killed process would
  * leave. */
 void folder_copy(const char *from, const char *to);
-/* Reads a file of the folder; the caller must free the bytes. Returns NULL if there is no such
- * file. */
+/* Reads a file of the folder; the caller must free the bytes. Returns NULL if the file does not
+ * exist. */
 unsigned char *folder_read(const char *folder, const char *name, size_t *size);
 void folder_write(const char *folder, const char *name, const unsigned char *bytes, size_t size);
 

@@ -14,9 +14,10 @@
 enum { TRAFFIC_JSON = 1 << 20, TRAFFIC_OTHER = 4 << 10 };
 
 typedef struct traffic_message {
-    /* header lines "Name: value" that end in CR LF, with or without a start line */
+    /* The head of the message: lines "Name: value" that end in CR LF, with or without a start
+     * line. */
     const char *head;
-    const char *body; /* NULL: unknown; "": there is none */
+    const char *body; /* the body of the message; NULL: unknown; "": there is none */
     size_t length;
 } traffic_message;
 

@@ -12,7 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { STOP_MILLIS = 4000 /* longest wait for running work, of the five seconds of a stop */ };
+/* How long a stop waits for running work, of the five seconds that it may last in all. */
+enum { STOP_MILLIS = 4000 };
 
 /* Does the periodic work of the main thread, which serves no requests, until SIGTERM or SIGINT
  * arrives; SIGHUP reloads the configuration. */
@@ -31,7 +32,8 @@ static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *
             (void)srv_reload(parts, message, sizeof message);
         }
     } while (number != SIGTERM && number != SIGINT);
-    srv_watch_look(&watch, parts); /* so that a disk that failed in the last second is reported */
+    /* This last check reports a disk that failed in the last second. */
+    srv_watch_look(&watch, parts);
 }
 
 static void tell_stop(srv_log *log, const char *reason)
@@ -105,7 +107,7 @@ int srv_daemon_run(const srv_started *started)
         srv_notify(text);
         wait_for_stop(&parts, &signals, &reason);
         if (!stop(&parts, &reason)) {
-            /* Threads are still working on memory, so nothing is freed. The journal is left as it
+            /* Threads still use the daemon's memory, so nothing is freed. The journal is left as it
              * would be after a kill, which it is designed to survive. */
             srv_log_free(parts.log);
             _exit(1);

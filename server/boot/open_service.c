@@ -28,7 +28,8 @@ static bool load_page(srv_parts *parts)
     if (parts->assets == NULL) {
         return srv_open_failed(parts, "no memory for the page");
     }
-    /* A page that the user configured must exist; otherwise the daemon serves without it. */
+    /* If the user configured a folder for the page, it must be usable; otherwise the daemon serves
+     * requests without a page. */
     return message[0] == '\0' || parts->config->web[0] == '\0' || srv_open_failed(parts, message);
 }
 

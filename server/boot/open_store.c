@@ -7,8 +7,10 @@
 #include "server/version.h"
 
 enum {
-    SHORT_THREADS = 2, /* threads of the pool beside those for long tasks: thread_pool.h */
-    MAKER_QUEUE = 1024 /* pieces of answers that may wait for a thread; workers make further ones */
+    /* How many threads the pool has beside those for jobs, so that short tasks find one. */
+    SHORT_THREADS = 2,
+    /* Most pieces of answers that may wait for a thread; workers make further pieces. */
+    MAKER_QUEUE = 1024
 };
 
 bool srv_open_failed(const srv_parts *parts, const char *why)

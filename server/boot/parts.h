@@ -19,12 +19,16 @@ typedef struct srv_parts {
     const srv_started *started;
     const srv_config *config; /* the member of `started` */
     srv_log *log;             /* opened first, closed last */
-    st_pool *pool, *makers;   /* threads for long work, and for making answers ahead of sending */
+    /* `pool` has the threads for long work, `makers` those that make pieces of answers ahead of
+     * sending. */
+    st_pool *pool, *makers;
     st_parallel *parallel;
     st_store *store;
     srv_assets *assets;
-    srv_certificates *certificates; /* NULL if the daemon does not use TLS */
-    api_tokens *tokens;             /* NULL if requests need no token */
+    /* The certificates that clients see; NULL if the daemon does not use TLS. */
+    srv_certificates *certificates;
+    /* The tokens that requests may have; NULL if requests need no token. */
+    api_tokens *tokens;
     api_job_table *job_table;
     srv_backups backups;
     api_service *service;
@@ -32,19 +36,21 @@ typedef struct srv_parts {
     char own_host[SRV_ADDRESS_TEXT];
     srv_unix_socket socket; /* the file of the Unix socket, if the daemon listens on one */
     srv_http *http;
-    char url[SRV_URL_TEXT]; /* with the port that is in use */
-    _Atomic bool ready;     /* whether /readyz answers that the daemon serves requests */
+    char url[SRV_URL_TEXT]; /* the daemon's URL, with the port that is in use */
+    _Atomic bool ready;     /* whether the daemon serves requests, for /readyz */
     _Atomic bool full;      /* whether memory is full, for /readyz: see watch.h */
 } srv_parts;
 
 /* Each of these functions opens its parts of the daemon as `parts->config` says. Returns false,
  * with the reason in the log, if a part cannot be opened; daemon.c closes what was opened
  * before. */
-bool srv_open_tokens(srv_parts *parts); /* read from a file, if the configuration names one */
+/* Opens the tokens: reads the file of tokens that the configuration names, if any. */
+bool srv_open_tokens(srv_parts *parts);
 bool srv_open_certificates(srv_parts *parts);
 bool srv_open_store(srv_parts *parts);   /* thread pools, journal, store, samples */
 bool srv_open_service(srv_parts *parts); /* page, jobs, service */
-bool srv_open_http(srv_parts *parts);    /* listens; reports that the daemon is ready */
+/* Starts the HTTP server, and reports that the daemon is ready. */
+bool srv_open_http(srv_parts *parts);
 
 /* Logs `why` and returns false. */
 bool srv_open_failed(const srv_parts *parts, const char *why);

@@ -125,7 +125,7 @@ bool srv_reload(void *context, char *message, size_t size)
         if (!reloads[i](parts, why, sizeof why)) {
             srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; the previous settings stay in effect",
                          why);
-            if (ok) { /* this is the first failure, and `message` reports only that one */
+            if (ok) { /* this reload is the first that failed; `message` reports only the first */
                 snprintf(message, size, "%s", why);
             }
             ok = false;

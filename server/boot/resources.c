@@ -9,7 +9,8 @@
 #include <unistd.h>
 
 enum {
-    OWN_FILES = 48, /* descriptors that the daemon needs for other things than connections */
+    /* Number of descriptors that the daemon needs for other things than connections. */
+    OWN_FILES = 48,
     DRAIN_FILES = 64
 };
 

@@ -175,8 +175,8 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
          * requests are found before by http_syntax.h. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
-        /* libmicrohttpd divides the limit by the number of workers, but one worker may get all
-         * connections. */
+        /* libmicrohttpd divides this limit by the number of workers, but one worker may get all
+         * connections, so the limit is multiplied by that number. */
         {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
         {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
         {MHD_OPTION_LISTEN_BACKLOG_SIZE, SRV_BACKLOG, NULL},

@@ -18,7 +18,8 @@
 
 typedef struct srv_http srv_http;
 
-/* What the server is started with. Everything is borrowed and must outlive the server. */
+/* The options with which the server is started. All pointers are borrowed and must outlive the
+ * server. */
 typedef struct srv_http_options {
     srv_address address;
     int listening;                  /* a listening socket; -1 if the server is to bind `address` */
@@ -30,11 +31,14 @@ typedef struct srv_http_options {
     srv_log *log;    /* NULL if nothing is logged */
     const srv_policy *policy;
     srv_deadline_options deadlines;
-    size_t max_sockets; /* connections above deadlines.max_connections, up to this, get a 503 */
+    /* Connections beyond deadlines.max_connections, up to this number of sockets, are answered
+     * 503. */
+    size_t max_sockets;
     size_t address_connections; /* maximum of connections per address; 0: no limit */
     size_t workers;             /* number of worker threads, at least 1 */
-    uint64_t read_seconds;      /* longest time for a read while its client waits */
-    uint64_t heartbeat_micros;  /* time without an event after which a stream sends a comment */
+    /* Longest time for a request that only reads, while its client waits. */
+    uint64_t read_seconds;
+    uint64_t heartbeat_micros; /* time without an event after which a stream sends a comment */
 } srv_http_options;
 
 /* The number of connections that may wait to be accepted (the listen backlog). */

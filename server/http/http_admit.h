@@ -28,9 +28,11 @@ void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID 
 
 /* What is known about the client of a request, and the headers for browsers that its answer has. */
 typedef struct srv_client {
-    char address[SRV_ADDRESS_TEXT]; /* without a port; "unix:uid=1000" on a Unix socket */
+    /* The client's address without a port; "unix:uid=1000" on a Unix socket. */
+    char address[SRV_ADDRESS_TEXT];
     srv_scheme scheme;
-    bool told_name;   /* whether the answer has the header of rule P6 (http_policy.h) */
+    /* Whether the answer has the header that asks for TLS: rule P6 of http_policy.h. */
+    bool told_name;
     const char *cors; /* the origin that the answer names in CORS headers (P4), or NULL */
 } srv_client;
 

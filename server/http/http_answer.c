@@ -14,7 +14,9 @@
 enum {
     /* The size of the buffer that libmicrohttpd allocates for an answer sent piece by piece. */
     ANSWER_BLOCK = 64 * 1024,
-    LIVE_BLOCK = 1024 /* for a stream of events, of which there may be thousands; HTTP/1.0 only */
+    /* Size of that buffer for a stream of events to an HTTP/1.0 client; there may be thousands of
+     * streams. */
+    LIVE_BLOCK = 1024
 };
 
 /* --- answers sent piece by piece --- */
@@ -250,7 +252,8 @@ bool srv_answer_send(srv_request *r)
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     }
     if (is_live(r) || (!is_streamed(r) && wire.length > SRV_FIRST_SEND_BUFFER)) {
-        widen(r); /* a small send buffer would save nothing, because the answer is in memory */
+        /* A small send buffer would save no memory, because the whole answer is in memory. */
+        widen(r);
     }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;

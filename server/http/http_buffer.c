@@ -16,11 +16,13 @@
 #include <unistd.h>
 
 enum {
-    REST_MICROS = 1000 * 1000, /* a buffer keeps its pages for this time without a request */
-    LOOK_MILLIS = 500,         /* time between checks for buffers whose pages can be returned */
-    AT_ONCE = 32,              /* most buffers whose pages are returned in one check */
-    KEPT = 64,                 /* free buffers that keep their pages for the next connections */
-    LANES = 64                 /* number of workers that --workers allows */
+    /* Microseconds without a request after which the pages of a buffer may be returned. */
+    REST_MICROS = 1000 * 1000,
+    /* Milliseconds between checks for buffers whose pages can be returned. */
+    LOOK_MILLIS = 500,
+    AT_ONCE = 32, /* most buffers whose pages are returned in one check */
+    KEPT = 64,    /* number of free buffers that keep their pages for the next connections */
+    LANES = 64    /* largest number of workers that --workers allows */
 };
 
 /* The states of a buffer. FREE: it belongs to no connection. USED: its connection has a request.
@@ -33,7 +35,7 @@ struct lane;
 typedef struct buffer {
     state state;
     uint32_t next, previous; /* neighbours in a list of free buffers or in the worker's list */
-    struct lane *lane;       /* list of the worker that took the buffer */
+    struct lane *lane;       /* the list of idle buffers of the worker that took the buffer */
     uint64_t since;          /* when the buffer became IDLE */
     size_t held;             /* bytes that st_memory_count counts for the buffer */
 } buffer;
@@ -46,7 +48,7 @@ typedef struct lane {
 } lane;
 
 static struct {
-    char *memory; /* the reserved range; NULL before srv_buffers_reserve */
+    char *memory; /* the reserved range of addresses; NULL before srv_buffers_reserve */
     size_t bytes; /* size of one buffer */
     size_t page;
     uint32_t most;
@@ -54,8 +56,8 @@ static struct {
     lane lanes[LANES];
     pthread_mutex_t lock; /* protects the members below */
     size_t lanes_used;
-    /* `warm` is the list of FREE buffers that still have pages, `cold` the list of those without,
-     * and `fresh` the index of the first buffer that was never used. */
+    /* `warm` is the list of FREE buffers that still have pages, `cold` the list of FREE buffers
+     * without pages, and `fresh` the index of the first buffer that was never used. */
     uint32_t warm, cold, fresh;
     uint64_t put; /* when a buffer was last added to the list `warm` */
     _Atomic size_t warm_count;

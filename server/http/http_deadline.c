@@ -21,10 +21,15 @@
 #include <unistd.h>
 
 enum {
-    SWEEP_MILLIS = 500,   /* time between the beginnings of two sweeps over all connections */
-    PAUSE_MILLIS = 10,    /* pause after SRV_CLOSES connections were closed */
-    CROWDED_SECONDS = 2,  /* limit of idle connections and handshakes while there are too many */
-    DRAINS = 64,          /* sockets drained at one time; further ones are closed undrained */
+    /* Milliseconds between the beginnings of two sweeps over all connections. */
+    SWEEP_MILLIS = 500,
+    /* Milliseconds for which no further connection is closed after SRV_CLOSES were closed. */
+    PAUSE_MILLIS = 10,
+    /* Seconds that an idle connection or a handshake may last while there are too many
+     * connections. */
+    CROWDED_SECONDS = 2,
+    /* Most sockets that are drained at one time; further sockets are closed undrained. */
+    DRAINS = 64,
     DRAIN_BYTES = 1 << 20 /* most bytes that are drained from a socket */
 };
 
@@ -48,9 +53,9 @@ struct srv_deadlines {
     bool ending;
     int wake; /* an eventfd that wakes the thread */
     pthread_t thread;
-    /* The members below are used by the thread only. */
+    /* The members below are used only by the thread that checks connections. */
     uint64_t swept;  /* when the last sweep over all connections began */
-    uint64_t paused; /* no connection is closed before this time */
+    uint64_t paused; /* time before which no connection is closed */
 };
 
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
@@ -330,7 +335,8 @@ static void *run(void *context)
         poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
-            /* The eventfd had nothing to read. That does no harm: the list is checked anyway. */
+            /* The eventfd had nothing to read, which does no harm: the thread checks the list of
+             * connections anyway. */
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);

@@ -67,7 +67,8 @@ typedef enum srv_stage {
 
 typedef struct srv_deadline_options {
     uint64_t idle, head, grace, total; /* in seconds */
-    uint64_t min_rate;                 /* in bytes a second; 0: no minimum */
+    /* Least speed of a body or an answer, in bytes a second; 0: no minimum. */
+    uint64_t min_rate;
     uint64_t max_connections;
     api_metrics *metrics; /* counts connections that are closed; NULL: not counted */
 } srv_deadline_options;
@@ -85,28 +86,36 @@ typedef struct srv_connection {
     _Atomic uint64_t since;   /* when the stage began, in microseconds of the monotonic clock */
     _Atomic uint64_t bytes;   /* bytes received in this stage */
     bool drain;               /* whether the connection is to be drained when it is closed */
-    gnutls_session_t session; /* NULL if the connection does not use TLS */
-    api_metrics *metrics;     /* count the handshake; NULL: not counted */
+    gnutls_session_t session; /* the TLS session; NULL if the connection does not use TLS */
+    /* Metrics that count the connection's handshake; NULL: it is not counted. */
+    api_metrics *metrics;
     srv_certificates *certificates;
-    srv_certificate *certificate; /* reference to what the handshake shows; NULL before it */
-    bool is_proxy;                /* whether the peer is a trusted proxy: proxy.h */
-    api_rate_key client;          /* key of the peer's address, by srv_address_key */
-    uint32_t of_peer;             /* what srv_peers_enter returned for the connection */
-    _Atomic bool beyond;          /* the peer's address has more connections than allowed */
-    uint32_t buffer;              /* number of the connection's buffer in http_buffer.h */
-    /* The members from here on are used by the worker only. */
+    /* Reference to the certificate that the handshake shows; NULL before the handshake. */
+    srv_certificate *certificate;
+    bool is_proxy;       /* whether the peer is a trusted proxy: proxy.h */
+    api_rate_key client; /* key of the peer's address, by srv_address_key */
+    uint32_t of_peer;    /* the peer's entry, which srv_peers_enter returned for the connection */
+    _Atomic bool beyond; /* whether the peer's address has more connections than allowed */
+    uint32_t buffer;     /* number of the connection's buffer in http_buffer.h */
+    /* The members from here on are used only by the worker that serves the connection. */
     srv_syntax syntax;
-    uint64_t requests;   /* number of requests of the connection that libmicrohttpd has begun */
-    bool widened;        /* the socket has SRV_SEND_BUFFER rather than SRV_FIRST_SEND_BUFFER */
-    bool tells_end;      /* the kernel reports with each read whether there is more: http_recv.h */
+    uint64_t requests; /* number of requests of the connection that libmicrohttpd has begun */
+    /* Whether the socket's send buffer has SRV_SEND_BUFFER bytes rather than
+     * SRV_FIRST_SEND_BUFFER. */
+    bool widened;
+    /* Whether the kernel reports with each read if there is more to read: http_recv.h. */
+    bool tells_end;
     bool may_have_ended; /* the client's stream may have ended after the bytes of the last read */
     bool counts_sent;    /* `sent` is used, because a Unix socket does not report bytes sent */
-    _Atomic uint64_t sent; /* bytes sent, if they are counted; the thread reads it, too */
-    /* The members from here on are used by the thread only, except `peer`. */
-    uint64_t acked;                /* number of bytes that the client had received when checked */
+    /* Number of bytes sent, if they are counted; the checking thread reads it, too. */
+    _Atomic uint64_t sent;
+    /* The members from here on are used only by the thread that checks connections, except
+     * `peer`. */
+    /* Number of bytes that the client had received at the last check. */
+    uint64_t acked;
     uint64_t window, window_acked; /* time and `acked` when measuring the rate began; 0: not yet */
     uint64_t taken;  /* `since` of an IDLE stage in which all of the answer was read; 0: none */
-    uint64_t kept;   /* bytes in the kernel's buffer at the last check */
+    uint64_t kept;   /* number of the answer's bytes in the kernel's buffer at the last check */
     bool late;       /* whether the connection was counted as closed for being too slow */
     uint64_t closed; /* `since` of the stage in which the client closed its side; 0: none */
     uint64_t closed_bytes;       /* `bytes` when `closed` was set */

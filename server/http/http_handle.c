@@ -12,8 +12,11 @@
 #include <strings.h>
 
 enum {
-    SWALLOW = 256 * 1024, /* if more of a refused body is to come, the connection is closed */
-    WORKER_MICROS = 20000 /* time for a read on a worker, before the read moves to the pool */
+    /* Most bytes of a refused body that are skipped; if more are to come, the connection is
+     * closed. */
+    SWALLOW = 256 * 1024,
+    /* Microseconds that a worker spends on a read before the read moves to the pool of threads. */
+    WORKER_MICROS = 20000
 };
 
 /* All functions of this file that return bool return false to close the connection, unless their
@@ -93,8 +96,8 @@ static void detach(srv_request *r)
     }
 }
 
-/* Returns true if the worker may continue a read, and false if it has spent WORKER_MICROS, because
- * its other connections are waiting. */
+/* Returns true if the worker may continue a request that only reads, and false if it has spent
+ * WORKER_MICROS on it, because the worker's other connections are waiting. */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -135,7 +138,8 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
-    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* until a worker continues with the request */
+    /* The request now waits until a worker continues with it. */
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE);
     MHD_resume_connection(r->connection);
 }
 
@@ -309,7 +313,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     r->path = framing.path;
     char *mark = strchr(r->target, '?');
     if (mark != NULL) {
-        *mark = '\0'; /* ends the path where the query begins */
+        *mark = '\0'; /* the NUL ends the path where the query begins */
     }
     bool ok = known && admit(r, &head, &framing);
     if (ok && r->client.cors != NULL && strcmp(method, "OPTIONS") == 0 &&

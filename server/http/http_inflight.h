@@ -1,7 +1,8 @@
 /* http_inflight.h - counts running and suspended requests, so that a stop can wait for them.
  *
- * libmicrohttpd must not be stopped while a connection is suspended. So the gate counts the
- * suspended connections, and after it was closed no connection may be suspended any more. */
+ * libmicrohttpd must not be stopped while a connection is suspended. So this
+ * module is a gate, which counts the suspended connections: after the gate was closed no connection
+ * may be suspended any more. */
 #ifndef HE_SERVER_HTTP_HTTP_INFLIGHT_H
 #define HE_SERVER_HTTP_HTTP_INFLIGHT_H
 
@@ -22,7 +23,7 @@ void srv_inflight_clear(srv_inflight *inflight);
 
 void srv_inflight_enter(srv_inflight *inflight); /* counts a request that begins */
 void srv_inflight_leave(srv_inflight *inflight);
-/* Counts a connection that is about to be suspended. Returns false if the count is closed: then the
+/* Counts a connection that is about to be suspended. Returns false if the gate is closed: then the
  * connection must not be suspended. */
 bool srv_inflight_wait(srv_inflight *inflight);
 void srv_inflight_resume(srv_inflight *inflight);

@@ -6,9 +6,9 @@
 #include <strings.h>
 
 typedef struct authority {
-    const char *host; /* an IPv6 address has no brackets here */
+    const char *host; /* the host of the authority; an IPv6 address has no brackets here */
     size_t host_length;
-    long port; /* -1 if no port is given */
+    long port; /* the port; -1 if no port is given */
 } authority;
 
 /* Parses "host", "host:", "host:port" or "[v6]:port". */

@@ -26,9 +26,10 @@ typedef struct srv_producer {
     void *context;
     void (*resume)(struct srv_producer *producer);
     size_t size; /* bytes allocated for the last piece; 0 if no piece was made yet */
-    char *piece; /* NULL if memory was out: then srv_producer_take calls `read` itself */
+    /* The last piece; NULL if memory was out: then srv_producer_take calls `read` itself. */
+    char *piece;
     size_t from, to;
-    int64_t last; /* the last result of `read`: 0 or -1 at the end */
+    int64_t last; /* the last result of `read`, the answer's source: 0 or -1 at the end */
     bool begun;
 } srv_producer;
 

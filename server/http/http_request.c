@@ -117,8 +117,8 @@ void srv_request_end(srv_request *r)
 {
     srv_http *http = r->http;
     uint64_t now = st_clock_micros();
-    /* The client may have begun the next request: its first bytes may be in libmicrohttpd's
-     * buffer. */
+    /* The client may have begun the next request: its first bytes may be in libmicrohttpd's buffer
+     * already. */
     bool begun = r->socket != NULL && r->socket->syntax.requests > r->socket->requests;
     srv_connection_enter(r->socket, begun ? SRV_STAGE_HEAD : SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
@@ -129,7 +129,8 @@ void srv_request_end(srv_request *r)
         tell_log(r, now);
     }
     bool counted = r->counted;
-    srv_request_resumed(r); /* does something only if the connection ended while suspended */
+    /* A connection that ended while it was suspended still counts as suspended. */
+    srv_request_resumed(r);
     if (r->block > 0) {
         atomic_fetch_sub(&http->downloads, 1);
         st_memory_count(-(int64_t)r->block);

@@ -54,7 +54,7 @@ struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
     srv_deadlines *deadlines;
-    srv_peers *peers; /* NULL if the connections of an address are not limited */
+    srv_peers *peers; /* counts connections by address; NULL if they are not limited */
     srv_streams *streams;
     unsigned port;
     srv_ids ids;
@@ -67,28 +67,32 @@ struct srv_http {
 typedef struct srv_request {
     srv_http *http;
     struct MHD_Connection *connection;
-    srv_connection *socket; /* NULL if the connection is not watched */
+    /* The connection as http_recv.h watches it; NULL if it is not watched. */
+    srv_connection *socket;
     srv_state state;
-    bool counted; /* whether the gate counts the request as running */
-    bool aside;   /* whether the gate counts its connection as suspended */
-    bool whole;   /* whether the whole body has arrived */
+    bool counted; /* whether the gate (http_inflight.h) counts the request as running */
+    bool aside;   /* whether the gate (http_inflight.h) counts the connection as suspended */
+    bool whole;   /* whether the whole body of the request has arrived */
     uint64_t started;
     uint64_t number; /* number of the request on its connection, from 1 */
     uint64_t bytes_in, bytes_out;
     uint64_t announced; /* Content-Length; UINT64_MAX: chunked */
-    uint64_t swallowed; /* bytes of the body skipped since the answer was known */
+    /* Number of bytes of the body that were skipped since the answer was known. */
+    uint64_t swallowed;
     char request_id[SRV_REQUEST_ID + 1];
     char *joined; /* values of headers with several lines (http_headers.h); NULL if none */
     srv_client client;
     bool close; /* whether the connection is to be closed after the answer */
 
-    api_exchange *exchange; /* NULL if the answer is `refusal` */
+    /* The exchange that makes the answer; NULL if the answer is `refusal`. */
+    api_exchange *exchange;
     api_step step;
     api_problem refusal;
-    api_text text;               /* the refusal as JSON */
-    api_rate_fields rate_fields; /* the fields of an exchange that was replaced by the refusal */
-    bool preflight;              /* whether it is a CORS preflight request */
-    st_wait hold;                /* the wait for durability in the state HELD */
+    api_text text; /* the refusal as JSON */
+    /* The rate-limit headers of an exchange that was replaced by the refusal. */
+    api_rate_fields rate_fields;
+    bool preflight;      /* whether the request is a CORS preflight request */
+    st_wait hold;        /* the wait for durability in the state HELD */
     uint64_t work_until; /* when the work must end, by st_clock_micros; UINT64_MAX: no limit */
     srv_stream stream;
     srv_producer producer;
@@ -98,7 +102,7 @@ typedef struct srv_request {
     srv_timing timing;
 
     char method[SRV_METHOD + 1];
-    const char *path; /* NULL before the headers were read */
+    const char *path; /* path of the request; NULL before the headers were read */
     char target[];    /* the request target as the client sent it */
 } srv_request;
 
@@ -121,8 +125,9 @@ static inline const char *srv_request_client(const srv_request *r)
 }
 
 /* Suspends the connection. Must be called before the request is passed to another thread, which
- * then resumes the connection with MHD_resume_connection, exactly once. Returns false if the count
- * is closed, because the server stops: then the connection is not suspended and must be closed. */
+ * then resumes the connection with MHD_resume_connection, exactly once. Returns false if the gate
+ * of http_inflight.h is closed, because the server stops: then the connection is not suspended and
+ * must be closed. */
 bool srv_request_suspend(srv_request *r);
 /* Records that the connection is not suspended any more. Must be called at the beginning of each
  * callback before which the connection may have been suspended. */

@@ -19,7 +19,7 @@ struct srv_streams {
     pthread_mutex_t lock;
     pthread_t thread;
     srv_stream *first, *last; /* suspended streams, in the order of their deadlines */
-    srv_stream *ready;        /* suspended streams that the thread is to resume */
+    srv_stream *ready;        /* suspended streams whose requests the thread is to resume next */
     bool stopping, ending;
 };
 
@@ -136,8 +136,8 @@ static void *run(void *context)
 static void wake_thread(srv_streams *streams)
 {
     uint64_t one = 1;
-    (void)!write(streams->changed, &one,
-                 sizeof one); /* fails only if it is full: then it wakes, too */
+    /* The write fails only if the eventfd's counter is full: then the thread wakes up anyway. */
+    (void)!write(streams->changed, &one, sizeof one);
 }
 
 static void release(srv_streams *streams)

@@ -29,10 +29,10 @@ typedef struct srv_stream {
     const api_source *source;
     void (*resume)(struct srv_stream *stream);
     bool aside;
-    bool woken;    /* the source has called wake while the worker owned the stream */
-    bool due;      /* a heartbeat must be sent if there is nothing else */
-    bool finished; /* the source knows that the server stops */
-    bool gone;     /* the client has closed its side */
+    bool woken;    /* whether the source has called wake while the worker owned the stream */
+    bool due;      /* whether a heartbeat must be sent if there is nothing else to send */
+    bool finished; /* whether the source was told that the server stops */
+    bool gone;     /* whether the client has closed its side of the connection */
     int socket;
     uint64_t deadline; /* when a heartbeat is due */
     struct srv_stream *next, *previous;

@@ -18,7 +18,7 @@ typedef struct srv_wire {
     api_header headers[SRV_WIRE_HEADERS];
     size_t header_count;
     const char *bytes;
-    int64_t length; /* number of bytes; -1 if unknown */
+    int64_t length; /* number of bytes in the body of the answer; -1 if unknown */
     bool close;     /* whether the connection is closed after the answer */
     char retry[API_RETRY];
 } srv_wire;

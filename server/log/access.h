@@ -36,16 +36,20 @@ typedef struct srv_access {
     double time; /* when the request ended, in seconds since 1970 */
     char request_id[SRV_REQUEST_ID + 1];
     char method[SRV_METHOD + 1];
-    char path[SRV_LOG_PATH];      /* as the client sent it; truncated if long */
-    const char *route;            /* template of the path, a static text; NULL if none fits */
-    int status;                   /* 0: the connection was closed without an answer */
+    char path[SRV_LOG_PATH]; /* path of the request as the client sent it; truncated if long */
+    const char *route;       /* template of the path, a static text; NULL if none fits */
+    /* Status of the answer; 0: the connection was closed without an answer. */
+    int status;
     uint64_t bytes_in, bytes_out; /* lengths of the bodies */
     uint64_t duration_us;
-    uint64_t parts[SRV_PARTS]; /* microseconds; filled for slow requests only */
+    /* Duration of each part in microseconds; filled for slow requests only. */
+    uint64_t parts[SRV_PARTS];
     char peer[SRV_PEER];
-    char trace_id[SRV_TRACE_ID + 1]; /* "" if the client sent no traceparent: see trace.h */
-    char parent_id[SRV_SPAN_ID + 1]; /* sent by the client; "" if it sent none or a malformed one */
-    char span_id[SRV_SPAN_ID + 1];   /* the id of this request, sent back in traceparent */
+    /* Trace id of the request; "" if the client sent no traceparent: see trace.h. */
+    char trace_id[SRV_TRACE_ID + 1];
+    /* Parent id that the client sent; "" if it sent none or a malformed one. */
+    char parent_id[SRV_SPAN_ID + 1];
+    char span_id[SRV_SPAN_ID + 1]; /* the id of this request, sent back in traceparent */
 } srv_access;
 
 /* Writes the line of a request, terminated by a newline and NUL; returns its length without the

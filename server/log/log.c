@@ -14,8 +14,9 @@
 #include <unistd.h>
 
 enum {
-    GATHER_MILLIS = 20, /* longest time that the line of a request waits for others */
-    BATCH = 16,         /* most entries that are formatted and then written together */
+    /* Longest time, in milliseconds, that the line of a request waits for other lines. */
+    GATHER_MILLIS = 20,
+    BATCH = 16, /* most entries that are formatted and then written together */
     POLL_MILLIS = 100,
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,
@@ -42,9 +43,11 @@ struct srv_log {
     bool urgent; /* a line of the daemon itself is in the ring, so it is written without delay */
     entry *ring;
     size_t capacity, first, count;
-    uint64_t dropped; /* dropped lines that no line in the log has reported yet */
+    uint64_t dropped; /* number of dropped lines that no line in the log has reported yet */
     _Atomic uint64_t all_dropped;
-    int waited; /* polls in vain since `ending` became true; used by the log's thread only */
+    /* How often the log's thread has polled in vain since `ending` became true; used by that thread
+     * only. */
+    int waited;
     pthread_t thread;
 };
 
@@ -122,7 +125,7 @@ static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], 
 }
 
 /* The function of the log's thread: writes the entries of the ring. No other thread touches an
- * entry in the ring until this one has subtracted it from `count`. */
+ * entry in the ring until the log's thread has subtracted it from `count`. */
 static void *run(void *context)
 {
     srv_log *log = context;

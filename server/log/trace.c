@@ -74,7 +74,8 @@ void srv_trace_read(srv_spans *spans, const char *value, size_t count, srv_trace
     if (count == 1 && is_well_formed(value, strlen(value))) {
         memcpy(out->trace_id, value + TRACE_AT, SRV_TRACE_ID);
         memcpy(out->parent_id, value + PARENT_AT, SRV_SPAN_ID);
-        /* Version 00 defines only the lowest bit of the flags; the others must not be copied. */
+        /* Version 00 defines only the lowest bit of the flags; the other bits must not be
+         * copied. */
         flag = strchr("13579bdf", value[FLAGS_AT + 1]) != NULL ? '1' : '0';
     } else {
         put_new_id(spans, out->trace_id);

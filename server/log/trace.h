@@ -24,8 +24,10 @@ enum { SRV_TRACEPARENT = 55 };
 
 /* The trace context of a request. All digits are hexadecimal, in lower case. */
 typedef struct srv_trace {
-    char trace_id[SRV_TRACE_ID + 1];    /* "" if the request belongs to no trace */
-    char parent_id[SRV_SPAN_ID + 1];    /* span id of the client; "" if the trace begins here */
+    /* The trace to which the request belongs; "" if it belongs to none. */
+    char trace_id[SRV_TRACE_ID + 1];
+    /* The client's span id; "" if the trace begins with this request. */
+    char parent_id[SRV_SPAN_ID + 1];
     char span_id[SRV_SPAN_ID + 1];      /* the id of this request */
     char answered[SRV_TRACEPARENT + 1]; /* the value of traceparent in the answer */
 } srv_trace;

@@ -18,7 +18,8 @@ bool srv_notify(const char *message)
     }
     memcpy(to.sun_path, name, length);
     if (name[0] == '@') {
-        to.sun_path[0] = '\0'; /* no file: an abstract name, which exists only in the kernel */
+        /* An abstract name, which exists only in the kernel: there is no file. */
+        to.sun_path[0] = '\0';
     }
     int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (fd < 0) {

@@ -131,7 +131,7 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
 }
 
 /* Handles the next element of a list by rule T1 (proxy.h); `address` is NULL if the element has no
- * address. Returns true if this element is the client's, as far as the list was read. */
+ * address. Returns true if this element is that of the client, as far as the list was read. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);
@@ -187,7 +187,7 @@ static void read_addresses(srv_told *told, const srv_proxies *proxies, const cha
         char address[SRV_ADDRESS_TEXT];
         if (parse_address(text, length, address)) {
             take_address(told, proxies, address);
-        } else if (length > 0) { /* an empty element does not count: RFC 9110 5.6.1 */
+        } else if (length > 0) { /* an empty element of the list does not count: RFC 9110 5.6.1 */
             take_address(told, proxies, NULL);
             told->malformed = true;
         }
@@ -211,7 +211,8 @@ static bool read_schemes(srv_told *told, const char *value)
 typedef struct pair {
     const char *name;
     size_t name_length;
-    char value[MOST_ADDRESS]; /* without quotes; "" if it is too long to count */
+    /* The value without quotes; "" if it is too long to be an address or a scheme. */
+    char value[MOST_ADDRESS];
 } pair;
 
 static size_t token_length(const char *text)
@@ -250,7 +251,7 @@ static bool is_named(const pair *p, const char *name)
     return strlen(name) == p->name_length && strncasecmp(p->name, name, p->name_length) == 0;
 }
 
-/* What one element of a Forwarded header says; each of its members may occur once. */
+/* What one element of a Forwarded header says; its `for` and its `proto` may occur once each. */
 typedef struct element {
     bool empty, has_for, has_proto;
     char address[SRV_ADDRESS_TEXT]; /* "": none */

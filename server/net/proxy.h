@@ -30,7 +30,7 @@ enum { SRV_MAX_PROXIES = 32 };
 
 /* A network: all addresses that share their first `bits` bits with `address`. */
 typedef struct srv_network {
-    int family; /* AF_INET, AF_INET6; AF_UNIX: every peer on a Unix socket */
+    int family; /* AF_INET, AF_INET6, or AF_UNIX, which stands for every client on a Unix socket */
     uint8_t address[16];
     unsigned bits;
 } srv_network;
@@ -60,8 +60,8 @@ typedef struct srv_told {
 
 typedef struct srv_forwarding {
     srv_told forwarded, x_forwarded;
-    bool broken;    /* a line of Forwarded is malformed */
-    bool no_scheme; /* the last word of X-Forwarded-Proto is no scheme */
+    bool broken;    /* whether a line of the header Forwarded is malformed */
+    bool no_scheme; /* whether the last word of X-Forwarded-Proto is no scheme */
 } srv_forwarding;
 
 /* Reads a header line. Lines must be passed in the order in which they arrived; headers with other

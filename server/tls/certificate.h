@@ -14,7 +14,8 @@
 
 enum {
     SRV_MAX_PEM = 256 * 1024, /* bytes of a file */
-    SRV_MAX_CHAIN = 16        /* certificates in a file: the server's own and its intermediates */
+    /* Most certificates in a file: the server's own and its intermediates. */
+    SRV_MAX_CHAIN = 16
 };
 
 /* The priorities for gnutls: TLS 1.2 and 1.3; of 1.2 only cipher suites with forward secrecy and

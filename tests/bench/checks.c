@@ -74,7 +74,7 @@ static void count_requests(void *context)
 static double measure(void (*run)(void *context), void *context)
 {
     double least = 1e9;
-    run(context); /* not measured, because the caches are cold */
+    run(context); /* this round is not measured, because the caches are cold */
     for (int i = 0; i < RUNS; i++) {
         const uint64_t begun = st_clock_micros();
         run(context);

@@ -161,8 +161,8 @@ const shown = (figure) => {
 // with `less` the smaller.
 const ratio = (row, ours, theirs) => (row.less ? theirs / ours : ours / theirs);
 
-// A target that is met by less than a twentieth may be missed in another run, so such a row is
-// explained like one that misses it.
+// If a target is met by less than a twentieth, it may be missed in another run, so such a row is
+// explained like a row that misses its target.
 const EDGE = 0.95;
 
 function verdict(row, part, medians) {

@@ -64,7 +64,8 @@ function machine() {
     return `${os.cpus().length} x ${cpu.model}, ${system}`;
 }
 
-// Returns what was measured: the commit, or the version if git is not there or knows nothing of it.
+// Returns what was measured: the commit, or the version if git is missing or the folder is not a
+// repository of git.
 function state() {
     const git = (...words) => execFileSync('git', words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }).trim();
     try {

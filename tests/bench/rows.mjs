@@ -135,8 +135,8 @@ const stored = (title, ours, unit, per, limit) => ({
     guard: true,
 });
 
-// Rows of our program with two threads, compared with one; a speedup of a third is the least that
-// is worth a thread.
+// Rows of our program alone: two threads compared with one thread; a speedup of a third is the
+// least that is worth a thread.
 const scaling = (input, order, rows, why, more) => ({
     part: 'scaling',
     input,

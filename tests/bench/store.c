@@ -28,8 +28,8 @@ enum { MOST_WRITERS = 64, MOST_ROUNDS = 101, RECORD_ROOM = 1 << 12 };
 typedef enum row {
     RAW,         /* one file, one writer */
     ONE,         /* SQLite, one writer */
-    MANY,        /* SQLite, 64 writers on 64 meshes */
-    MANY_ON_ONE, /* SQLite, 64 writers on one mesh */
+    MANY,        /* the store on SQLite: 64 writers on 64 meshes */
+    MANY_ON_ONE, /* the store on SQLite: 64 writers on one mesh */
     MEMORY,
     MEMORY_ON_ONE,
     ROWS
@@ -58,7 +58,8 @@ static void require(bool good, const char *what)
 
 /* --- counting records --- */
 
-static st_journal below; /* the journal whose records are counted */
+/* The store's own journal, to which records are passed on after they were counted. */
+static st_journal below;
 static atomic_size_t record_bytes, records;
 
 /* Counts the bytes that a record takes on the disk, and passes the record on. */
@@ -270,7 +271,7 @@ int main(int count, char **arguments)
     const double time = count > 3 ? strtod(arguments[3], NULL) : 1;
     double rates[ROWS][MOST_ROUNDS], median[ROWS];
     st_memory_install(0);
-    (void)run_sqlite(folder, 1, 1, 0.1); /* run once to find the size of a record */
+    (void)run_sqlite(folder, 1, 1, 0.1); /* the writers run once to find the size of a record */
     const size_t size = record_bytes / (records > 0 ? records : 1);
     for (size_t i = 0; i < rounds; i++) {
         rates[RAW][i] = run_raw(folder, size, time);

@@ -21,8 +21,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The limit for any input is 256 MB beyond its own size, and a second; the inputs here are
- * small. */
+/* How much memory and time any input may take: 256 MB beyond its own size, which is small here, and
+ * one second. */
 enum { FUZZ_MEMORY = 256 << 20, FUZZ_SECONDS = 1, FUZZ_PACES = 100 };
 
 void fuzz_one(const uint8_t *bytes, size_t size);
@@ -42,7 +42,8 @@ typedef struct fuzz_tape {
 
 bool fuzz_at_end(const fuzz_tape *tape);
 uint32_t fuzz_byte(fuzz_tape *tape);
-uint32_t fuzz_below(fuzz_tape *tape, uint32_t n); /* returns 0..n-1; n is not 0 */
+/* Returns a number from 0 to n - 1 that the next bytes of the tape choose; n is not 0. */
+uint32_t fuzz_below(fuzz_tape *tape, uint32_t n);
 /* Returns a finite number, in most cases a small one. */
 double fuzz_double(fuzz_tape *tape);
 

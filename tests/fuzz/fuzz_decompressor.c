@@ -41,7 +41,7 @@ static int unfold(api_coding coding, fuzz_pieces pieces, unfolded *out)
         size_t used = 0;
         good = api_decompressor_feed(u, piece, n, &used, &problem);
         free(piece);
-        pieces.at -= n - used; /* the bytes that were not taken come again */
+        pieces.at -= n - used; /* the bytes of the piece that were not taken are fed again */
     }
     good = good && api_decompressor_end(u, &problem);
     api_decompressor_free(u);

@@ -14,7 +14,8 @@ static void put_u32(uint8_t *at, size_t value)
     }
 }
 
-/* Writes one chunk, filled up to a multiple of four bytes; returns its end. */
+/* Writes one chunk of a container, filled up to a multiple of four bytes; returns where the chunk
+ * ends. */
 static uint8_t *put_chunk(uint8_t *at, const char *type, char fill, const uint8_t *bytes,
                           size_t size)
 {

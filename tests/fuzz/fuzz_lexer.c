@@ -16,7 +16,8 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     char text[MOST + 1];
     size = size < MOST ? size : MOST;
     memcpy(text, bytes, size);
-    text[size++] = '\n'; /* without it, a number at the end could go on in another piece */
+    /* Without the line feed, a number at the end of a piece could go on in the next piece. */
+    text[size++] = '\n';
 
     json_tokens_of_text(&whole, text, size);
     FUZZ_REQUIRE(whole.last == HE_TOKEN_END || whole.last == HE_TOKEN_FAULT, "it has no end");

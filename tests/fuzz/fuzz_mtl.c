@@ -9,7 +9,8 @@
 static he_status read_library(const char *bytes, size_t size, he_import *import)
 {
     he_error err = {0};
-    /* A copy, so that the sanitizer notices reads beyond its end. */
+    /* The input is copied to a block of its size, so that the sanitizer notices reads beyond its
+     * end. */
     char *copy = malloc(size == 0 ? 1 : size);
     assert_non_null(copy);
     memcpy(copy, bytes, size);

@@ -12,7 +12,7 @@
 
 enum { MOST_TYPE = 200 };
 
-/* The parts that were read, written as a body of their own. */
+/* The parts that were read, written as the body of a second request. */
 typedef struct bodies {
     api_text body;
     size_t parts, bytes;
@@ -37,7 +37,7 @@ static void begin(bodies *out, const api_part *part)
         bool escaped = *p == '"' || *p == '\\' || *p == '%';
         if (escaped && *p == '%') {
             /* The sequence %22 stands for a quotation mark, so a percent sign in front of 22 cannot
-             * be written; all others stand for themselves. */
+             * be written; all other percent signs stand for themselves. */
             api_text_add_string(&out->body, strncmp(p, "%22", 3) == 0 ? "?" : "%");
             continue;
         }

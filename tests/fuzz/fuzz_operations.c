@@ -60,7 +60,7 @@ static he_mesh *start(uint32_t which)
     }
 }
 
-/* Returns an id, in most cases one of a live element. */
+/* Returns an id: in most cases that of a live element. */
 static uint32_t pick(fuzz_tape *t, const he_mesh *mesh, he_kind kind)
 {
     uint32_t issued = he_mesh_issued(mesh, kind), byte = fuzz_byte(t);

@@ -42,7 +42,8 @@ static void unpack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
                  (int)status);
     if (status == ST_OK) {
         FUZZ_REQUIRE(out.size <= HE_STORED_PART_ROOM, "a part of %zu bytes", out.size);
-        unsigned char *copy = malloc(out.size + 1); /* the next call overwrites the output */
+        /* The next call of unpack would overwrite the output, so it is copied. */
+        unsigned char *copy = malloc(out.size + 1);
         FUZZ_REQUIRE(copy != NULL, "no memory");
         memcpy(copy, out.bytes, out.size);
         pack(unpacker, copy, out.size);

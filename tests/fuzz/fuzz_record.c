@@ -12,7 +12,8 @@ static void write_again(const st_frame *frame, const uint8_t *bytes, size_t size
 {
     unsigned char *again = malloc(ST_FRAME_HEAD + frame->record.body_size);
     st_record record = frame->record;
-    /* A dummy, which is only compared with NULL. */
+    /* A dummy in place of a stage (content written in advance), which is only compared with
+     * NULL. */
     record.stage = frame->in_parts ? (st_stage *)again : NULL;
     size_t written = st_frame_write(&record, again);
     FUZZ_REQUIRE(written <= ST_FRAME_HEAD + record.body_size, "a frame of %zu bytes", written);

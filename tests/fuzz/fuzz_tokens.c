@@ -35,7 +35,8 @@ void fuzz_one(const uint8_t *bytes, size_t size)
 {
     api_token_list list;
     char message[API_TOKENS_MESSAGE] = "";
-    /* A copy, so that the sanitizer notices reads beyond its end. */
+    /* The input is copied to a block of its size, so that the sanitizer notices reads beyond its
+     * end. */
     char *copy = malloc(size == 0 ? 1 : size);
     assert_non_null(copy);
     memcpy(copy, bytes, size);

@@ -48,7 +48,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     static bool ready;
     if (!ready) {
         he_mem_set_hook(&hook);
-        /* Outside of its tests, cmocka's asserts abort only if this is set. */
+        /* Outside of cmocka's own tests, its asserts abort only if this variable is set. */
         setenv("CMOCKA_TEST_ABORT", "1", 1);
         ready = true;
     }

@@ -103,8 +103,8 @@ static bool can_write(const he_mesh *mesh, const he_format *format, const char *
     return status == HE_OK;
 }
 
-/* Writes the mesh in its own format and, at random, in the others. A text encoding keeps all digits
- * of a position; STL does so only if the mesh is as it was read. */
+/* Writes the mesh in its own format and, at random, in the other formats. A text encoding keeps all
+ * digits of a position; STL does so only if the mesh is as it was read. */
 static void write_all_formats(const he_mesh *mesh, const char *own, bool repaired,
                               md_random *random)
 {
@@ -124,7 +124,8 @@ static void write_all_formats(const he_mesh *mesh, const char *own, bool repaire
             continue;
         }
         bool varies = stl && (repaired || strcmp(encoding, "ascii") != 0);
-        /* A repair may leave labels that no face has; these are gone after one round. */
+        /* A repair may leave labels (names of groups or materials) that no face has; these are gone
+         * after one round. */
         bool rounds = repaired || strcmp(row->name, "glb") == 0;
         int repeats = !mine || varies ? NEVER : rounds ? ROUNDED : AT_ONCE;
         write_and_read(mesh, row->name, encoding, repeats, random);
@@ -198,7 +199,7 @@ static void mend_as_advised(subject *s, unsigned which)
     md_random random = s->random;
     unsigned advised = mend(s, which);
     if (advised != 0) {
-        s->random = random; /* so that the same tolerance is drawn */
+        s->random = random; /* both repairs must draw the same tolerance */
         FUZZ_REQUIRE(mend(s, advised) == 0, "%#x, advised after %#x, is not enough", advised,
                      which);
     }

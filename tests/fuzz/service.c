@@ -3,7 +3,7 @@
 #include "fuzz/fuzz.h"
 #include "unit/fixture.h"
 
-/* Bodies are small, so that nothing that they describe is large. */
+/* The service's memory for undo and its largest upload, in bytes: small, as the inputs are. */
 enum { UNDO_BUDGET = 8 << 20, UPLOAD = 64 << 10 };
 
 static void create(api_bench *b, const char *target, const char *body)

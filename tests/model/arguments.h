@@ -10,7 +10,7 @@
 enum { MD_LIST = 12, MD_CALL_TEXT = 400 };
 
 typedef struct md_call {
-    size_t row; /* index in the table of operations */
+    size_t row; /* index of the operation in the table of operations */
     const he_op *op;
     he_arg args[HE_OP_PARAMS];
     uint32_t ids[HE_OP_PARAMS][MD_LIST];

@@ -102,7 +102,7 @@ static uint64_t play_vertex_split(const md_call *c, or_mesh *o, const he_mesh *m
     uint64_t sides = left == HE_NONE ? 0 : or_require(o, HE_VERTEX, left);
     sides |= right == HE_NONE ? 0 : or_require(o, HE_VERTEX, right);
     if (sides != 0) {
-        /* If another reason to refuse also holds, hedge may report that one first. */
+        /* If another refusal also applies, hedge may report that refusal first. */
         bool null = left == HE_NONE || right == HE_NONE;
         uint32_t v = md_get(c, "vertex")->id;
         bool there = refused == 0;
@@ -129,7 +129,7 @@ static bool draw_face_add(md_draft *d)
             v[i] = md_pick(d, HE_VERTEX);
         }
         break;
-    case 1: /* the other side of a face, or its own side */
+    case 1: /* the corners of an existing face, in the opposite order or in the same order */
     {
         uint32_t f = md_live(d, HE_FACE);
         if (or_require(d->o, HE_FACE, f) != 0 || d->o->face[f].count > MD_LIST) {
@@ -142,7 +142,7 @@ static bool draw_face_add(md_draft *d)
         }
         break;
     }
-    case 2: /* vertices on the boundary or isolated */
+    case 2: /* as corners, vertices on the boundary or isolated ones */
         n = md_from(d->r, 3, 4);
         for (uint32_t i = 0; i < n; i++) {
             v[i] = md_live(d, HE_VERTEX);
@@ -153,7 +153,7 @@ static bool draw_face_add(md_draft *d)
             }
         }
         break;
-    default: /* a run along a hole, closed by a new side or by new corners */
+    default: /* corners along a hole, closed by a new side or by new corners */
     {
         he_halfedge at = {h};
         uint32_t run = md_from(d->r, 2, 5);
@@ -260,7 +260,7 @@ static uint64_t play_face_split(const md_call *c, or_mesh *o, const he_mesh *m)
     }
     refused |= missing;
     if (refused != 0) {
-        /* If another reason to refuse holds, hedge may report first that the two corners are
+        /* If another refusal also applies, hedge may report first that the two corners are
          * equal. */
         return refused | OR_BIT(HE_NOT_A_CORNER) | OR_BIT(HE_SAME_CORNER);
     }
@@ -669,7 +669,8 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
     if (he_mesh_faces(m) > 0 && he_mesh_boundary_halfedges(m) == 0 && md_chance(r, 10)) {
-        choose(c, "dual"); /* closed meshes are rare and do not stay closed */
+        /* Dual is preferred on closed meshes, which are rare and do not stay closed. */
+        choose(c, "dual");
     }
     he_op_defaults(c->op, c->args);
     const md_row *row = row_of(c->op->name);

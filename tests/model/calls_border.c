@@ -21,7 +21,8 @@ static uint64_t play_edge_delete(const md_call *c, or_mesh *o, const he_mesh *m)
                : or_edge_delete(o, e->ids, (uint32_t)e->count, md_get(c, "keep_isolated")->flag);
 }
 
-/* Returns an edge of vertex v, other than `not`, with two faces, or OR_NONE. */
+/* Returns an edge with two faces that has the vertex v as an end, other than the edge `not`;
+ * OR_NONE if there is none. */
 static uint32_t interior_edge_at(md_draft *d, uint32_t v, uint32_t not )
 {
     uint32_t around[OR_VERTICES];
@@ -37,7 +38,7 @@ static uint32_t interior_edge_at(md_draft *d, uint32_t v, uint32_t not )
     return OR_NONE;
 }
 
-/* Draws edges along a path, or random ones. */
+/* Draws edges along a path, or random edges. */
 static bool draw_edge_cut(md_draft *d)
 {
     uint32_t path[5];
@@ -76,7 +77,7 @@ static uint64_t play_edge_cut(const md_call *c, or_mesh *o, const he_mesh *m)
     return refused != 0 ? refused : or_edge_cut(o, e->ids, (uint32_t)e->count);
 }
 
-/* Draws two consecutive edges along a hole, or random ones. */
+/* Draws two consecutive edges along a hole, or two random edges. */
 static bool draw_edge_weld(md_draft *d)
 {
     uint32_t h = md_boundary_halfedge(d);

@@ -14,8 +14,8 @@ static uint32_t draw_interior(md_draft *d)
     return v;
 }
 
-/* Returns whether the oracle has room for the face that dissolving v makes: it has all corners of
- * the faces around v, except its neighbours. */
+/* Returns whether the oracle has room for the face that dissolving the vertex v makes: the face has
+ * all corners of the faces around v, except v itself. */
 static bool has_room_about(const or_mesh *o, uint32_t v)
 {
     uint32_t corners = 0;

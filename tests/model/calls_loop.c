@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Finds the origins of the half-edges along the loop of h; returns 0 if h is not live or its loop
- * is too long. */
+/* Finds the origins of the half-edges along the loop of the half-edge h; returns 0 if h is not live
+ * or its loop is too long. */
 static uint32_t loop_of(const he_mesh *m, uint32_t h, uint32_t loop[OR_CORNERS])
 {
     if (h >= he_mesh_issued(m, HE_HALFEDGE) || !he_mesh_is_live(m, HE_HALFEDGE, h)) {
@@ -144,8 +144,8 @@ static uint64_t play_loop_join(const md_call *c, or_mesh *o, const he_mesh *m)
     if (n != k) {
         return OR_BIT(HE_LOOP_LENGTH);
     }
-    /* The second loop runs from y[0] to y[1] and is joined to the first, which runs from x[0] to
-     * x[1]: the two must run in opposite directions. */
+    /* The second loop begins with the side from y[0] to y[1], which is joined to the side from x[0]
+     * to x[1] of the first loop: the two loops must run in opposite directions. */
     for (uint32_t i = 0; i < n; i++) {
         against[i] = y[(n + 1 - i) % n];
     }

@@ -8,8 +8,8 @@
 static const char *const names[] = {"red", "green", "blue", "steel", "glass"};
 enum { NAMES = sizeof names / sizeof *names };
 
-/* Returns whether the mesh has the attribute `material` of faces without labels, which marks.c
- * makes: it takes the name of the attribute that stands for materials, but names none. */
+/* Returns whether faces have an attribute of numbers under the name `material`, which marks.c may
+ * give them. Then a material_set that names faces is refused, because it needs labels there. */
 static bool clashes(const he_mesh *m)
 {
     const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);

@@ -10,11 +10,12 @@
 typedef struct limit {
     const char *row;
     he_mesh *(*make)(void);
-    const char *element; /* name of its first argument, whose id is `id`; NULL: none */
+    /* Name of the edit's first argument, an element with the id `id`; NULL: none. */
+    const char *element;
     uint32_t id;
-    const char *number;     /* name of its second argument, which is 0.1 */
+    const char *number;     /* name of the edit's second argument, whose value is 0.1 */
     const char *name;       /* value of its argument `name` */
-    he_mesh *(*mesh)(void); /* makes its argument `mesh`; NULL: none */
+    he_mesh *(*mesh)(void); /* makes the edit's argument `mesh`; NULL: the edit has none */
 } limit;
 
 static he_mesh *all_materials(void)

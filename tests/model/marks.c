@@ -60,7 +60,8 @@ static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
     return true;
 }
 
-/* Adds numbers under the name of the attribute that names materials, unless faces name some. */
+/* Gives faces an attribute of numbers under the name `material`, which otherwise has the labels
+ * that name materials. Does nothing if faces have an attribute of that name. */
 static bool add_clash(he_mesh *m)
 {
     if (he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE) != NULL) {

@@ -30,8 +30,9 @@ static const char *name_in(const he_column *column, const he_column *other, uint
     return he_labels_get(from->labels, index);
 }
 
-/* Returns whether a row's value counts as unchanged. Adding or removing a column does not put its
- * values into a set of modified elements, unless they are labels. */
+/* Returns whether the value of an element in an attribute counts as unchanged. If an edit adds or
+ * removes a whole attribute, that alone does not make elements modified, unless the values are
+ * labels. */
 static bool same_in(const he_column *a, const he_column *b, uint32_t row)
 {
     bool labels = (a == NULL || a->labels != NULL) && (b == NULL || b->labels != NULL);

@@ -5,7 +5,7 @@
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* Adds n vertices; returns the first. */
+/* Adds n vertices to the oracle at random places; returns the id of the first. */
 uint32_t md_add_vertices(or_mesh *o, md_random *r, uint32_t n);
 /* Adds a face whose corners are the n vertices from `first` on, in this order or backwards. */
 void md_add_row(or_mesh *o, uint32_t first, uint32_t n, bool backwards);
@@ -15,8 +15,8 @@ void md_add_polygon(or_mesh *o, md_random *r, bool both_sides);
 /* Adds a prism over a polygon of 3 to 12 sides. `triangles` percent of its quads are split, `caps`
  * percent of its caps exist. */
 void md_add_prism(or_mesh *o, md_random *r, uint32_t triangles, uint32_t caps);
-/* Adds a fan of triangles around a vertex, closed below by another fan (0), by a polygon (1), or
- * not at all. */
+/* Adds a fan of triangles around a vertex. `below` says what closes the fan on its other side:
+ * another fan (0), a polygon (1), or nothing. */
 void md_add_pyramid(or_mesh *o, md_random *r, uint32_t below);
 /* Adds polygons that share one vertex and nothing else. */
 void md_add_bowtie(or_mesh *o, md_random *r);
@@ -26,7 +26,7 @@ void md_add_bowtie(or_mesh *o, md_random *r);
 typedef struct md_sheet {
     uint32_t columns, rows;
     bool wrap_x, wrap_y, board;
-    uint32_t triangles; /* percentage of cells that are two triangles */
+    uint32_t triangles; /* percentage of the cells that consist of two triangles */
 } md_sheet;
 
 void md_add_grid(or_mesh *o, md_random *r, md_sheet sheet);

@@ -7,7 +7,9 @@
 
 typedef struct md_row {
     const char *name;
-    int growth; /* rough growth of the mesh: rows above 0 wait while there is no space */
+    /* Rough growth of the mesh by the operation; while there is no space, operations above 0 are
+     * not drawn. */
+    int growth;
     /* The functions behind md_draw, md_play and md_follow of calls.h for this operation. */
     bool (*draw)(md_draft *d);
     uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);

@@ -103,7 +103,7 @@ void md_fill_quads(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* A prism with caps of 3 to 12 sides, and two polygons, each as one face or as two faces back to
+/* A prism whose caps have 3 to 12 sides, and two polygons, each as one face or as two faces back to
  * back. */
 void md_fill_polygons(or_mesh *o, md_random *r)
 {

@@ -10,8 +10,8 @@ enum { MD_START_NAME = 64 };
 
 typedef struct md_start {
     char name[MD_START_NAME];
-    double share; /* its share of all edits; the sum is 1 */
-    /* Fills the oracle with a random mesh; NULL for a file. */
+    double share; /* the start's share of all edits; the shares of all starts add up to 1 */
+    /* The function that fills the oracle with a random mesh; NULL if the start is a file. */
     void (*fill)(or_mesh *o, md_random *r);
     he_mesh *file;
     /* Coordinates go up to the largest doubles, so operations that compute with them are not
@@ -22,7 +22,7 @@ typedef struct md_start {
 typedef struct md_starts {
     md_start *start;
     size_t count;
-    size_t files; /* files come last; this is their number */
+    size_t files; /* number of starts that are files, which come last in the list */
 } md_starts;
 
 /* Files are read from the folder in CORPUS, by default ../shared/corpus: those whose mesh he_build

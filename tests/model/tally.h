@@ -9,7 +9,8 @@ enum { MD_ROWS = 64 };
 typedef struct md_row_tally {
     uint64_t done;
     uint64_t refused[HE_STATUS_COUNT];
-    uint32_t starved; /* the highest N for which the N-th allocation failed */
+    /* The highest N for which a test made the N-th allocation of the operation fail. */
+    uint32_t starved;
 } md_row_tally;
 
 typedef struct md_tally {

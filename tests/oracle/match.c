@@ -383,8 +383,8 @@ static bool faces_match(const or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Returns whether turning around v, from its stored half-edge on, visits each fan of faces from its
- * first neighbour to its last; the order of the fans is hedge's choice. */
+/* Returns whether turning around the vertex v, from its stored half-edge on, visits each fan of
+ * faces from its first neighbour to its last; the order of the fans is hedge's choice. */
 static bool ring_matches(const or_mesh *o, const he_mesh *m, uint32_t v, char text[OR_TEXT])
 {
     uint32_t degree = or_degree(o, v);

@@ -22,7 +22,7 @@ uint64_t or_edge_delete(or_mesh *o, const uint32_t *e, uint32_t count, bool keep
 
 /* --- edge_cut: cut edges divide the fans of faces around a vertex into parts --- */
 
-/* A part of a fan of faces around v, which gets a new vertex in place of v. */
+/* A part of a fan of faces around a vertex v; the part gets a new vertex in place of v. */
 typedef struct part {
     uint32_t v, start; /* the half-edge where the part begins */
     bool face[OR_FACES];

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
-/* Finds the neighbours of v, counter-clockwise from `start`; the faces around v must form one
- * closed fan. */
+/* Finds the neighbours of the vertex v, counter-clockwise from `start`; the faces around v must
+ * form one closed fan. */
 static uint32_t ring_of(const or_mesh *o, uint32_t v, uint32_t start, uint32_t ring[OR_VERTICES])
 {
     uint32_t n = 0;
@@ -15,7 +15,7 @@ static uint32_t ring_of(const or_mesh *o, uint32_t v, uint32_t start, uint32_t r
     return n;
 }
 
-/* Returns whether v, or an edge or face around it, is locked, as a set of refusals. */
+/* Returns whether the vertex v, or an edge or face around it, is locked, as a set of refusals. */
 static uint64_t locked_about(const or_mesh *o, uint32_t v)
 {
     bool locked = o->vertex[v].locked;
@@ -70,7 +70,7 @@ static bool holds(const uint32_t *list, uint32_t count, uint32_t x)
     return false;
 }
 
-/* Inserts the vertex w as a corner in front of the corner i. */
+/* Inserts the vertex w as a corner of a face in front of the corner with the index i. */
 static void insert_at(or_face *f, uint32_t i, uint32_t w)
 {
     assert(f->count < OR_CORNERS);

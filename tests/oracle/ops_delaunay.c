@@ -11,7 +11,8 @@ static bool is_triangle(const or_mesh *o, uint32_t f)
     return f != OR_NONE && o->face[f].count == 3;
 }
 
-/* Returns the angle at c between a and b; 0 if a or b is at the position of c. */
+/* Returns the angle at the vertex c between the directions to the vertices a and b; 0 if a or b is
+ * at the position of c. */
 static double angle_at(const or_mesh *o, uint32_t c, uint32_t a, uint32_t b)
 {
     he_vec3 at = o->vertex[c].at;

@@ -15,7 +15,7 @@ static uint32_t left_of(const or_mesh *o, uint32_t a, uint32_t b)
     return o->left[a][b];
 }
 
-/* Inserts w as a corner of the face between a and the next corner. */
+/* Inserts the vertex w as a corner of the face, between the corner a and the next corner. */
 static void insert_after(or_face *f, uint32_t a, uint32_t w)
 {
     uint32_t i = or_place(f, a) + 1;
@@ -32,8 +32,8 @@ static void remove_corner(or_face *f, uint32_t v)
     f->count--;
 }
 
-/* Splits the edge e at t by a new vertex; the part that keeps the id has the origin of half-edge
- * 2e. Returns the new vertex. */
+/* Splits the edge e by a new vertex at the fraction t of its length; the part that keeps the id has
+ * the origin of half-edge 2e. Returns the new vertex. */
 static uint32_t cut_edge(or_mesh *o, uint32_t e, double t)
 {
     uint32_t a = o->edge[e].a;
@@ -100,7 +100,8 @@ uint64_t or_edge_join(or_mesh *o, uint32_t v)
     return 0;
 }
 
-/* Returns the corner after b in the face left of a->b; the diagonal of the split ends there. */
+/* Returns the corner after b in the face left of the side a->b; when that side is split, the
+ * diagonal ends there. */
 static uint32_t corner_beyond(const or_mesh *o, uint32_t a, uint32_t b)
 {
     uint32_t f = left_of(o, a, b);
@@ -184,8 +185,8 @@ uint64_t or_edge_flip(or_mesh *o, uint32_t e)
     return 0;
 }
 
-/* Returns whether the component is a tetrahedron: besides the triangles u,v,c and v,u,d there are
- * only u,c,d and v,d,c. */
+/* Returns whether the component is a tetrahedron: besides the two triangles u,v,c and v,u,d at the
+ * edge from u to v there are only the triangles u,c,d and v,d,c. */
 static bool is_tetrahedron(const or_mesh *o, uint32_t u, uint32_t v, uint32_t c, uint32_t d)
 {
     uint32_t f = left_of(o, u, c);
@@ -237,7 +238,7 @@ static uint32_t features_at(const or_mesh *o, uint32_t v)
     return n;
 }
 
-/* Returns which locks and feature edges forbid merging u into v. */
+/* Returns which locks and feature edges forbid merging the vertex u into the vertex v. */
 static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves)
 {
     uint64_t refused = 0;
@@ -258,8 +259,8 @@ static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves
     return refused | (spoilt ? OR_BIT(HE_FEATURE_EDGE) : 0);
 }
 
-/* Returns whether the point at t between u and v differs from v in any case, however it is
- * rounded. */
+/* Returns whether the point at the fraction t of the way between the vertices u and v differs from
+ * v in any case, however it is rounded. */
 static bool surely_off(double u, double v, double t)
 {
     double most = 8 * DBL_EPSILON * fmax(fabs(u), fabs(v)) + 8 * DBL_TRUE_MIN;
@@ -322,7 +323,7 @@ void or_draw_together(or_mesh *o, const or_collapse *c)
         if (edge->alive && (edge->a == u || edge->b == u)) {
             uint32_t other = edge->a == u ? edge->b : edge->a;
             if (o->joined[v][other] != OR_NONE) {
-                edge->alive = false; /* v has an edge to this neighbour already */
+                edge->alive = false; /* the vertex v has an edge to this neighbour of u already */
             } else {
                 *(edge->a == u ? &edge->a : &edge->b) = v;
             }

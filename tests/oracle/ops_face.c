@@ -104,8 +104,8 @@ uint64_t or_face_join(or_mesh *o, uint32_t e)
     for (uint32_t i = 0; i < keeps->count; i++) {
         joined.v[joined.count++] = keeps->v[(start + i) % keeps->count];
     }
-    /* In the joined face, the corners of `goes` that follow a, without a and b, are inserted where
-     * the other face has the side from a to b. */
+    /* The face `keeps` becomes the joined face. Where it has the side from vertex a to vertex b,
+     * the corners of the face `goes` that follow a, without a and b, are inserted. */
     start = or_place(goes, a);
     for (uint32_t i = 1; i + 1 < goes->count; i++) {
         assert(joined.count < OR_CORNERS);
@@ -155,8 +155,8 @@ static bool is_side(const or_face *f, uint32_t a, uint32_t b)
     return or_after(f, a) == b || or_after(f, b) == a;
 }
 
-/* Returns whether f can have a diagonal between two vertices that an edge connects already, or that
- * a diagonal of g may connect, too. */
+/* Returns whether the face f can have a diagonal between two vertices that an edge connects
+ * already, or that a diagonal of the face g may connect, too. */
 static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
 {
     for (uint32_t i = 0; i < f->count; i++) {

@@ -45,9 +45,9 @@ static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
 }
 
-/* Tries all rotations of two loops of equal length against each other in which no two edges would
- * join the same two vertices. Returns the least sum of the squared lengths of the new edges,
- * infinite if all are excluded. */
+/* Tries all rotations of two loops of equal length against each other, except those in which two
+ * edges would join the same two vertices. Returns the least sum of the squared lengths of the new
+ * edges, infinite if all rotations are excluded. */
 static double least_twist(const or_mesh *o, const uint32_t *a, const uint32_t *b, uint32_t n)
 {
     double least = INFINITY;
@@ -164,7 +164,8 @@ bool or_strip_is_right(const or_mesh *o, uint32_t first_new)
 
 /* --- loop_join --- */
 
-/* Returns the vertex that v becomes when each b.v[i] is merged into a.v[i]. */
+/* Returns the vertex that v becomes when each vertex of the loop b is merged into the vertex of the
+ * loop a with the same index. */
 static uint32_t becomes(or_loop a, or_loop b, uint32_t v)
 {
     for (uint32_t i = 0; i < b.count; i++) {

@@ -9,9 +9,10 @@ static const double PI = 3.14159265358979323846;
 typedef struct refining {
     or_mesh *o;
     or_scheme scheme;
-    uint32_t vertices, faces;  /* numbers of vertices and faces before the step */
-    uint32_t middle[OR_EDGES]; /* the new vertex on each edge */
-    uint32_t centre[OR_FACES]; /* the new vertex in each face; OR_NONE: none */
+    uint32_t vertices, faces;  /* numbers of vertices and faces before the step of subdivision */
+    uint32_t middle[OR_EDGES]; /* the id of the new vertex on each edge */
+    /* The id of the new vertex in each face; OR_NONE if the face gets none. */
+    uint32_t centre[OR_FACES];
     he_vec3 mean[OR_FACES];
     he_vec3 moved[OR_VERTICES];
 } refining;

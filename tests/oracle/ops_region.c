@@ -10,7 +10,7 @@ typedef struct part {
     uint32_t faces[OR_LIST];
     uint32_t count;
     bool in[OR_FACES];
-    /* The directed sides on the rim of the part. */
+    /* The directed sides on the rim of the part: side i runs from from[i] to to[i]. */
     uint32_t from[OR_LIST * 4], to[OR_LIST * 4];
     uint32_t rim;
 } part;
@@ -288,7 +288,7 @@ static void may_move(or_vertex *v, double reach)
     v->high = (he_vec3){v->at.x + reach, v->at.y + reach, v->at.z + reach};
 }
 
-/* Returns the mean of the centroids of those faces of the part that meet at v. */
+/* Returns the mean of the centroids of those faces of the part that meet at the vertex v. */
 static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 sum = {0, 0, 0};

@@ -113,8 +113,8 @@ uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep
     return refused;
 }
 
-/* Returns the first neighbour of v, counter-clockwise, in its only fan of faces, which is open: no
- * face comes before this neighbour. */
+/* Returns the first neighbour of the vertex v, counter-clockwise, in its only fan of faces, which
+ * is open: no face comes before this neighbour. */
 static uint32_t fan_start(const or_mesh *o, uint32_t v)
 {
     for (uint32_t i = 0; i < or_degree(o, v); i++) {
@@ -149,8 +149,8 @@ uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, 
         return refused;
     }
 
-    /* Visits the sectors (the angles of faces at v) counter-clockwise from `left` to `right`,
-     * across the gap if it lies between them. */
+    /* Visits the sectors (the angles of faces at the vertex v) counter-clockwise from `left` to
+     * `right`, across the gap if it lies between them. */
     uint32_t moved[OR_VERTICES];
     uint32_t count = 0;
     uint32_t x = left == OR_NONE ? fan_start(o, v) : left;
@@ -180,8 +180,8 @@ uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, 
     if (right != OR_NONE) {
         (void)or_add_face(o, (uint32_t[]){v, w, right}, 3);
     }
-    /* An edge at v moves to the new vertex if only moved sectors have it; the edges to `left` and
-     * `right` stay. */
+    /* An edge at the vertex v moves to the new vertex if only moved sectors have the edge; the
+     * edges to `left` and `right` stay. */
     (void)or_derive(o);
     for (uint32_t e = 0; e < o->edges; e++) {
         or_edge *edge = &o->edge[e];

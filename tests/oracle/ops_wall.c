@@ -63,8 +63,8 @@ static double distance(he_vec3 a, he_vec3 b)
     return sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
 }
 
-/* Finds the neighbours of v in the fan of faces that contains its neighbour w, counter-clockwise
- * from w; in the result, v itself stands for the hole. */
+/* Finds the neighbours of the vertex v in the fan of faces that contains its neighbour w,
+ * counter-clockwise from w; in the result, v itself stands for the hole. */
 static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[OR_CORNERS])
 {
     uint32_t n = 0;
@@ -92,8 +92,8 @@ static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[
     return n;
 }
 
-/* In each face of a fan around v, replaces the corner v by the new vertices on the edges to the
- * corners before and after it, as far as these edges are cut. */
+/* In each face of a fan around the vertex v, replaces the corner v by the new vertices on the edges
+ * to the corners before and after it, as far as these edges are cut. */
 static void cut_faces(or_mesh *o, uint32_t v, const uint32_t cut[OR_VERTICES])
 {
     for (uint32_t f = 0; f < o->faces; f++) {

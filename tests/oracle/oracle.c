@@ -256,8 +256,8 @@ uint32_t or_degree(const or_mesh *o, uint32_t v)
     return v < o->known_vertices ? o->degree[v] : 0;
 }
 
-/* Returns the number of open fans of faces around v: each has a first neighbour, which no face
- * precedes. */
+/* Returns the number of open fans of faces around the vertex v: each has a first neighbour, which
+ * no face precedes. */
 static uint32_t open_fans(const or_mesh *o, uint32_t v)
 {
     uint32_t n = 0;
@@ -293,8 +293,8 @@ bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y)
     return x == y && or_fans(o, v) > 1;
 }
 
-/* Returns whether a mesh can have the faces around v: they must be one closed fan, or any number of
- * open ones. */
+/* Returns whether a mesh can have the faces around the vertex v: they must be one closed fan, or
+ * any number of open fans. */
 static bool fans_can_be_held(const or_mesh *o, uint32_t v)
 {
     uint32_t degree = or_degree(o, v);

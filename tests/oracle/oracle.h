@@ -58,9 +58,9 @@ typedef struct or_mesh {
     uint32_t vertices, edges, faces; /* numbers of ids issued */
     /* Number of faces that come after the first `faces` and have no ids yet. */
     uint32_t fresh;
-    /* Faces that hedge cut as it liked, with their old corners: into triangles or, by plane_split,
-     * into parts on one side of the plane. `id` is OR_NONE if all triangles are new, because they
-     * fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
+    /* Faces that hedge cut as it liked, with their old corners `was`: into triangles or, by
+     * plane_split, into parts on one side of the plane. `id` is OR_NONE if all triangles are new,
+     * because they fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
     struct {
         uint32_t id, start;
         or_face was;
@@ -69,15 +69,18 @@ typedef struct or_mesh {
     bool by_plane;
     bool chosen[OR_FACES];        /* faces that plane_split cuts */
     double distance[OR_VERTICES]; /* distance of each vertex from the plane; 0 in the plane */
-    /* The refusals that depend on how hedge cut those faces, or on rounding: hedge may report one
-     * of them or succeed. `before` has the lists to which the oracle returns if hedge refuses; NULL
-     * if nothing was changed. */
+    /* The refusals that depend on how hedge cut the faces in `cut`, or on rounding: hedge may
+     * report one of them or succeed. `before` has the lists to which the oracle returns if hedge
+     * refuses; NULL if nothing was changed. */
     uint64_t may;
     struct or_lists *before;
-    bool bridging;     /* loop_bridge: hedge joins the loops in `bridge` by faces of its choice */
+    /* Whether hedge joins the loops in `bridge` by faces of its choice, as in loop_bridge. */
+    bool bridging;
     or_face bridge[2]; /* the two loops, in the direction around their holes */
-    double twist;      /* the least twist without a doubled edge, if the loops are equally long */
-    bool either;       /* edge_join: one of the two edges in `joining` survives */
+    /* If the loops are equally long: the least twist (sum of the squared lengths of the new edges)
+     * without a doubled edge. */
+    double twist;
+    bool either; /* whether either edge in `joining` may survive, as after edge_join */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
@@ -131,42 +134,44 @@ uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
 uint32_t or_live_faces(const or_mesh *o);
 bool or_same_point(he_vec3 a, he_vec3 b);
-/* or_place returns the position of v among the corners of f, OR_NONE if it is no corner; or_after
- * returns the next corner. */
+/* or_place returns the position of the vertex v among the corners of the face f, OR_NONE if it is
+ * no corner; or_after returns the next corner. */
 uint32_t or_place(const or_face *f, uint32_t v);
 uint32_t or_after(const or_face *f, uint32_t v);
 uint32_t or_before(const or_face *f, uint32_t v);
 uint32_t or_degree(const or_mesh *o, uint32_t v);
-bool or_on_boundary(const or_mesh *o, uint32_t v); /* also true for an isolated vertex */
+/* Also true for an isolated vertex, which has no faces. */
+bool or_on_boundary(const or_mesh *o, uint32_t v);
 uint32_t or_fans(const or_mesh *o, uint32_t v);
-/* Finds the neighbours of v, at most `room`; returns their number. */
+/* Finds the neighbours of the vertex v, at most `room`; returns their number. */
 uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t room);
-/* Returns the neighbour of v that comes after x, counter-clockwise, in the same fan of faces;
- * OR_NONE at the end of the fan. */
+/* Returns the neighbour of the vertex v that comes after its neighbour x, counter-clockwise, in the
+ * same fan of faces; OR_NONE at the end of the fan. */
 uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
-/* Returns whether the open fan at v that begins with the neighbour x ends with y, and v has another
- * fan. */
+/* Returns whether the open fan at the vertex v that begins with the neighbour x ends with the
+ * neighbour y, and v has another fan. */
 bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
 /* --- operations (ops_*.c) --- */
 
-/* Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or no refusal. The operations below expect live
- * elements. */
+/* Returns the refusal HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the element is not live, else no
+ * refusal. The operations below expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
 uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count);
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
-/* `left` or `right` may be OR_NONE; if `to` is NULL the new vertex is at the position of v. */
+/* The neighbours `left` or `right` may be OR_NONE; if `to` is NULL the new vertex is at the
+ * position of the vertex v, which is split. */
 uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
 
 uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_join(or_mesh *o, uint32_t v);
 uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
-/* An edge from u to v that is collapsed: u is deleted; v stays, at `to` or, if that is NULL, at t
- * between the two. */
+/* An edge from the vertex u to the vertex v that is collapsed: u is deleted; v stays, at `to` or,
+ * if that is NULL, at the fraction t of the way between the two. */
 typedef struct or_collapse {
     uint32_t u, v;
     double t;
@@ -189,7 +194,8 @@ uint64_t or_face_add(or_mesh *o, const uint32_t *v, uint32_t count);
 uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep_isolated);
 uint64_t or_face_split(or_mesh *o, uint32_t f, uint32_t from, uint32_t to);
 uint64_t or_face_join(or_mesh *o, uint32_t e);
-/* `start` is the origin of the stored half-edge of f; `at` NULL: the position is not specified. */
+/* `start` is the origin of the stored half-edge of the face f; if `at` is NULL, the position of the
+ * new vertex is not specified. */
 uint64_t or_face_poke(or_mesh *o, uint32_t f, uint32_t start, const he_vec3 *at);
 /* In each face f[i], the triangle with its stored half-edge, which leaves start[i], keeps the
  * id. */
@@ -200,20 +206,20 @@ typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
  * choice at a bow-tie. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
 
-/* (ops_corner.c) `start` is the neighbour of v to which hedge's stored half-edge leads: the face of
- * that half-edge stays, or v moves towards the neighbour. `moved` are the neighbours whose edges
- * move to the new vertex. */
+/* (ops_corner.c) `start` is the neighbour of the vertex v to which hedge's stored half-edge of v
+ * leads: the face of that half-edge stays, or v moves towards the neighbour. `moved` are the
+ * neighbours whose edges move to the new vertex. */
 uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
 uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
 uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
 
-/* (ops_weld.c) or_weld merges each vertex v into to[v], which may be v itself; the result is at the
- * mean of all merged vertices, or at the position of to[v]. or_weld_near finds `to` for a
- * tolerance; it returns false if rounding decides. */
+/* (ops_weld.c) or_weld merges each vertex v into to[v], which may be v itself; the merged vertex is
+ * at the mean of all vertices merged into it, or stays at the position of to[v]. or_weld_near finds
+ * `to` for a tolerance; it returns false if rounding decides. */
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
 bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
-/* `starts` are the first neighbours of those fans around v that get a new vertex: hedge chooses
- * which fan stays, and in which order the others get their vertices. */
+/* `starts` are the first neighbours of those fans around the vertex v that get a new vertex: hedge
+ * chooses which fan stays, and in which order the others get their vertices. */
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 uint64_t or_delete_isolated(or_mesh *o);
@@ -225,7 +231,8 @@ typedef struct or_loop {
     uint32_t count;
     uint32_t face;
 } or_loop;
-/* Merges b.v[i] into a.v[i]; the loops must be equally long. */
+/* Merges each vertex of the loop b into the vertex of the loop a with the same index; the loops
+ * must be equally long. */
 uint64_t or_loop_join(or_mesh *o, or_loop a, or_loop b);
 uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
 /* Finds the vertices of a cycle of three edges, in the direction of the first one; returns false if
@@ -250,7 +257,7 @@ uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double dista
 bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
 bool or_is_flat(const or_mesh *o, uint32_t f);
 
-/* (ops_whole.c) `faces` NULL: the operation applies to all faces. */
+/* (ops_whole.c) If `faces` is NULL, the operation applies to all faces. */
 uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
@@ -271,9 +278,9 @@ typedef struct or_plane {
     he_vec3 point, normal;
     const double *tolerance;
 } or_plane;
-/* `faces` NULL: all faces; start[f] is the origin of the stored half-edge of face f. If a face has
- * more than two corners in the plane, hedge chooses which of them are joined, as long as every part
- * lies on one side of the plane. */
+/* If `faces` is NULL, all faces are split; start[f] is the origin of the stored half-edge of face
+ * f. If a face has more than two corners in the plane, hedge chooses which of them are joined, as
+ * long as every part lies on one side of the plane. */
 uint64_t or_plane_split(or_mesh *o, const or_plane *plane, const uint32_t *faces, uint32_t count,
                         const uint32_t *start);
 /* The maximum size of the result of plane_split, and whether a vertex is so close to the limit of

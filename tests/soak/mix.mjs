@@ -114,7 +114,7 @@ export class Mix {
             await this.delete();
         }
         const { keeper, client } = this;
-        // Undo, compact and an export bring the keeper into the same state each time.
+        // Undo, compact and an export bring the keeper into the same state after each round.
         await client.send('POST', this.path(keeper, '/undo'), [204, 409], {
             body: { to_revision: keeper.revision },
             headers: minimal,
@@ -272,7 +272,7 @@ export class Mix {
         });
     }
 
-    // An edit of a whole guest; its counts are requested afterwards.
+    // Runs an operation on the whole mesh of a guest, then asks for the counts of the mesh.
     async whole() {
         const mesh = this.guests.at(-1);
         if (mesh === undefined) {

@@ -60,7 +60,8 @@ const BOUNDS =
         : { slope: { share: 0.01, least: 1 }, counted: { share: 0, least: 0.0625 } };
 const REST_ABOVE = 16; // MiB that memory at rest may be above its level after warming up
 const LOADED_SLOPE = { share: 0.1, least: 2 };
-// The daemon frees what a client left behind only a moment after the client disconnected.
+// How often memory is read at most until it has fallen: the daemon frees what a client left behind
+// only a moment after the client disconnected.
 const MOST_LOOKS = 1000;
 const LEFT_BEHIND = 0.0625;
 // In a run of minutes the clients pause this often, for as long as the daemon needs to return freed

@@ -141,7 +141,7 @@ export class Client {
         return { ...result, value };
     }
 
-    // Notes that an expectation about more than a status was not met.
+    // Notes that an answer was not as expected in something other than its status.
     strange(what) {
         this.problems.push(what);
     }

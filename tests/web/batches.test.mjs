@@ -28,10 +28,11 @@ async function grouped(...files) {
 test('a mesh takes what it names', async () => {
     assert.deepEqual(await grouped(['a.bin'], ['a.gltf'], ['b.bin']), ['a.gltf a.bin b.bin']);
     assert.deepEqual(await grouped(['A.OBJ'], ['a.mtl']), ['A.OBJ a.mtl']);
-    // images are not sent, and other meshes are sent by themselves
+    // images are not sent, and each other mesh file is sent in a request of its own
     assert.deepEqual(await grouped(['a.gltf'], ['a.png'], ['b.stl'], ['a.bin']),
         ['a.gltf a.bin', 'b.stl']);
-    // of two meshes, each gets the files that it names; a file that neither names is sent by itself
+    // each of two mesh files is sent with the files that it names; a file that no mesh
+    // file names is sent by itself
     assert.deepEqual(
         await grouped(['a.gltf', gltf('the%20first.bin')], ['b.obj', OBJ], ['a.mtl'],
             ['the first.bin'], ['c.bin']),

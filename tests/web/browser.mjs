@@ -63,8 +63,8 @@ export function launch() {
 }
 
 // Opens the page in a fresh profile. When the test ends, the page must have had no error, no breach
-// of its content security policy and no request to another host. `allowed` are expressions for
-// console errors that the test provokes.
+// of its content security policy and no request to another host. `allowed` are regular expressions
+// for the console errors that the test provokes.
 export async function openPageIn(
     t,
     browser,
@@ -192,7 +192,7 @@ export async function projector(page, daemon, mesh) {
     const middle = (ids) =>
         ids.reduce((sum, id) => sum.add(placeOf(id)), new Vector3()).divideScalar(ids.length);
     return {
-        // Returns the pixel of the mean of some vertices.
+        // Returns the pixel at the mean of the positions of some vertices.
         at(ids) {
             return toCanvas(middle(ids));
         },

@@ -83,7 +83,7 @@ test('an OBJ file and its library show their colours and names', async (t) => {
     wanted.forEach((isIt, face) => {
         assert.ok(isIt === null || seen.get(face)(isIt) === 64, `face ${face}`);
     });
-    // half of the pixels behind the glass must be visible
+    // half of the pixels behind the face of glass must be visible
     assert.equal(seen.get(4)(isBackground), 32);
     assert.equal(seen.get(4)(isLight), 32);
     assert.deepEqual(await legend(page), [

@@ -81,7 +81,7 @@ function newAjv({ components }) {
 // --- messages ---
 
 // Returns the headers of a message as a map from names in lower case to values. If a message has
-// several heads, such as 100 Continue before the answer, only the last one counts.
+// several heads, such as that of 100 Continue before that of the answer, only the last head counts.
 function parseHead(head) {
     const block = head.trimEnd().split('\r\n\r\n').at(-1);
     const headers = new Map();

@@ -120,8 +120,8 @@ test('what it says in gzip is what it promises', async () => {
     }
 });
 
-// Each row has a title, a request, a function that falsifies the exchange, and what the comparison
-// must say about it.
+// Each row of the table has a title, a request, a function that falsifies the exchange, and what
+// the comparison must say about the falsified exchange.
 const lies = [
     ['a status that is not declared', HALFEDGE, (e) => ({ ...e, status: 202 }), /202 is not decl/],
     ['a media type that is not declared', HALFEDGE,

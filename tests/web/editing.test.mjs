@@ -69,7 +69,7 @@ test('arrows show the half-edge selected, next, prev and twin, then are gone', a
     const context = await openMesh(t, GRID);
     const { daemon, mesh, page } = context;
     const place = await projector(page, daemon, mesh);
-    // The edge must lie between two faces.
+    // The edge chosen here must lie between two faces, so that both half-edges have a face.
     const { halfedges: [id] } = (await getAll(daemon, mesh, 'edges')).find((e) => !e.boundary);
     const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);
     const { next, prev, twin } = halfedge;
@@ -173,7 +173,7 @@ test('rings, lengths, angles and areas are those of the API', async (t) => {
     for (const name of ['outgoing', 'vertices', 'faces']) {
         assert.deepEqual(await ring(name), (await get(daemon, `/${mesh}/vertices/6/${name}`)).ids);
     }
-    // The ids of neighbours must be links, too.
+    // The ids of an element's neighbours must be links, too.
     const [first] = await ring('outgoing');
     await page.locator('[data-ring="outgoing"] button').first().click();
     await waitForFrame(page, { selection: `halfedge:${first}` });
@@ -364,7 +364,7 @@ test('what is shown is in the address, and an address shows it again', async (t)
         path: `/${new URL(address).hash}`,
     });
     await waitForFrame(second, { mesh, revision: 1, selection: `face:${face.id}` });
-    // The two cameras may differ in their last digits only.
+    // The cameras of the two pages may differ in the last digits of their numbers only.
     const [a, b] = [await readCanvas(page), await readCanvas(second)];
     const counts = [a.countOf(isChosen), b.countOf(isChosen)];
     assert.ok(counts[0] > 1000 && Math.abs(counts[0] - counts[1]) < counts[0] / 100, `${counts}`);

@@ -41,7 +41,7 @@ test('each refusal of an edit is said in its own words', async (t) => {
         await page.unroute('**/edits');
         await closeToast(page);
     }
-    // A gateway does not answer with JSON.
+    // The answer of a gateway is not JSON, which the page must expect.
     await page.route('**/edits', (route) => route.fulfill({ status: 502, body: '<h1>Bad</h1>' }));
     await page.getByRole('button', { name: 'Split' }).click();
     await expectToast(page, /status 502/);

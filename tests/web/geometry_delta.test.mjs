@@ -12,7 +12,8 @@ import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 const EDITS = Number(process.env.EDITS ?? 1000);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Returns an answer's arrays without spare capacity, so that changes must enlarge them.
+// Returns the arrays of an answer without spare capacity, so that applying changes must enlarge the
+// arrays.
 function wholeOf(buffer) {
     const geometry = unpack(buffer);
     const { vertices, vertexCount, triangles, triangleCount } = geometry;

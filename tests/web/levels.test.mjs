@@ -105,7 +105,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     assert.equal(await page.locator('#level-faces').textContent(), '320 of 320 faces');
     assert.ok(await page.locator('#level-progress').isHidden());
 
-    // The focus must be on the slider, for users of a keyboard.
+    // The focus must be on the slider, so that users of a keyboard can move it at once.
     assert.equal(await page.evaluate(() => document.activeElement.id), 'level');
     await page.keyboard.press('Home');
     await waitForFaces(page, 4);
@@ -121,7 +121,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     await waitForFaces(page, 204);
     await checkAccessible(page, 'levels', 'main');
 
-    // While a level is shown, nothing can be picked or edited.
+    // While a level is shown, a click must pick nothing, and a key must edit nothing.
     const { width, height } = await page.locator('#canvas').boundingBox();
     await click(page, { x: width / 2, y: height / 2 });
     await press(page, 'x');

@@ -66,7 +66,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     await press(page, 'Control+z');
     await waitForFrame(page, { revision: 3, selection: '' });
     assert.equal((await get(daemon, `/${mesh}`)).counts.faces, counts.faces);
-    // Edits of other clients must cost no more bytes.
+    // After an edit of another client the page must not fetch more bytes than after its own edit.
     const before = bytes();
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face });
     await waitForFrame(page, { revision: 4 });

@@ -15,8 +15,8 @@ import { openPage } from './visit.mjs';
 const EDITS = Number(process.env.EDITS ?? 300);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Runs in the page: keeps a copy of all data that is uploaded to 32-bit textures, so that it has
-// what graphics memory has, and remembers from which arrays the data came.
+// Runs in the page: keeps a copy of all data that is uploaded to 32-bit textures, so that the copy
+// equals what graphics memory has, and remembers from which arrays the data came.
 function keepTextures() {
     const { prototype } = WebGL2RenderingContext;
     const kept = new Map();

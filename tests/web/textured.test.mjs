@@ -190,7 +190,7 @@ async function check(t, name, bytes) {
         const edited = await facesIn(url, id);
         const others = faces.flatMap((_, f) => (touched.has(f) ? [] : [f]));
         checkSame(others.map((f) => edited[f]), others.map((f) => faces[f]), size, 'not touched');
-        // The side that was split is two sides now, and both must be seams.
+        // The side that was split has become two sides, and both must be seams.
         const after = seamsOf(edited);
         assert.equal(after.sides.length, before.sides.length + 1);
         const about = new Set([...touched].flatMap((f) => faces[f].map(({ vertex }) => vertex)));

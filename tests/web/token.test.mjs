@@ -63,7 +63,7 @@ test('the page asks for a token until one is good, and edits with it', async (t)
     assert.equal(await page.locator('#who').textContent(), 'alice (write)');
     assert.equal(await page.locator('#split').isVisible(), true);
 
-    // Edits of other clients arrive by the event stream.
+    // The event stream, which also needs the token, must report edits of other clients.
     const { status } = await ask(alice, '/v1/meshes/box/edits', 'POST', { op: 'face_poke', face: 0 });
     assert.equal(status, 200);
     await waitForFrame(page, { revision: 2 });
@@ -97,7 +97,7 @@ test('who may look sees no buttons that edit', async (t) => {
     assert.equal(await page.locator('#history button:visible').count(), 0);
     await checkAccessible(page, 'looking only');
 
-    // The user can change to another token.
+    // The user must be able to change to another token.
     await page.locator('#who').click();
     await use(page, alice.token);
     await waitForFrame(page, { mesh: 'box', revision: 2 });

@@ -56,8 +56,8 @@ function collect(stream) {
     };
 }
 
-// Returns {url, close()} of a proxy that records into the folder TRAFFIC; without that variable,
-// the daemon's own address.
+// Starts a proxy that records into the folder in the variable TRAFFIC, and returns its {url,
+// close()}; without that variable, returns the daemon's own address.
 export async function recorded(url) {
     const folder = process.env.TRAFFIC;
     if (folder === undefined) {

@@ -456,7 +456,7 @@ test('a mesh that is gone and a server that is gone are said', async (t) => {
     await daemon.stop();
     await page.getByRole('button', { name: 'Refresh' }).click();
     await expectToast(page, /cannot be reached/);
-    // The mesh must still be shown.
+    // The mesh must still be shown, although the daemon has stopped.
     assert.ok((await readCanvas(page)).countOf(isSurface) > 1000);
 });
 

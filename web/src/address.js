@@ -23,7 +23,7 @@ export class Address {
         }
     }
 
-    // Shows the mesh, the selection and the view of the camera that are in the page's address.
+    // Shows the mesh, the selection and the camera's position that are in the page's address.
     async follow() {
         const { mesh, kind, id, camera } = parseLink(window.location.hash);
         const session = this.#session;

@@ -178,7 +178,7 @@ export async function getAdjacent(mesh, kind, id, relation) {
     return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
 }
 
-// Returns the half-edge from one vertex to another, or null.
+// Returns the half-edge from one vertex to another, or null if there is none.
 export async function findHalfedge(mesh, from, to) {
     const [{ halfedge }] = await query(mesh, [{ find: 'halfedge', vertices: [from, to] }]);
     return halfedge;
@@ -313,7 +313,7 @@ export async function tryEdit(mesh, operation, signal) {
     return answer.status === 200 ? answer.json() : null;
 }
 
-// Undoes the last step, or all steps since a revision.
+// Undoes the last step, or all steps since the revision `to`, on a mesh at `revision`.
 export function undo(mesh, revision, to = undefined) {
     const body = { expected_revision: revision, to_revision: to };
     return postJson(`${meshPath(mesh)}/undo`, body);

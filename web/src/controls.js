@@ -176,7 +176,7 @@ export class Numeral {
     node;
     #name;
 
-    // `step` is '1' for whole numbers and 'any' for others.
+    // `step` is '1' for whole numbers and 'any' for other numbers.
     constructor(name, placeholder, step = 'any') {
         this.#name = name;
         this.node = make('input', { type: 'number', step, placeholder });

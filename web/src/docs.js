@@ -34,7 +34,7 @@ function code(text) {
 // Returns an element that shows an example: JSON with one member per line, other text unchanged.
 function example(body) {
     const text = typeof body === 'string' ? body : JSON.stringify(body, null, 2);
-    // Short arrays, such as ids and points, are easier to read in one line.
+    // Short arrays, such as ids and points, are written in one line, which is easier to read.
     const flat = text.replace(/\[[^[\]{}]*\]/g, (array) =>
         typeof body === 'string' ? array : array.replace(/\s+/g, ''),
     );

@@ -7,7 +7,7 @@ export function byId(id) {
 }
 
 // Makes an element, as in make('button', {className: 'link', 'aria-label': 'x'}, 'text', child,
-// ...). Names with a dash are attributes, others are properties.
+// ...). Names with a dash are attributes, other names are properties.
 export function make(tag, properties = {}, ...children) {
     const element = document.createElement(tag);
     for (const [name, value] of Object.entries(properties)) {

@@ -107,7 +107,7 @@ export class Editing {
         }
     }
 
-    // Takes the server's table of operations.
+    // Takes the server's table of operations, from which the forms are made.
     setOperations(operations) {
         this.#tools.setOperations(operations);
     }

@@ -22,7 +22,7 @@
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
 
-// Texels in a row of a texture; every WebGL2 allows 2048.
+// Number of texels in a row of a texture; every WebGL2 allows 2048.
 export const ROW = 2048;
 
 export const HEADER_BYTES = 96;

@@ -1,5 +1,5 @@
 // history.js - the list of the open mesh's revisions, newest first; a click on a revision undoes
-// everything since.
+// all edits since.
 
 import { formatCount, make } from './dom.js';
 
@@ -51,7 +51,8 @@ export class History {
     async #readOn() {
         const first = this.#shown;
         const page = await this.#readPage(this.#more.dataset.cursor);
-        // If the mesh was edited meanwhile, the list shows a newer history, without this page.
+        // If the mesh was edited meanwhile, the list shows a newer history, to which this page does
+        // not belong.
         if (this.#shown === first) {
             this.#append(page);
         }
@@ -71,7 +72,7 @@ export class History {
     }
 
     // Returns the row of an entry. The newest entry that can be undone is the present state, which
-    // is marked; those before it are buttons; others cannot be undone.
+    // is marked; the undoable entries before it are buttons; other entries cannot be undone.
     #row(entry) {
         const { action, undoable } = entry;
         const ops = entry.ops.join(', ') || action;

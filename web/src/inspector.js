@@ -22,7 +22,7 @@ const LINKS = {
 
 const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'Face' };
 
-// If a member has more ids than this, the others are shown after a click on a button.
+// If a member has more ids than this, the further ids are shown after a click on a button.
 const MOST = 16;
 
 // The number of digits of a measure, few enough for three measures to fit into a line.

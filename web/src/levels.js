@@ -41,8 +41,8 @@ export class Levels {
     #moved = new Uint32Array(1024);
     #changed;
 
-    // The first argument is that of ProgressiveReader's `begin`, the second is the frame of the
-    // mesh's geometry, see geometry.js.
+    // The first argument has the counts that ProgressiveReader passes to `begin`, the second the
+    // offset and the scale of the mesh's geometry, see `frame` in geometry.js.
     constructor({ vertices, faces, splits, vertexIds, faceIds }, { origin, scale }) {
         [this.#origin, this.#scale] = [origin, scale];
         this.#base = { vertices, faces };
@@ -72,7 +72,7 @@ export class Levels {
         return vertexCount >= this.#base.vertices && this.#faces >= this.#base.faces;
     }
 
-    // Number of faces that have arrived.
+    // Number of faces of the finest level that has arrived.
     get faces() {
         return this.#faces;
     }

@@ -1,6 +1,6 @@
 // lineage.js - remembers which elements replaced deleted ones, as far as edits reported it. Pure.
 
-// Each map holds at most this many entries; the oldest entries are forgotten.
+// Each map of replaced elements holds at most this many entries; the oldest entries are forgotten.
 const MOST = 10000;
 
 const KINDS = { vertices: 'vertex', edges: 'edge', faces: 'face' };

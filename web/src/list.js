@@ -23,7 +23,7 @@ export class MeshList {
         more.addEventListener('click', () => this.#append().catch(onError));
     }
 
-    // Reads the list again. Returns the ids of its first page.
+    // Reads the list of meshes again. Returns the ids of its first page.
     async refresh() {
         const reading = ++this.#reading;
         const { items, next } = await this.#readPage(null);

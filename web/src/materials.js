@@ -109,7 +109,7 @@ export class Materials {
     }
 
     // Takes the description of the attribute `material`, or null if faces have no such attribute;
-    // all faces get its default value.
+    // all faces get the attribute's default value.
     #setColumn(column) {
         const isUsable = column?.labels !== undefined && column.components === 1;
         this.#names = isUsable ? column.labels : [];
@@ -117,8 +117,8 @@ export class Materials {
         this.labels.fill(this.#fallback);
     }
 
-    // Sets the labels of some faces: [[face, label], ...]. Returns the indices of the changed
-    // texels in ascending order, or null if there are more than FEW.
+    // Sets the labels (indices of material names) of some faces: [[face, label], ...]. Returns the
+    // indices of the changed texels in ascending order, or null if there are more than FEW.
     #put(values) {
         const most = values.reduce((last, [face]) => Math.max(last, face), -1);
         if (most >= this.labels.length) {

@@ -48,7 +48,8 @@ export class Refining {
             this.#position = Number(slider.value);
             this.#schedule();
         });
-        // Esc must work on the button, too, which has the focus until the coarsest level is shown.
+        // The Esc key must also work while the focus is on the button, until the coarsest level is
+        // shown.
         for (const element of [button, box]) {
             element.addEventListener('keydown', (event) => {
                 if (event.key === 'Escape') {
@@ -96,7 +97,7 @@ export class Refining {
             this.#mesh.faces = this.#levels.faces;
             this.#schedule();
         } catch (error) {
-            // No error is shown after the user cancelled.
+            // An error is not shown if the user has cancelled the showing of levels.
             if (!reading.signal.aborted) {
                 this.end();
                 this.#acts.onError(error);

@@ -46,7 +46,8 @@ export class Selection {
         } finally {
             if (choice === this.#choice) {
                 this.#take(kind, id, also, read);
-                // Other selected elements, or what was read of this one, may be outdated.
+                // The other selected elements, or the answers just read about this element, may be
+                // outdated.
                 if (change !== this.#change || this.#seen !== this.#change) {
                     await this.#readAgain();
                 }

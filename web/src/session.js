@@ -139,7 +139,8 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             this.#readMaterials(followed);
-            // If this page replaced the mesh itself, it may have fetched the new mesh already.
+            // If this page itself caused the replacement of the mesh, it may have fetched the new
+            // mesh already.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });
@@ -175,7 +176,8 @@ export class Session {
             return;
         }
         this.#fetch(wanted).catch((error) => {
-            // Without a connection the event stream ends, too. This is shown, so the error is not.
+            // Without a connection the event stream ends, too. The page shows that the connection
+            // is lost, so it shows no error of this request.
             if (error.status !== 0) {
                 this.#onError(error);
             }

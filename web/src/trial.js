@@ -63,7 +63,7 @@ export class Trial {
                 this.#say(words, false);
             }
         } catch (error) {
-            // A lost connection is shown elsewhere.
+            // The page's bar shows a lost connection (status 0), so the form need not.
             if (!running.signal.aborted && error.status !== 0) {
                 this.#sayRefused(error);
             }

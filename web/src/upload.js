@@ -27,7 +27,8 @@ export class Uploads {
         this.#onError = onError;
         input.addEventListener('change', () => {
             this.#add([...input.files]);
-            // Without this, choosing the same file again would not be reported.
+            // If the field were not emptied, the browser would not report that the user chooses the
+            // same file again.
             input.value = '';
         });
         this.#listenToDrops();

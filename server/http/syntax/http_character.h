@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /* A set of ASCII characters is two words of 64 bits: `low` has a bit for each character below 64,
- * `high` one for each of the others. */
+ * `high` has a bit for each character from 64 on. */
 #define SRV_BIT(c)          (UINT64_C(1) << ((c)&63))
 #define SRV_RANGE(from, to) ((SRV_BIT(to) - SRV_BIT(from)) | SRV_BIT(to))
 #define SRV_DIGITS          SRV_RANGE('0', '9')

@@ -26,9 +26,9 @@ typedef struct srv_head {
 } srv_head;
 
 typedef struct srv_framing {
-    const char *path; /* points into the target, up to '?' or the end */
+    const char *path; /* the path: points into the target, and ends at '?' or the target's end */
     size_t path_length;
-    const char *query;     /* points into the target, or to "" if there is no query */
+    const char *query;     /* the query: points into the target, or to "" if there is no query */
     const char *authority; /* host and port in a target like http://HOST/PATH; NULL if none */
     size_t authority_length;
     const char *host; /* the value of the header Host, NULL if absent */

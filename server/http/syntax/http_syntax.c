@@ -12,7 +12,7 @@ typedef enum state {
     TARGET,
     VERSION,
     LINE_LF,
-    FIELD, /* expects a header or the empty line */
+    FIELD, /* expects a header line, or the empty line that ends the headers */
     NAME,
     VALUE,
     VALUE_LF,
@@ -140,7 +140,8 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
         if (s->digits == MINOR ? !is_digit : *at != version[s->digits]) {
             return fail(s, at, line_fault(*at, SRV_FAULT_VERSION));
         }
-        s->old = *at == '0'; /* decided by the last character, the minor version */
+        /* The last character, the minor version, decides whether the version is HTTP/1.0. */
+        s->old = *at == '0';
         s->digits++;
     }
     if (at == end) {
@@ -573,7 +574,8 @@ static const char *ending_of(const srv_syntax *s)
     case VERSION:
         return version + s->digits;
     case NAME:
-        return "-: \r\n\r\n"; /* the '-' makes the name one that no known header has */
+        /* The '-' makes a name that differs from all names of known headers. */
+        return "-: \r\n\r\n";
     case VALUE:
         return s->field == LENGTH && s->phase == BEFORE ? "0\r\n\r\n" : "\r\n\r\n";
     case LINE_LF:

@@ -81,16 +81,18 @@ typedef struct srv_syntax {
     uint8_t seen;  /* bit set of those headers that may occur once and have occurred */
     uint8_t text_length;
     bool trailers, old, has_query;
-    uint8_t digits; /* characters of the version, or digits of a chunk's size */
+    /* Number of characters of the version, or of digits of a chunk's size, read so far. */
+    uint8_t digits;
     uint8_t empty_lines;
     uint8_t fields, parameters;
-    uint16_t method, target; /* numbers of characters read so far */
+    uint16_t method, target; /* lengths of the method and of the target, as far as they were read */
     uint16_t extension;      /* bytes of the extensions of the present chunk */
     uint32_t extensions;     /* bytes of the extensions of all chunks of this request */
     uint32_t head, limit;    /* bytes of headers read so far, and their maximum */
     uint64_t left; /* bytes left of the body or chunk; while its size is read, the size so far */
-    uint64_t requests;          /* number of requests begun on the connection */
-    const char *ending;         /* after a fault: the bytes of S3 that are still to be passed on */
+    uint64_t requests; /* number of requests begun on the connection */
+    /* After a fault: the bytes by rule S3 that are still to be passed on. */
+    const char *ending;
     char text[SRV_SYNTAX_TEXT]; /* a header name or transfer coding, in lower case */
 } srv_syntax;
 

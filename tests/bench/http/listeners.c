@@ -57,7 +57,7 @@ static void say(int fd, const char *method, const char *path, const char *body)
 
 static char buffer[BUFFER];
 
-/* Reads from a socket until the bytes `end` have arrived. */
+/* Reads from the socket of a listener until the bytes `end` have arrived. */
 static void hear(int fd, const char *end)
 {
     size_t length = 0;

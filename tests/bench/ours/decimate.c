@@ -1,5 +1,5 @@
-/* Benchmark rows: decimation to a tenth of the faces. The result is written to the folder, where
- * the row of error.c measures its error. */
+/* Benchmark rows: decimation to a tenth of the faces. The result is written to the benchmark's
+ * folder, where the row of error.c measures its error. */
 #include "algo/decimate.h"
 #include "bench/ours/ours.h"
 

@@ -30,7 +30,7 @@ static char *print(const he_mesh *m, size_t *length)
     return text;
 }
 
-/* Writes the document to the folder, for the program that is compared with ours. */
+/* Writes the document to the benchmark's folder, for the program that is compared with ours. */
 static void make_document(bench_side *side, bench_result *out)
 {
     size_t length;

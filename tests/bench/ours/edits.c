@@ -30,7 +30,7 @@ static bool collapse(he_mesh *m, he_halfedge h)
     return he_edge_collapse(m, h, 1, NULL, NULL, NULL) == HE_OK;
 }
 
-/* Returns the half-edges of the mesh where edits are made, the same ones in every program. */
+/* Returns the half-edges of the mesh where edits are made, which are the same in every program. */
 static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_t *count)
 {
     bench_pick *picks = bench_picks(&side->input, count);

@@ -114,9 +114,9 @@ static he_mesh *read_faces(const bench_side *side)
     return mesh;
 }
 
-/* Measures the error of a decimated mesh, the larger of both directions. VALUE: the root mean
- * square; NEAR: the farthest distance, which estimates the Hausdorff distance; AMOUNT: points where
- * a face is turned over. */
+/* Measures the error of a decimated mesh in both directions and reports the larger one. VALUE: the
+ * root mean square; NEAR: the farthest distance, which estimates the Hausdorff distance; AMOUNT:
+ * points where a face is turned over. */
 static void decimate_error(bench_side *side, bench_result *out)
 {
     const he_mesh *input = bench_mesh(side);

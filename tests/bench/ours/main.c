@@ -18,8 +18,8 @@ int main(int argc, char **argv)
                                               bench_scaling_rows,
                                               bench_stored_rows,
                                               NULL};
-    /* The program allocates memory as the daemon does: counted, with large blocks in mappings of
-     * their own. */
+    /* The program allocates memory as the daemon does: memory is counted, and large blocks are
+     * mappings of their own. */
     st_memory_install(0);
     return bench_serve(argc, argv, tables);
 }

@@ -27,9 +27,9 @@ void bench_require(he_status status);
 he_soup bench_soup(const bench_side *side);
 /* Returns the mesh of the input, which the first call makes. */
 he_mesh *bench_mesh(bench_side *side);
-/* Reads a file of the folder in pieces; the caller must clear `out`. */
+/* Reads a file of the benchmark's folder in pieces; the caller must clear `out`. */
 void bench_read(const bench_side *side, const char *format, const char *name, he_import *out);
-/* Writes the mesh to a file of the folder; `encoding` may be empty. */
+/* Writes the mesh to a file of the benchmark's folder; `encoding` may be empty. */
 void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
                  const char *name);
 /* Returns a hash of the vertices, edges, faces and the corners of every face. */

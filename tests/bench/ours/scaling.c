@@ -18,7 +18,7 @@ static double wall_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Gives the work access to the helping threads, if `helped`; they are started once. */
+/* If `helped`, lets the work use the helping threads, which the first call starts. */
 static void lend(he_progress *progress, bool helped)
 {
     static st_parallel *hands;

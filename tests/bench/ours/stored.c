@@ -73,7 +73,7 @@ static void keep(coded *list, const he_delta *delta, const he_mesh *m)
     list->size += size;
 }
 
-/* Makes edits all over a copy of the mesh and encodes them; refused ones are left out. */
+/* Makes edits all over a copy of the mesh and encodes them; refused edits are left out. */
 static coded *code_edits(bench_side *side, edit try, uint32_t count)
 {
     he_mesh *m;

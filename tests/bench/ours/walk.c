@@ -37,8 +37,8 @@ static double size_of(const he_vec3 *normals, size_t count)
     return sum;
 }
 
-/* Allocates memory for normals and writes to it, as the other programs do, so that the allocation
- * of pages is not measured. */
+/* Allocates memory for normals and writes to all of it, as the other programs do, so that the row
+ * does not measure the allocation of pages. */
 static he_vec3 *normals_new(size_t count)
 {
     he_vec3 *normals = malloc(count * sizeof *normals);

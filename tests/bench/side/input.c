@@ -58,7 +58,8 @@ static void place(bench_input *in, uint32_t v, double x, double y, double z)
     in->positions[3 * v + 2] = (double)(float)z;
 }
 
-/* Adds a torus, shifted by `x`; `vertex` and `face` are its first ones. */
+/* Adds a torus, shifted by `x`, to the input; `vertex` and `face` are the ids of the first vertex
+ * and the first face that it gets. */
 static void fill_torus(bench_input *in, uint32_t side, uint32_t vertex, uint32_t face, double x)
 {
     const double turn = 6.283185307179586 / side;

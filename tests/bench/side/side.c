@@ -14,7 +14,7 @@ typedef enum measure { TIME, HEAP, PEAK } measure;
 static struct {
     measure by;
     bool began;
-    size_t before, after; /* bytes of memory at the two calls of bench_seconds */
+    size_t before, after; /* bytes of memory at the first and at the second call of bench_seconds */
     struct rusage first, last;
 } meter;
 

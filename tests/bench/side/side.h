@@ -35,7 +35,7 @@ typedef struct bench_result {
     bool has_exact, has_near;
 } bench_result;
 
-/* The argument of a row. The program keeps `mesh` between rows. */
+/* The argument of the function that runs a row. The program keeps `mesh` between rows. */
 typedef struct bench_side {
     bench_input input;
     const char *folder;
@@ -54,9 +54,9 @@ int bench_serve(int argc, char **argv, const bench_row *const *tables);
  * It is called at the beginning and the end of a row's work. */
 double bench_seconds(void);
 
-/* Writes the path of a file in the folder, at most `size` bytes. */
+/* Writes the path of a file in the benchmark's folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
-/* Opens a file of the folder; ends the program if that fails. */
+/* Opens a file of the benchmark's folder; ends the program if that fails. */
 FILE *bench_open(const bench_side *side, const char *name, const char *mode);
 
 /* Set the values of a row that are compared between programs. */

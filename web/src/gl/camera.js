@@ -61,7 +61,7 @@ export class Camera {
         this.look(center, direction, radius > 0 ? 1.8 * radius : 0.1);
     }
 
-    // Zooms in (true) or out by one step.
+    // Zooms in (true) or out (false) by one step.
     zoom(nearer) {
         const { target, minDistance, maxDistance } = this.#controls;
         const away = this.three.position.clone().sub(target);
@@ -90,7 +90,7 @@ export class Camera {
         return { right, up, back, position, height: this.#canvas.clientHeight };
     }
 
-    // The matrix of view and projection, column-major, for view.js.
+    // The product of the projection and the view matrix, column-major, for view.js.
     get matrix() {
         this.three.updateMatrixWorld();
         return new Matrix4().multiplyMatrices(

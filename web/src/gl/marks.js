@@ -47,7 +47,7 @@ const FIELD_WIDTH = 3;
 const RAISED = 0.996; // lines are drawn at this part of their distance from the camera
 
 export class Marks {
-    // The objects of three.js that are drawn.
+    // The objects of three.js by which the marks are drawn.
     chosen;
     boundary;
     arrows;
@@ -60,7 +60,7 @@ export class Marks {
     #geometry = null;
     #pixel = { value: 1 };
 
-    // `material` is the material of selected triangles.
+    // `material` is the material with which three.js draws selected triangles.
     constructor(material) {
         // Selected triangles are drawn a second time, a little nearer than the rest of the mesh.
         this.chosen = new Mesh(new BufferGeometry(), material);

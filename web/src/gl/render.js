@@ -167,7 +167,7 @@ export class Renderer {
         this.#draw();
     }
 
-    // Shows all vertices as dots, or only isolated ones, which would otherwise be invisible.
+    // Shows all vertices as dots, or only isolated vertices, which would otherwise be invisible.
     showVertices(all) {
         this.#surface.showVertices(all);
         this.#draw();
@@ -186,7 +186,7 @@ export class Renderer {
         this.#move(() => this.#camera.frame(found));
     }
 
-    // Zooms in (true) or out by one step.
+    // Zooms in (true) or out (false) by one step.
     zoom(nearer) {
         this.#move(() => this.#camera.zoom(nearer));
     }

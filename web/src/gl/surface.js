@@ -183,7 +183,7 @@ export class Surface {
         this.#setDots();
     }
 
-    // Shows all vertices as dots, or only isolated ones, which would otherwise be invisible.
+    // Shows all vertices as dots, or only isolated vertices, which would otherwise be invisible.
     showVertices(all) {
         this.#allVertices = all;
         this.#setDots();
