@@ -1,8 +1,8 @@
 /* part_packing.h - compresses the parts of stored meshes by zstd (HE_CODING_PACKED of stored.h).
  *
- * Each part is compressed by itself, after the links (ids) in it were coded as differences, as one zstd
- * frame that states the size of its content, at level 1. So a part can be read without the parts
- * before it, and reading one never takes more memory than the longest possible part. */
+ * Each part is compressed by itself, after links (ids) were coded as differences, as one zstd frame
+ * that states the size of its content, at level 1. So a part can be read without the parts before
+ * it, and reading one never takes more memory than the longest possible part. */
 #ifndef HE_JOURNAL_PART_PACKING_H
 #define HE_JOURNAL_PART_PACKING_H
 
