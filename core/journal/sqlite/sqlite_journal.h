@@ -19,7 +19,8 @@
 #include "journal/sqlite/sqlite_message.h"
 
 typedef struct st_sqlite_options {
-    const char *folder; /* `path` is the folder of the store; the folder is made if it is missing */
+    /* `folder` is the path of the store's folder, which is made if it is missing */
+    const char *folder;
     const char *release; /* `release` is the name of this release, for messages */
     /* most bytes of records that are queued or for which space is reserved; 0: ST_SQLITE_QUEUE */
     uint64_t queue_bytes;
