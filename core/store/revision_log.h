@@ -112,9 +112,9 @@ void st_log_add_barrier(st_revision_log *log, const st_logged *change, const he_
  * Returns ST_ELSEWHERE if no number of undos (redos) leads to the revision. */
 st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t revision,
                           uint32_t *steps);
-/* Returns the bytes of the deltas that `count` undos (redos) apply, as a measure of their work. */
+/* Returns the bytes of the deltas that `steps` undos (redos) apply, as a measure of their work. */
 uint64_t st_log_steps_bytes(const st_revision_log *log, st_action which, uint32_t steps);
-/* Makes sure that `count` undos (redos) can be added without allocating; that many must be
+/* Makes sure that `steps` undos (redos) can be added without allocating; that many must be
  * possible. Returns false if memory is out; nothing is reserved then. `content` is the mesh before
  * the steps. */
 bool st_log_reserve_steps(st_revision_log *log, st_action which, uint32_t steps,
@@ -123,7 +123,7 @@ void st_log_unreserve_steps(st_revision_log *log);
 /* Returns the revision whose edit the next undo (redo) would undo (redo); 0 if the stack is
  * empty. */
 uint64_t st_log_top(const st_revision_log *log, st_action which);
-/* Lists the deltas that `count` undos (redos) apply, in the order of applying them. That many undos
+/* Lists the deltas that `steps` undos (redos) apply, in the order of applying them. That many undos
  * (redos) must be possible. */
 void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out);
 /* Moves the step that is undone (redone) next to the other stack and adds the entry of that undo

@@ -141,9 +141,9 @@ typedef struct st_group {
     st_booking *booking;
     st_record *records;
     size_t count;
-    /* an array of changes, an array of rendered messages, one for each record, or NULL */
+    /* `changes` is an array of changes, one for each record, or NULL */
     const st_change *changes;
-    st_event *events; /* one for each record, or NULL */
+    st_event *events; /* an array of rendered messages, one for each record, or NULL */
 } st_group;
 
 /* Returns the next record of the mesh, filled with the mesh's present facts. If the record is of a
