@@ -111,8 +111,8 @@ typedef struct st_store_options {
     st_pool *pool;
     uint64_t base_bytes; /* bytes of records after which a mesh gets a new base; 0: ST_BASE_BYTES */
     st_render *render;   /* makes the messages for listeners; NULL: the store has no listeners */
-    /* `listeners` is the most listeners at the same time of all meshes, `listeners_of_mesh` those
-     * of one mesh */
+    /* `listeners` is the most listeners at the same time of all meshes, `mesh_listeners` those of
+     * one mesh */
     size_t listeners;
     size_t mesh_listeners;
 } st_store_options;
