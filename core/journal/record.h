@@ -42,8 +42,8 @@ typedef enum st_record_kind {
         /* An edit of the mesh. The body, or the stage in place of the body, is the encoded edit; a
          * stage may also be the whole content after the edit. */
     1,
-    ST_RECORD_UNDO = 2, /* undoes the newest step of the undo stack; no body */
-    ST_RECORD_REDO = 3, /* redoes the newest step of the redo stack; no body */
+    ST_RECORD_UNDO = 2, /* undoes the newest step of the undo stack; such a record has no body */
+    ST_RECORD_REDO = 3, /* redoes the newest step of the redo stack; such a record has no body */
     /* Creation of the mesh, or replacement of its content (PUT): the body or the stage is the
      * encoded content. */
     ST_RECORD_CONTENT = 4,

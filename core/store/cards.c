@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-/* Meshes in memory are listed in batches: at most this many references are held at once. */
+/* Meshes in memory are listed in batches of at most BATCH: references to more meshes are never held
+ * at once. */
 enum { BATCH = 64 };
 
 /* Copies the card of a mesh in memory. Returns false if the mesh was removed. */

@@ -7,11 +7,12 @@
 
 #include <time.h>
 
-/* To choose which meshes to evict, their times of last use are sorted into this many classes. */
+/* The number of classes into which the times of last use of meshes are sorted to choose which
+ * meshes to evict (remove from memory). */
 enum { AGES = 256 };
 
-/* Meshes are evicted in batches of this many, so that the store's table of meshes is not locked for
- * long. */
+/* Meshes are evicted (removed from memory) in batches of BATCH meshes, so that the store's table of
+ * meshes is not locked for long. */
 enum { BATCH = 64 };
 
 /* A mesh that was not used for COLD_MICROS may be evicted before a request needs its memory; after

@@ -5,7 +5,7 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* After replaying this many bytes of deltas (recorded changes), which takes some milliseconds, the
+/* After replaying TURN_BYTES bytes of deltas (recorded changes), which takes some milliseconds, the
  * mesh's lock is released so that writers can take it. */
 enum { TURN_BYTES = 8 << 20 };
 

@@ -76,7 +76,7 @@ void st_log_clear(st_revision_log *log);
  * entry, which the caller may fill. Returns NULL if memory is out. This function must be called
  * before the functions below that add an entry. */
 he_delta *st_log_reserve(st_revision_log *log);
-/* Replaces the reserved delta by one that the caller has made. */
+/* Replaces the log's reserved delta by a delta that the caller has made. */
 void st_log_lend(st_revision_log *log, he_delta *takes);
 /* Empties the reserved delta, which was filled but not added to the log. A small delta is kept for
  * the next edit, a large delta is freed. */

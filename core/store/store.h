@@ -69,7 +69,7 @@ typedef struct st_mesh_info {
     uint64_t incarnation;
     uint64_t metadata; /* counter of the changes of the mesh's name and metadata, from 1 */
     uint64_t revision; /* counter of the changes of the mesh's content, from 1 */
-    /* Counts every change of the mesh: of content or metadata, and the removal. */
+    /* Counter of all changes of the mesh: of its content, its metadata, and the removal. */
     uint64_t record;
     /* position of the record of the last change in the order of all records of the store */
     uint64_t position;
@@ -142,7 +142,7 @@ typedef struct st_store_measures {
     uint64_t revisions;                                                 /* revisions made */
     uint64_t evicted; /* number of meshes that were evicted: removed from memory to free it */
     uint64_t loads[ST_LOADED_COUNT]; /* loads, by their outcome */
-    st_distribution load_time;       /* microseconds that each load which found a mesh took */
+    st_distribution load_time;       /* how many microseconds the loads that found a mesh took */
     /* `listeners` and `most_listeners` are the listeners of all meshes: now, and allowed at most */
     uint64_t listeners, most_listeners;
     uint64_t events; /* events made for listeners */

@@ -120,8 +120,8 @@ void st_mesh_use(st_mesh *mesh);
 st_counts st_counts_of(const he_mesh *content);
 /* Copies the facts of a mesh. The caller holds the mesh's lock. */
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
-/* Frees the caches of a mesh: copies and bodies of remembered answers, unless a thread is reading
- * them, and derived objects. */
+/* Frees the caches of a mesh: its cached copies, the bodies of remembered answers, unless a thread
+ * is reading these, and derived objects. */
 void st_mesh_shed(st_mesh *mesh);
 /* Updates the counters of the store after the mesh's memory has changed. The caller holds the
  * exclusive lock, or is the only thread that knows the mesh. */
@@ -168,8 +168,8 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
 /* Removes the mesh from the store's table of meshes. The caller holds the mesh's exclusive lock. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
 
-/* Adds the bytes of a group of records to `appended` of the mesh, and begins to make a new base if
- * one is due (rebase.c). The caller holds the exclusive lock. */
+/* Adds the bytes of a group of records to the mesh's member `appended`, and begins to make a new
+ * base if one is due (rebase.c). The caller holds the exclusive lock. */
 void st_rebase_note(st_mesh *mesh, const st_group *group);
 /* Returns about how many bytes a record takes on the disk, by which rebase.c decides when a new
  * base is due. */

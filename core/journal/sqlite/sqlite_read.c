@@ -72,7 +72,8 @@ static st_sql open_one(st_db *db, const char *path)
     return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
 }
 
-/* Prepares the statements that begin and end a load, so that ending one needs no memory. */
+/* Prepares the SQL statements that begin and end the load of a mesh, so that ending a load needs no
+ * memory. */
 static st_sql open_loader(st_db *db, const char *path)
 {
     st_sql outcome = open_one(db, path);

@@ -13,8 +13,8 @@ struct st_waits {
     /* number of threads that have taken waits off the heap and are calling the waits' functions
      * `resume` */
     size_t resuming;
-    /* Signalled when the durable position was raised, the waits were stopped, or `resuming`
-     * fell. */
+    /* Signalled when the durable position was raised, the waits were stopped, or the number
+     * `resuming` fell. */
     pthread_cond_t caught;
     st_loss *losses;
     size_t loss_count, loss_capacity;

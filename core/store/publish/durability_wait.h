@@ -20,7 +20,7 @@
 
 typedef struct st_waits st_waits;
 
-/* The records that an answer shows, and whose loss makes it wrong. */
+/* The records that an answer to a client shows; if one of them is lost, the answer is wrong. */
 typedef struct st_shown {
     uint64_t position; /* position of the newest record that the answer shows; 0: it shows none */
     /* The records up to this position were durable when the answer was begun, so a later loss of

@@ -38,7 +38,7 @@ typedef struct st_store_counts {
     /* number of meshes that were evicted: removed from memory to free it */
     _Atomic uint64_t evicted;
     _Atomic uint64_t loads[ST_LOADED_COUNT];
-    st_histogram load_time; /* microseconds that each load which found a mesh took */
+    st_histogram load_time; /* how many microseconds the loads that found a mesh took */
     st_queue_counts queues; /* the counts that the message queues of all meshes share */
 } st_store_counts;
 
