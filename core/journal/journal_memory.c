@@ -4,8 +4,8 @@
 
 #include <stdatomic.h>
 
-/* The newest position. All memory journals of the process share it, because the order of positions
- * matters only within one journal. */
+/* The position of the newest record. All memory journals of the process share this counter, because
+ * the order of positions matters only within one journal. */
 static _Atomic uint64_t newest;
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)

@@ -100,8 +100,8 @@ void st_unpacker_free(st_unpacker *unpacker)
 }
 
 /* The zstd frame is decompressed directly into a buffer as long as the longest part, so zstd
- * allocates nothing, whatever window or size the frame claims. A frame that is longer than it
- * claims, or than the buffer, is refused. */
+ * allocates nothing, whatever size the frame states. A frame whose content is longer than it
+ * states, or than the buffer, is refused. */
 st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why)
 {
     const unsigned long long said = ZSTD_getFrameContentSize(packed.bytes, packed.size);

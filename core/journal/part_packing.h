@@ -1,6 +1,6 @@
-/* part_packing.h - compresses the parts of contents by zstd (HE_CODING_PACKED of stored.h).
+/* part_packing.h - compresses the parts of stored meshes by zstd (HE_CODING_PACKED of stored.h).
  *
- * Each part is compressed by itself, after its links were coded as differences, as one zstd frame
+ * Each part is compressed by itself, after links (ids) were coded as differences, as one zstd frame
  * that states the size of its content, at level 1. So a part can be read without the parts before
  * it, and reading one never takes more memory than the longest possible part. */
 #ifndef HE_JOURNAL_PART_PACKING_H
@@ -11,12 +11,13 @@
 typedef struct st_packer st_packer;
 typedef struct st_unpacker st_unpacker;
 
-/* Makes a compressor. Returns NULL if memory is out: parts may then stay uncompressed. */
+/* Makes a compressor. Returns NULL if memory is out: the caller may then store parts
+ * uncompressed. */
 st_packer *st_packer_new(void);
 void st_packer_free(st_packer *packer); /* takes NULL */
 /* Compresses a part of `size` bytes, at most HE_STORED_PART_ROOM, in place; adds HE_CODING_PACKED
- * to *coding and returns the new size. A part that hardly becomes shorter is left as it is. So is
- * every part if `packer` is NULL or memory is out. */
+ * to *coding and returns the new size. A part that hardly becomes shorter is left as it is. If
+ * `packer` is NULL or memory is out, every part is left as it is. */
 size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigned *coding);
 
 /* The bytes of a part, which are borrowed. */

@@ -12,7 +12,8 @@ enum { AT_VERSION = 4, AT_CHAIN = 24 };
 
 enum { BARRIER = 1, TALLY = 2, PARTS = 4, EDIT = 8, ALL_FLAGS = BARRIER | TALLY | PARTS | EDIT };
 
-/* The kinds of element whose numbers a frame states, in the order in which they are written. */
+/* The kinds of mesh elements whose counts a frame (an encoded record) states, in the order in which
+ * the counts are written. */
 static const he_kind counted[] = {HE_VERTEX, HE_EDGE, HE_FACE};
 enum { COUNTED = sizeof counted / sizeof *counted };
 

@@ -6,20 +6,20 @@
  *     8, 8       number; revision
  *     8          the chain
  *     8          time, a double
- *     varints    counter of metadata; revision that is inverted; revisions that the history
- *                reaches back; high-water marks of vertices, edges and faces; live vertices,
- *                edges and faces, boundary half-edges; bytes in memory
+ *     varints    counter of metadata; revision that is undone or redone; how many revisions the
+ *                history reaches back; ids ever issued of vertices, edges and faces; live
+ *                vertices, edges and faces; boundary half-edges; bytes of the mesh in memory
  *     text       ops: length (varint) and UTF-8
- *     text       the name, of a content and a rename
+ *     text       the mesh's name; only in records of a content or a rename
  *     9 varints  with the flag TALLY: created, deleted, modified vertices, edges and faces
- *     the rest   the body; none with the flag PARTS: the content is stored beside, in parts; with
- *                the flag EDIT too (an edit only), those are parts of the body
+ *     the rest   the body; with the flag PARTS there is none, and the content is stored in rows
+ *                of its own, in parts; with PARTS and EDIT those are parts of the encoded edit
  *
  * THE CHAIN is a hash that connects a record to all before it. The chain of the first record is the
  * hash of its mesh's origin (a number that no other mesh has). The chain of each later record is
- * the hash of the frame before it, from the version on. The hash is the first word of
- * SipHash-2-4-128 with the key 0. A record that is missing, duplicated or from another mesh breaks
- * the chain; equal chains mean equal histories.
+ * the hash of the frame before it, from the version on. The hash function is SipHash-2-4-128 with
+ * the key 0, of which the first word is used. A record that is missing, duplicated or from another
+ * mesh breaks the chain; equal chains mean equal histories.
  *
  * A reader trusts no byte: it refuses invalid bytes with HE_CORRUPT and the offset, and bytes of a
  * newer release with HE_UNSUPPORTED and both versions. */
@@ -32,13 +32,13 @@
 
 enum {
     ST_FRAME_VERSION = 1,
-    ST_FRAME_OPS = 255, /* most bytes of `ops`; a longer text is cut */
+    ST_FRAME_OPS = 255, /* most bytes of `ops`, the names of operations; a longer text is cut */
     /* The most bytes of a frame (an encoded record) without its body. */
     ST_FRAME_HEAD = 40 + 4 * 10 + 7 * 5 + (2 + ST_FRAME_OPS) + (2 + ST_MESH_NAME) + 9 * 5
 };
 
-/* A decoded frame. Texts of the record point into this struct, its body into the frame's bytes; id,
- * incarnation, created and key are not part of a frame. */
+/* A decoded frame. The texts of `record` point into this struct, its body points into the frame's
+ * bytes. A frame does not contain the members id, incarnation, created and key of the record. */
 typedef struct st_frame {
     st_record record; /* its `stage` is NULL */
     bool in_parts;

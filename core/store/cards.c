@@ -1,12 +1,13 @@
-/* cards.c - lists all meshes, in memory or not. */
+/* cards.c - lists the cards (short descriptions) of all meshes, in memory or not. */
 #include "store/table.h"
 
 #include <string.h>
 
-/* Meshes in memory are listed in batches: at most this many references are held at once. */
+/* Meshes in memory are listed in batches of at most BATCH: references to more meshes are never held
+ * at once. */
 enum { BATCH = 64 };
 
-/* Copies the card of a mesh in memory. Returns false if it was removed. */
+/* Copies the card of a mesh in memory. Returns false if the mesh was removed. */
 static bool card_of(st_mesh *mesh, st_card *out)
 {
     st_mesh_info info;
@@ -47,9 +48,10 @@ static size_t cards_in_memory(st_store *store, const char *after, st_card *out, 
     return count;
 }
 
-/* Chooses one of two cards with one id. If both describe one mesh, the card on the disk is chosen
- * if it counts more records or the mesh is damaged. If they describe different meshes, the mesh on
- * the disk was removed, which the disk does not know yet. */
+/* Chooses between two cards with the same id, one from memory and one from the disk. If both
+ * describe one mesh, the card on the disk is chosen if it counts more records or the card from
+ * memory says that the mesh is damaged. If they describe different meshes, the card from memory is
+ * chosen, because the mesh on the disk was removed, which is not written to the disk yet. */
 static const st_card *newer(const st_card *memory, const st_card *disk)
 {
     bool same = memory->incarnation == disk->incarnation;
@@ -77,7 +79,7 @@ static size_t merge(card_run memory, card_run disk, st_card *out, size_t limit)
 }
 
 /* Lists cards. The meshes in memory are listed first, then those on the disk, so that a mesh that
- * is evicted in between is in both lists rather than in none. */
+ * is evicted (removed from memory) in between is in both lists rather than in neither. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count)
 {
     const st_journal *journal = &store->journal;

@@ -21,8 +21,8 @@ static st_status book(const st_store *store, const he_mesh *content, size_t reco
     return status;
 }
 
-/* Returns true if the store may have no more meshes. The caller holds the exclusive lock of the
- * table of meshes. */
+/* Returns true if the store has as many meshes as it may have. The caller holds the exclusive lock
+ * of the table of meshes. */
 static bool is_full(const st_store *store)
 {
     const st_journal *journal = &store->journal;
@@ -30,8 +30,8 @@ static bool is_full(const st_store *store)
     return count >= store->max_meshes;
 }
 
-/* Adds the mesh to the store's table and counts it for its holder. The caller holds the exclusive
- * lock of the table. */
+/* Adds the mesh to the store's table of meshes and counts it for its holder (owner). The caller
+ * holds the exclusive lock of the table. */
 static st_status insert(st_store *store, st_mesh *mesh)
 {
     const st_holding none = {NULL, 0};
@@ -87,7 +87,8 @@ static st_status prepare(st_store *store, const st_new_mesh *made, he_mesh *cont
     return ST_OK;
 }
 
-/* Frees a mesh that was not added to the store. The caller of st_create still owns the content. */
+/* Frees a mesh that was not added to the store, but not its content, which the caller of st_create
+ * still owns. */
 static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
 {
     mesh->content = NULL;
@@ -130,8 +131,9 @@ static st_status create_as(st_store *store, const st_new_mesh *made, he_mesh *co
     return status;
 }
 
-/* Returns true if there is memory for another mesh. It makes much more memory free than the mesh
- * needs: a few free bytes would be taken by other threads at once. */
+/* Returns true if there is memory for another mesh. If memory is short, the function makes much
+ * more memory free than the mesh needs, because other threads would take a few free bytes at
+ * once. */
 static bool has_room(st_store *store)
 {
     st_make_room(store, st_memory_budget() / ST_MEMORY_SHORT_SHARE);
@@ -193,8 +195,9 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     pthread_rwlock_unlock(&store->lock);
 }
 
-/* Subtracts the old mesh from what its holder has and adds the new one, unless the new mesh would
- * exceed the limit. The caller holds the exclusive lock of the old mesh. */
+/* Subtracts the old mesh from what its holder (owner) has and adds the new mesh to what its own
+ * holder has, unless the new mesh would exceed the limit. The caller holds the exclusive lock of
+ * the old mesh. */
 static st_status count_over(st_store *store, const st_mesh *old, st_mesh *fresh)
 {
     const st_holding come = {fresh->holding.holder, he_mesh_bytes(fresh->content)};
@@ -223,7 +226,7 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
         discard(store, fresh, &booking);
         return status;
     }
-    st_release(damaged); /* the reference that the store's table had */
+    st_release(damaged); /* releases the reference that the store's table had to the old mesh */
     *out = fresh;
     return ST_OK;
 }

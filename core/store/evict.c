@@ -1,5 +1,5 @@
-/* evict.c - evicts unused meshes while memory is short; the journal loads them again when a request
- * needs them. */
+/* evict.c - evicts unused meshes (removes them from memory) while memory is short; they are loaded
+ * from the journal again when a request needs them. */
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/memory.h"
@@ -7,19 +7,20 @@
 
 #include <time.h>
 
-/* To choose which meshes to evict, their times of last use are sorted into this many classes. */
+/* The number of classes into which the times of last use of meshes are sorted to choose which
+ * meshes to evict (remove from memory). */
 enum { AGES = 256 };
 
-/* Meshes are evicted in batches of this many, so that the store's table of meshes is not locked for
- * long. */
+/* Meshes are evicted (removed from memory) in batches of BATCH meshes, so that the store's table of
+ * meshes is not locked for long. */
 enum { BATCH = 64 };
 
 /* A mesh that was not used for COLD_MICROS may be evicted before a request needs its memory; after
  * an attempt that found nothing to evict, no other is made for BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
-/* How long a thread waits for the lock of the store's table of meshes, and for the disk if meshes
- * can be evicted as soon as their changes are durable. */
+/* LOCK_NANOS is how long a thread waits for the lock of the store's table of meshes; DISK_MICROS,
+ * how long it waits for the disk if meshes can be evicted as soon as their changes are durable. */
 enum {
     LOCK_NANOS = 100 * 1000 * 1000,
     SECOND_NANOS = 1000 * 1000 * 1000,
@@ -33,7 +34,7 @@ void st_mesh_use(st_mesh *mesh)
 
 /* Takes the lock of the store's table of meshes. Returns false if that takes longer than
  * LOCK_NANOS. A thread that asks for memory may hold locks that the owner of the table's lock waits
- * for, or may own the table's lock itself, so it must not wait for ever. */
+ * for, or may own the table's lock itself, so that thread must not wait for ever. */
 static bool lock_table(st_store *store)
 {
     struct timespec until;
@@ -46,9 +47,10 @@ static bool lock_table(st_store *store)
     return pthread_rwlock_timedwrlock(&store->lock, &until) == 0;
 }
 
-/* Returns true if the mesh can be evicted: only the table of meshes has a reference to it and the
- * disk has all its changes. Under the table's exclusive lock no thread can begin to use the mesh. A
- * message that waits for listeners holds a reference. */
+/* Returns true if the mesh can be evicted: only the table of meshes has a reference to the mesh,
+ * and the disk has all its changes. The caller holds the table's exclusive lock, under which no
+ * thread can begin to use the mesh. A message that waits to be sent to listeners holds a reference,
+ * too. */
 static bool is_cold(st_store *store, st_mesh *mesh)
 {
     if (atomic_load_explicit(&mesh->uses, memory_order_acquire) > 1) {
@@ -63,10 +65,12 @@ static uint64_t bytes_of(const st_mesh *mesh)
     return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
-/* Bytes of meshes, summed by classes of their time of last use. From these sums follows how
- * recently used a mesh may be to be evicted. */
+/* The bytes of meshes, summed up by classes of their time of last use. These sums tell up to which
+ * time of last use meshes must be evicted to free a number of bytes. */
 typedef struct ages {
-    uint64_t first, span; /* earliest time of last use, and length of the range of these times */
+    /* `first` is the earliest time of last use of any mesh, `span` the length of the range of these
+     * times */
+    uint64_t first, span;
     uint64_t bytes[AGES];
 } ages;
 
@@ -127,8 +131,9 @@ static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *
     return count;
 }
 
-/* Evicts meshes that were last used before `newest`, as many as it takes to free the bytes. Returns
- * their number. *locked says whether the lock of the table of meshes could be taken. */
+/* Evicts meshes that were last used before `newest`, as many as it takes to free `bytes` bytes.
+ * Returns the number of evicted meshes. *locked says whether the lock of the table of meshes could
+ * be taken. */
 static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *locked)
 {
     st_mesh *batch[BATCH];
@@ -170,14 +175,14 @@ static void make_room(st_store *store, uint64_t bytes)
     if (missing(bytes, share) > 0) {
         st_resident_measure();
     }
-    /* If something must be evicted, more than `share` is made free, so that the next requests need
-     * not measure and evict again. */
+    /* If meshes must be evicted at all, more than `share` bytes are made free, so that the next
+     * requests need not measure memory and evict again. */
     share += share / 4;
     if (missing(bytes, share) > 0) {
         st_store_shed(store);
     }
     if (store->journal.keeps && missing(bytes, share) > 0) {
-        /* Evicts more than is missing, so that the next eviction is not due at once. */
+        /* More bytes are evicted than are missing, so that the next eviction is not due at once. */
         (void)evict(store, missing(bytes, 2 * budget / 16), UINT64_MAX, &locked);
     }
     pthread_mutex_unlock(&store->room);
@@ -191,8 +196,8 @@ static uint64_t on_its_way(const st_store *store)
     return newest > st_waits_durable(store->followers.waits) ? newest : 0;
 }
 
-/* Waits until the record at position `newest` and all before it are durable. Returns true if
- * another eviction may find more. */
+/* Waits until the record at position `newest` and all records before it are durable. Returns true
+ * if another eviction may then find more meshes. */
 static bool await_disk(st_store *store, uint64_t newest, uint64_t until)
 {
     return store->journal.keeps && newest != 0 &&
@@ -210,13 +215,14 @@ void st_make_room(st_store *store, uint64_t bytes)
     do {
         newest = on_its_way(store);
         make_room(store, bytes);
-        /* With 0 bytes the caller is an edit, which does not wait for the disk: the free memory may
-         * suffice for it. */
+        /* If `bytes` is 0, the caller is an edit. It does not wait for the disk, because the memory
+         * that is free may suffice for the edit. */
     } while (bytes > 0 && !st_memory_has(bytes + share) && await_disk(store, newest, until));
 }
 
 /* Frees memory for a thread whose allocation would be refused (a memory giver, see memory.h). That
- * thread may hold any lock but that of the table of meshes and those that st_store_shed takes. */
+ * thread may hold any lock except the lock of the table of meshes and the locks that st_store_shed
+ * takes. */
 static bool give_room(void *context, uint64_t bytes)
 {
     st_store *store = context;

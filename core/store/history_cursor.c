@@ -5,15 +5,17 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* After replaying this many bytes of deltas, which takes some milliseconds, the mesh's lock is
- * released so that writers can take it. */
+/* After replaying TURN_BYTES bytes of deltas (recorded changes), which takes some milliseconds, the
+ * mesh's lock is released so that writers can take it. */
 enum { TURN_BYTES = 8 << 20 };
 
 struct st_cursor {
     st_mesh *mesh;
     he_replay *replay;
     uint64_t at;
-    st_step *held; /* the step that the last call returned; the cursor holds a reference */
+    /* the step (one change) that the last call of st_cursor_next returned; the cursor holds a
+     * reference to it */
+    st_step *held;
 };
 
 static st_status no_memory(void)
@@ -29,8 +31,9 @@ static st_status bounds(const st_revision_log *log, uint64_t revision)
     return revision < log->oldest ? ST_GONE : ST_OK;
 }
 
-/* Moves the copy towards the revision by at most `most` bytes of deltas. If there is no copy yet,
- * it first copies the newest revision. The caller holds the mesh's shared lock. */
+/* Moves a copy of the mesh towards the wanted revision by at most `most` bytes of deltas (recorded
+ * changes). If there is no copy yet, the function first copies the newest revision. The caller
+ * holds the mesh's shared lock. */
 static he_status one_turn(const st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision,
                           uint64_t most)
 {
@@ -59,8 +62,9 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
         if (walked == HE_NO_MEMORY) {
             status = no_memory();
         } else if (walked != HE_OK) {
-            /* The mesh was undone and redone meanwhile, so this copy cannot be moved to the
-             * revision. A new copy of the newest revision can, unless the mesh changes again. */
+            /* Steps of the mesh were undone and redone meanwhile, so this copy cannot be moved to
+             * the wanted revision. A new copy of the newest revision can be moved there, unless the
+             * mesh changes again. */
             he_replay_free(*replay);
             *replay = NULL;
             most = UINT64_MAX;
@@ -73,8 +77,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
     return status;
 }
 
-/* Begins a cursor on the disk, if the history in memory has dropped the revision: the records on
- * the disk may still lead to it, so a second copy of the mesh is loaded with all of its history. */
+/* Begins a cursor at a revision that the history in memory has dropped: the records on the disk may
+ * still lead to the revision, so a second copy of the mesh is loaded with its whole history. */
 static st_status begin_on_disk(st_cursor *cursor, st_mesh *mesh, uint64_t revision)
 {
     st_status status = st_mesh_load_apart(mesh, 0, &cursor->mesh);

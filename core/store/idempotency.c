@@ -40,7 +40,7 @@ static st_keyed **find(const st_keys *keys, const char *key, const char *holder,
     return at;
 }
 
-/* Takes an entry out of the table of keys. */
+/* Takes an entry out of the table of Idempotency-Keys. */
 static void forget(st_keys *keys, st_keyed *keyed)
 {
     *find(keys, keyed->text, keyed->key.holder, keyed->hash) = keyed->next;
@@ -65,8 +65,8 @@ void st_keys_clear(st_keys *keys)
     pthread_mutex_destroy(&keys->lock);
 }
 
-/* Grows the hash table, if necessary. If memory is out it does not grow, and its chains become
- * longer. */
+/* Grows the hash table, if necessary. If memory is out, the table does not grow, and its chains of
+ * entries become longer. */
 static bool reserve_bucket(st_keys *keys)
 {
     if (keys->count < keys->bucket_count) {
@@ -99,7 +99,7 @@ static void forget_old(st_keys *keys, double now)
     }
 }
 
-/* Adds a key whose request begins now. Returns NULL if memory is out. */
+/* Adds an entry for an Idempotency-Key whose request begins now. Returns NULL if memory is out. */
 static st_keyed *add(st_keys *keys, const st_key *key, const char *whose, uint64_t hash, double now)
 {
     size_t length = strlen(key->text), holder = strlen(whose);
@@ -166,7 +166,8 @@ void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
     if (body != NULL) {
         memcpy(body, answer->body, answer->length);
     } else if (answer->length > 0 && !answer->changed) {
-        /* The request changed nothing and is repeated if it comes again, so no answer is kept. */
+        /* The answer is not kept: the request changed nothing, so it can be executed again if it
+         * comes again. */
         return;
     }
     pthread_mutex_lock(&keys->lock);
@@ -198,7 +199,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
                       .metadata = kept->metadata};
     snprintf(answer.id, sizeof answer.id, "%s", kept->id);
     st_keyed *keyed;
-    /* The time of a damaged key cannot be trusted, so the present time is used. */
+    /* The stored time of a damaged key cannot be trusted, so the present time is used instead. */
     const double time = kept->is_damaged ? st_clock_utc() : was->time;
     switch (st_keys_begin(keys, &key, time, &keyed)) {
     case ST_KEYED_NEW:
@@ -206,7 +207,8 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
         st_keyed_keep(keyed, &answer);
         st_keyed_end(keyed);
         break;
-    case ST_KEYED_KEPT: /* the key was used again: the answer in memory is newer */
+    /* the key was used again meanwhile, and the answer in memory is newer than the stored key */
+    case ST_KEYED_KEPT:
         st_keyed_end(keyed);
         break;
     case ST_KEYED_BUSY:

@@ -1,19 +1,19 @@
 /* idempotency.h - the first answers to requests that carried an Idempotency-Key.
  *
- * After draft-ietf-httpapi-idempotency-key-header. A table of keys belongs to a mesh, or to the
- * store for requests that make a mesh, and is freed with its owner. The entry of a key is made
- * before its request is executed, with all the memory that remembering the answer needs, the body
- * excepted:
+ * After draft-ietf-httpapi-idempotency-key-header. A table of keys belongs to a mesh or, for
+ * requests that create a mesh, to the store; it is freed with its owner. The entry of a key is made
+ * before its request is executed, with all the memory that remembering the answer needs, except for
+ * the answer's body:
  *
  *     keyed ----> under way ----> kept, with the answer        forgotten after ST_KEPT_SECONDS, or
  *                     |             |                          when newer ones need the room
  *                     +-> end       +-> a repeated request gets the answer
  *
  * The body of an answer is copied when it is kept. If it is larger than ST_KEPT_BODY or memory is
- * out, status and tag are kept without it, so a lack of memory never forgets that the request took
- * effect. Keys of changes come back from the journal with their mesh, and those of the store when
- * it starts: with 201 or 204 and the tag, without a body. The table has a lock of its own, taken
- * after all others. */
+ * out, the answer's status and ETag are kept without the body, so a lack of memory never forgets
+ * that the request took effect. Keys of changes are read back from the journal when their mesh is
+ * loaded, and the keys of the store when it starts. Their answer is then 201 or 204 with the ETag,
+ * without a body. Each table has a lock of its own, taken after all others. */
 #ifndef HE_STORE_IDEMPOTENCY_H
 #define HE_STORE_IDEMPOTENCY_H
 
@@ -22,15 +22,18 @@
 #include <pthread.h>
 
 enum {
-    ST_KEPT_BYTES = 16 << 20, /* most bytes of one table, its entries and bodies together */
-    ST_KEPT_BODY = 4 << 20    /* most bytes of one answer's body */
+    /* most bytes of the entries and bodies of one table of keys together */
+    ST_KEPT_BYTES = 16 << 20,
+    ST_KEPT_BODY = 4 << 20 /* most bytes of the body of one kept answer */
 };
 
 typedef struct st_keys {
     pthread_mutex_t lock;
     /* The hash table, its size a power of two; NULL before the first entry. */
     struct st_keyed **buckets;
-    size_t bucket_count, count;       /* number of buckets; number of all entries */
+    /* `bucket_count` is the number of buckets of the hash table, `count` the number of all its
+     * entries */
+    size_t bucket_count, count;
     struct st_keyed *oldest, *newest; /* list of the entries with a kept answer */
     size_t kept;
     uint64_t bytes; /* bytes of the entries with a kept answer */
@@ -42,8 +45,10 @@ typedef struct st_keys {
 struct st_keyed {
     st_keys *keys;
     unsigned uses;
-    bool is_kept, listed; /* is_kept: the answer is kept; listed: the entry is in the table */
-    /* The stored row is damaged, so it is not known to which request the key belongs. */
+    /* `is_kept` is true if the answer is kept, `listed` if the entry is in the table */
+    bool is_kept, listed;
+    /* True if the stored row of the key is damaged, so that it is not known to which request the
+     * key belongs. */
     bool is_damaged;
     st_record_key key; /* the key in the form in which a record stores it */
     uint64_t hash;
@@ -53,16 +58,17 @@ struct st_keyed {
 };
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);
-void st_keys_clear(st_keys *keys); /* frees the table's memory; no request may be under way */
-/* Begins a request with a key. `now` is in seconds since 1970. */
+/* Frees the memory of the table of keys; no request of the table may be under way. */
+void st_keys_clear(st_keys *keys);
+/* Begins a request that has an Idempotency-Key. `now` is in seconds since 1970. */
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
-/* Removes a kept answer that a request got with ST_KEYED_KEPT. The caller calls it instead of
- * st_keyed_end. */
+/* Removes a kept answer that a request got with ST_KEYED_KEPT. The caller must call this function
+ * instead of st_keyed_end. */
 void st_keys_forget(st_keyed *keyed);
-/* Restores a key from the journal (as an st_take_key): its answer is 201 or 204, without a body.
- * `keys` is an st_keys. */
+/* Restores a key from the journal; its answer is 201 or 204, without a body. The function is passed
+ * to the journal as an st_take_key; `keys` points to an st_keys. */
 bool st_keys_restore(void *keys, const st_kept_key *kept);
-/* Frees the bodies of kept answers that no request reads. */
+/* Frees the bodies of those kept answers that no request is reading. */
 void st_keys_shed(st_keys *keys);
 
 #endif

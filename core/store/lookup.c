@@ -7,15 +7,17 @@
 
 #include <string.h>
 
-/* How many microseconds a thread waits for another thread's lookup. */
+/* How many microseconds a thread waits for another thread's lookup of an id on the disk. */
 enum { LOOKUP_MICROS = 30 * 1000 * 1000 };
 
 struct st_lookup {
     char id[ST_MESH_ID + 1];
-    /* Number of threads that use it: the one that owns the lookup and those that wait. */
+    /* Number of threads that use this lookup: the thread that owns it and the threads that wait for
+     * it. */
     size_t uses;
     bool ended;
-    st_status status; /* why there is no mesh; ST_OK if the mesh is in memory now */
+    /* the result of the lookup: ST_OK if the mesh is in memory now, else why it is not */
+    st_status status;
     st_lookup *next;
 };
 
@@ -131,7 +133,8 @@ st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
     st_status status;
     do {
         status = st_lookup_begin(store, id, &mesh, out);
-    } while (status == ST_ABSENT); /* the other thread found no such mesh: the id may be free */
+        /* another thread's lookup of the id found no such mesh, so the id may be free */
+    } while (status == ST_ABSENT);
     if (status != ST_OK) {
         return status;
     }
@@ -228,8 +231,8 @@ static st_status put_in(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* Counts the load of a mesh for monitoring. `mesh` is NULL if it was not found; a mesh that cannot
- * be read has no content. */
+/* Counts the load of a mesh from the disk for monitoring. `mesh` is NULL if no mesh was found; a
+ * mesh that cannot be read has no content. */
 static void count_load(st_store *store, st_status status, const st_mesh *mesh, uint64_t micros)
 {
     st_store_counts *counts = &store->followers.counts;
@@ -299,8 +302,8 @@ st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold
     return ST_OK;
 }
 
-/* Makes a mesh without content, which is never in the store's table. By it the record of a removal
- * is appended for a mesh that is not in memory. */
+/* Makes a mesh without content, which is never in the store's table. It stands for a mesh that is
+ * not in memory, so that the record of that mesh's removal can be appended. */
 static st_mesh *new_stand_in(const st_cold *cold)
 {
     const st_mesh_options options = st_store_mesh_options(cold->store);

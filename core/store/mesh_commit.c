@@ -22,8 +22,8 @@ static double revise(st_mesh *mesh)
     return mesh->info.modified;
 }
 
-/* Counts the elements that were created, deleted and modified. If the whole content was replaced,
- * the numbers are not known. */
+/* Counts the elements that a change has created, deleted and modified. If the whole content was
+ * replaced, the numbers are not known. */
 static st_tally tally_of(const he_changes *changes)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -36,8 +36,8 @@ static st_tally tally_of(const he_changes *changes)
     return tally;
 }
 
-/* Commits an edit. A reference keeps its delta until the change was published, even if the history
- * drops the delta. */
+/* Commits an edit. A reference keeps the delta (recorded changes) of the edit in memory until the
+ * edit was published, even if the history drops the delta. */
 static void commit_edit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
@@ -129,7 +129,7 @@ static void commit_facts(st_write *w)
                   .booking = &w->booking, .records = records, .changes = changes, .count = count});
 }
 
-/* Puts the new content into the mesh and returns the old one, which the caller frees. */
+/* Puts the new content into the mesh and returns the old content, which the caller frees. */
 static he_mesh *exchange_content(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -141,15 +141,16 @@ static he_mesh *exchange_content(st_write *w)
     }
     he_mesh *before = mesh->content;
     if (before == w->content) {
-        /* The content is not exchanged: a mesh may be removed while a claim reads it. */
+        /* At a removal the content stays in the mesh, because a long edit that has claimed the mesh
+         * may be reading it. */
         return NULL;
     }
     mesh->content = w->content;
     return before;
 }
 
-/* Reserves space in the journal for the records of the write. For a claim the caller does not hold
- * the lock, because no other thread has the copy. */
+/* Reserves space in the journal for the records of the write. If the write is a claim, the caller
+ * does not hold the mesh's lock, because no other thread knows the claim's copy. */
 static st_status book(st_write *w)
 {
     const st_journal *journal = w->mesh->journal;
@@ -174,9 +175,9 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
-/* Returns true if the change was made from records that are lost. It must be called after space in
- * the journal was reserved: a loss that comes later then includes the record of this change,
- * too. */
+/* Returns true if the change was made from records that are lost. The function must be called after
+ * space in the journal was reserved: a loss that comes later then includes the record of this
+ * change, too. */
 static bool is_from_lost(const st_write *w)
 {
     st_waits *waits = w->mesh->followers->waits;
@@ -187,8 +188,8 @@ static bool is_from_lost(const st_write *w)
     return lost;
 }
 
-/* Refuses the commit if the journal has no space, a claimed mesh was removed or lost meanwhile, or
- * the holder may not have more. */
+/* Refuses the commit if the journal has no space, if a claimed mesh was removed or lost meanwhile,
+ * or if the mesh would take more than its holder (owner) may have. */
 static st_status get_ready(st_write *w)
 {
     const st_status unreadable = w->kind == ST_WRITE_REMOVE ? ST_OK : w->info.unreadable;

@@ -14,13 +14,14 @@
 typedef struct load {
     const st_mesh_options *options;
     uint64_t until; /* the revision at which to stop; 0: the last */
-    /* The mesh that is loaded; its content is NULL and its log empty until the base was read. */
+    /* The mesh that is being loaded. Until the base, the first content, was read, the mesh's
+     * content is NULL and its log of revisions is empty. */
     st_mesh *mesh;
     uint64_t bytes;    /* bytes that the content takes in memory, according to the card */
-    uint64_t record;   /* number of the last record applied, 0: none */
-    uint64_t metadata; /* number of metadata changes after that record */
-    uint64_t reach;    /* the oldest revision that can be read after that record */
-    /* The base or record whose parts are being read, with its own copies of texts. */
+    uint64_t record;   /* number of the last record that was applied to the mesh; 0: none */
+    uint64_t metadata; /* counter of the mesh's metadata changes after the last applied record */
+    uint64_t reach;    /* the oldest revision that can be read after the last applied record */
+    /* The base or record whose parts are being read; its texts are copies. */
     st_record pending;
     bool is_base; /* `pending` is a base */
     char ops[ST_ENTRY_OPS];
@@ -80,7 +81,7 @@ static st_status wrong_marks(load *l, const st_record *record)
 
 /* --- contents --- */
 
-/* Begins the history of a mesh with this content, which becomes the mesh's content. */
+/* Begins the history of a mesh with the content of its base, which becomes the mesh's content. */
 static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -111,7 +112,8 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* Adds the reserved delta to the history, as the entry of the record that made it. */
+/* Adds the reserved delta to the history, as the entry of the record from which the delta was
+ * read. */
 static st_status add_edit(load *l, const st_record *record)
 {
     st_mesh *mesh = l->mesh;
@@ -128,7 +130,7 @@ static st_status add_edit(load *l, const st_record *record)
     return ST_OK;
 }
 
-/* Applies an edit whose record has the whole content after it, and no delta. */
+/* Applies an edit whose record has the whole content after the edit in place of a delta. */
 static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -161,7 +163,8 @@ static st_status take_content(load *l, const st_record *record, bool is_base, he
         return begin_history(l, record, takes);
     }
     if (record->barrier) {
-        l->mesh->base = record->revision; /* revisions before it may be purged */
+        /* the revisions before this one may be purged (deleted) from the disk */
+        l->mesh->base = record->revision;
     }
     return record->kind == ST_RECORD_CONTENT ? replace(l, record, takes)
                                              : edit_whole(l, record, takes);
@@ -176,8 +179,8 @@ static void free_parts(load *l)
     l->missing = 0;
 }
 
-/* Allocates memory for an edit that was stored in parts; its exact size is known when all parts are
- * read. */
+/* Allocates memory for an encoded edit that was stored in parts. The exact size of the edit is
+ * known only when all parts are read. */
 static st_status begin_edit(load *l, const st_piece *piece)
 {
     if (piece->parts > ST_MOST_BODY / HE_STORED_PART + 1) {
@@ -304,8 +307,8 @@ static st_status take_step(load *l, const st_record *record)
     } else {
         he_delta_redo(delta, mesh->content);
     }
-    /* Ids that an edit issued by replacing the content are only in the record's high-water
-     * marks. */
+    /* If an edit replaced the whole content, the record's count of issued ids is the only place
+     * that states the ids which the edit issued. */
     he_status status = he_mesh_issue(mesh->content, record->issued, &err);
     if (status == HE_OK && !has_marks(mesh->content, record->issued)) {
         return wrong_marks(l, record);
@@ -353,7 +356,7 @@ static st_status take_record(load *l, const st_piece *piece)
     case ST_RECORD_CONTENT:
         return record->stage != NULL ? begin_parts(l, piece) : take_whole(l, record);
     case ST_RECORD_RENAME:
-        return ST_OK; /* the name is taken from the card */
+        return ST_OK; /* a rename is not applied, because the mesh's name is taken from its card */
     case ST_RECORD_REMOVE:
         break;
     }
@@ -371,8 +374,8 @@ static st_status take_base(load *l, const st_piece *piece)
     if (l->until != 0 && record->revision > l->until) {
         return ST_GONE;
     }
-    /* More is asked for than the content takes: columns have spare capacity, and an earlier
-     * revision is copied once more. */
+    /* More memory is made free than the content takes, because the arrays of a mesh have spare
+     * capacity, and an earlier revision is copied once more. */
     st_make_room(l->options->store, l->until == 0 ? l->bytes + l->bytes / 2 : 2 * l->bytes);
     l->record = record->number;
     l->metadata = record->metadata;
@@ -433,15 +436,16 @@ static st_status check_content(load *l)
     return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
 }
 
-/* Ends the loading of the history. The history is then as it was, unless the undo budget is much
- * smaller now. */
+/* Ends the loading of the history, which is then as it was before the mesh left memory, unless the
+ * undo budget is much smaller now. */
 static void end_history(load *l)
 {
     st_log_drop(&l->mesh->log, l->reach);
     st_log_limit(&l->mesh->log, l->options->undo_budget);
 }
 
-/* Returns true if this piece comes after everything that leads to the revision at which to stop. */
+/* Returns true if this piece of the stored mesh comes after the revision at which the load is to
+ * stop. */
 static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||

@@ -4,20 +4,20 @@
  *     records after it:    [edit] [edit] [undo] [rename] ...    each applied like the original
  * change end:                 the mesh must agree with its card, he_check
  *
- * The content, the undo and redo stacks, the entries of the history and the facts are then what
- * they were after the last record. */
+ * After the load, the content, the undo and redo stacks, the entries of the history and the facts
+ * of the mesh are what they were after the last record. */
 #ifndef HE_STORE_MESH_LOAD_H
 #define HE_STORE_MESH_LOAD_H
 
 #include "store/stored_mesh.h"
 
-/* Makes room in memory and loads a mesh from the pieces of `reader`. `until` is the revision at
- * which the load stops, with the history as it was then; 0 loads the newest revision. With
- * ST_DAMAGED and ST_NEWER, the damage of `card` says what is wrong.
+/* Makes room in memory and loads a mesh from the pieces that `reader` reads. `until` is the
+ * revision at which the load stops, with the history as it was then; 0 loads the newest revision.
+ * With ST_DAMAGED and ST_NEWER, the damage of `card` says what is wrong.
  * Returns ST_GONE if the first content on the disk is of a later revision than `until`, or if no
  * record leads to exactly `until`.
- * Returns ST_DAMAGED if the pieces make no mesh, or not the one that the card describes; the card
- * is then marked as damaged.
+ * Returns ST_DAMAGED if the pieces make no valid mesh, or not the mesh that the card describes; the
+ * card is then marked as damaged.
  * Returns ST_NEWER if a newer release wrote a piece.
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_load(const st_mesh_options *options, st_card *card, st_reader *reader,
@@ -29,9 +29,10 @@ st_status st_mesh_load(const st_mesh_options *options, st_card *card, st_reader 
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, st_reader *reader,
                           st_mesh **out, char damage[ST_DAMAGE]);
-/* Loads a second copy of a mesh, up to a revision (0: the newest), with all of the history on the
- * disk and no undo budget. The copy is not in the store's table of meshes; st_release frees it.
- * Waits for the disk; the caller must hold no lock. On failure *out is NULL.
+/* Loads a second copy of a mesh, up to a revision (0: the newest), with all of the history that is
+ * on the disk, without the limit of the undo budget. The copy is not in the store's table of
+ * meshes; st_release frees it. Waits for the disk; the caller must hold no lock. On failure *out is
+ * NULL.
  * Returns ST_GONE if the records do not reach back to the revision.
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_load_apart(st_mesh *mesh, uint64_t until, st_mesh **out);

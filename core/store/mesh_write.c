@@ -1,4 +1,5 @@
-/* mesh_write.c - begins a write, prepares what it commits, and aborts it. */
+/* mesh_write.c - begins a write (a change of a mesh), prepares what the write commits, and aborts
+ * it. */
 #include "store/mesh_commit.h"
 
 #include "store/table.h"
@@ -19,7 +20,7 @@ static void begin_recording(st_write *w)
     }
 }
 
-/* Checks that a write may begin. The caller holds the mesh's exclusive lock. */
+/* Checks that a write of the mesh may begin. The caller holds the mesh's exclusive lock. */
 static st_status begin(st_write *w)
 {
     const st_mesh *mesh = w->mesh;
@@ -45,7 +46,7 @@ static st_cause cause_of(const st_cause *cause)
 
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
-    /* Caches are freed before a request is refused memory. */
+    /* If memory is short, the caches of meshes are freed before the request is refused memory. */
     st_make_room(mesh->store, 0);
     *out = (st_write){.mesh = mesh, .cause = cause_of(cause)};
     st_lock_write(&mesh->lock);
@@ -82,8 +83,8 @@ void st_claimed_by(st_mesh *mesh, const char *id)
     pthread_rwlock_unlock(&mesh->lock);
 }
 
-/* Returns the content of a claimed mesh. It needs no lock, because other writes cannot change the
- * mesh until the claim ends. */
+/* Returns the content of a claimed mesh. The caller needs no lock, because other writes cannot
+ * change the mesh until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *w)
 {
     assert(w->claimed);
@@ -101,8 +102,8 @@ he_status st_write_copy(st_write *w, he_progress *progress, he_error *err)
     return status;
 }
 
-/* Frees the copy of a claim and empties its delta, because the delta holds columns and contents of
- * the copy. */
+/* Frees the copy that a claim works on and empties the claim's delta (recorded changes), because
+ * the delta holds columns and contents of the copy. */
 void st_write_discard_copy(st_write *w)
 {
     assert(w->claimed);
@@ -134,7 +135,8 @@ bool st_write_undoable(const st_write *w)
     return !w->changes.renumbered && st_log_fits(&w->mesh->log);
 }
 
-/* Rolls the content back to where the write began, empties its delta and stops recording. */
+/* Rolls the content back to the state in which the write began, empties the delta (recorded
+ * changes) of the write and stops recording. */
 static void roll_back(st_write *w)
 {
     if (w->delta != NULL) {
@@ -200,9 +202,9 @@ static bool reserve_steps(st_write *w)
     return true;
 }
 
-/* Renders the message for listeners of the i-th undo or redo. It shows the values after this step,
- * so it must be rendered before the next step is applied. If there is only one step, the net
- * changes were found for the answer already. */
+/* Renders the message for listeners of the i-th undo or redo. The message shows the values after
+ * this step, so it must be rendered before the next step is applied. If there is only one step, its
+ * net changes were computed for the answer already. */
 static void write_event(st_write *w, uint32_t i)
 {
     const st_mesh *mesh = w->mesh;

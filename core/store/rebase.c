@@ -2,16 +2,16 @@
  * mesh is loaded, so loading time and disk space stay bounded.
  *
  *     base ... records ... | ... records ...
- *                          +-- snapshot, staged while edits go on; when nothing before it can be
- *                              undone, redone or read any more, it becomes the base, and the
- *                              records before it are purged
+ *                          +-- snapshot, staged while edits go on; when no revision before the
+ *                              snapshot can be undone, redone or read any more, the snapshot
+ *                              becomes the base, and the records before it are deleted
  *
- * A snapshot is due when the records since the last one take more than the content, and
- * ST_BASE_BYTES at least. It is staged: written to the disk before it is published. If a change
- * before the snapshot is undone, the snapshot becomes useless, because the records after the undo
- * need those before the snapshot. It also becomes useless if a record holds the whole content and
- * ends the history, as that of a PUT does: that record is a base itself. A snapshot that waits to
- * become the base is dropped when its mesh is evicted. */
+ * A snapshot is due when the records since the last snapshot take more bytes than the content, and
+ * at least ST_BASE_BYTES. A snapshot is staged: written to the disk before it is published. If a
+ * change before the snapshot is undone, the snapshot becomes useless, because the records after the
+ * undo need the records before the snapshot. The snapshot also becomes useless if a record holds
+ * the whole content and ends the history, as that of a PUT does: that record is a base itself. A
+ * snapshot that waits to become the base is dropped when its mesh is evicted. */
 #include "store/table.h"
 #include "system/lock.h"
 
@@ -24,13 +24,14 @@ static bool is_base(const st_record *record)
            (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
 }
 
-/* Estimates: bytes of a record without its body, and by which factor a content is smaller on the
- * disk than in memory. */
+/* Two estimates: FRAME_BYTES is how many bytes a record without its body takes, PACKED_SHARE is by
+ * which factor a content is smaller on the disk than in memory. */
 enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
 
-/* A snapshot of a mesh that may become its base. */
+/* A snapshot of a mesh's content that may become its base, from which the mesh is loaded. */
 struct st_next_base {
-    /* The snapshot is being staged: only the thread that stages it may change this struct. */
+    /* The snapshot is being staged (written to the disk): only the thread that stages it may change
+     * this struct. */
     bool taking;
     bool spoiled;
     st_stage *stage;
@@ -55,9 +56,9 @@ void st_rebase_drop(st_mesh *mesh)
     mesh->next_base = NULL;
 }
 
-/* Makes the snapshot the base if nothing before it is needed any more. Entries of the history that
- * cannot be loaded from the new base are then dropped in memory, too. The caller holds the mesh's
- * exclusive lock, and the snapshot is on the disk. */
+/* Makes the snapshot the base of the mesh if no revision before the snapshot is needed any more.
+ * Entries of the history that cannot be loaded from the new base are then dropped in memory, too.
+ * The caller holds the mesh's exclusive lock, and the snapshot is on the disk. */
 static void settle(st_mesh *mesh)
 {
     st_next_base *next = mesh->next_base;
@@ -114,7 +115,8 @@ static void take(void *context)
         mesh->appended -= next->before;
         settle(mesh);
     } else {
-        /* If memory or disk space is out, a snapshot is tried again only after as many records. */
+        /* If memory or disk space is out, the next snapshot is tried only after as many bytes of
+         * records again. */
         mesh->appended = 0;
         st_rebase_drop(mesh);
     }

@@ -14,8 +14,9 @@ struct st_step {
     size_t bytes;      /* bytes of the step with its delta */
     size_t charged;    /* bytes by which the step counts against the budget */
     uint64_t revision; /* revision of the edit */
-    uint64_t applied;  /* revision of the entry (edit, undo or redo) that applied the step last */
-    /* The entry of `applied`, if it has left the ring and only the redo stack still needs it. */
+    uint64_t applied;  /* revision of that entry (edit, undo or redo) which applied the step last */
+    /* The entry of the revision `applied`, if that entry has left the log's ring and only the redo
+     * stack still needs it. */
     st_revision *kept;
     uint32_t uses; /* number of entries and stacks that use the step */
     /* The number of references: one from the log while `uses` is not 0, and one from each
@@ -29,10 +30,11 @@ struct st_revision {
     st_point point; /* facts of the mesh after the revision */
     uint64_t inverts;
     st_action action;
-    bool forward; /* the delta was applied forwards: not an undo */
+    bool forward; /* the delta was applied forwards, so the entry is no undo */
     size_t delta_bytes;
-    size_t size;       /* bytes that the entry and its slot in the ring take */
-    st_step *step;     /* the delta that was applied; NULL if it is not kept */
+    size_t size; /* bytes that the entry and its slot in the ring take */
+    /* the step with the delta that led to the revision; NULL if the delta is not kept */
+    st_step *step;
     st_revision *next; /* the next entry in the list of reserved entries */
     st_tally tally;
     char ops[];
@@ -43,7 +45,7 @@ static inline st_revision *st_entry_at(const st_revision_log *log, size_t i)
     return log->ring[(log->first + i) & (log->capacity - 1)];
 }
 
-/* Returns the log's entry of a revision; the log must have it. */
+/* Returns the log's entry of a revision; the log must have this entry. */
 static inline st_revision *st_entry_of(const st_revision_log *log, uint64_t revision)
 {
     return st_entry_at(log, (size_t)(revision - log->before.revision - 1));

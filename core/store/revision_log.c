@@ -5,10 +5,11 @@
 #include <assert.h>
 #include <string.h>
 
-/* A reserved delta larger than this is freed rather than reused for the next edit. */
+/* A reserved delta (memory for recorded changes) of more than SPARE_BYTES bytes is freed rather
+ * than reused for the next edit. */
 enum { SPARE_BYTES = 64 * 1024 };
 
-/* A ring with more than this many places is at least a quarter full. */
+/* A ring with more than FEWEST_PLACES places is kept at least a quarter full, or else shrunk. */
 enum { FEWEST_PLACES = 8 };
 
 static void note_marks(st_point *point, const he_mesh *content)
@@ -129,8 +130,8 @@ static void forget_delta(st_revision_log *log, st_revision *entry)
     }
 }
 
-/* Empties the redo stack. The entries still use the steps that were on it, so copies of the mesh
- * can still be moved across them. */
+/* Empties the redo stack. The entries of the log still use the steps (deltas) that were on the
+ * stack, so copies of the mesh can still be moved from revision to revision by these steps. */
 static void clear_redo(st_revision_log *log)
 {
     while (log->redo_top != NULL) {
@@ -148,8 +149,8 @@ static void clear_stacks(st_revision_log *log)
     }
 }
 
-/* Frees the deltas of all entries, which stay in the history without them; only the newest revision
- * can be read then. */
+/* Frees the deltas of all entries. The entries stay in the history without deltas; only the newest
+ * revision can be read then. */
 static void forget_deltas(st_revision_log *log)
 {
     clear_stacks(log);
@@ -179,7 +180,8 @@ static void drop_undo_bottom(st_revision_log *log)
 }
 
 /* Drops the oldest entry. Steps lie on the undo stack in the order in which they were last applied.
- * So if the step that the oldest entry applied last is on the undo stack, it is at the bottom. */
+ * So if the oldest entry was the last to apply its step and the step is on the undo stack, the step
+ * is at the bottom of this stack. */
 static void drop_oldest(st_revision_log *log)
 {
     st_revision *entry = st_entry_at(log, 0);
@@ -224,8 +226,8 @@ void st_log_drop(st_revision_log *log, uint64_t reach)
 
 void st_log_settle(st_revision_log *log)
 {
-    /* The newest entry stays even if it exceeds the budget, because it has the facts of the present
-     * revision. */
+    /* The newest entry stays even if it alone exceeds the budget, because it has the facts of the
+     * present revision. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
     }
@@ -240,7 +242,8 @@ void st_log_limit(st_revision_log *log, uint64_t budget)
     }
     st_log_settle(log);
     if (log->bytes > budget) {
-        /* Only the newest entry is left, and redo steps never leave the stack to save memory. */
+        /* The log is still too large although only its newest entry is left, because redo steps
+         * never leave the stack to save memory. */
         forget_deltas(log);
     }
 }
@@ -355,7 +358,7 @@ static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
     memcpy(out + end, end == 0 ? "..." : ",...", end == 0 ? sizeof "..." : sizeof ",...");
 }
 
-/* Adds the entry to the ring as the newest one. */
+/* Adds the entry to the log's ring as the newest entry. */
 static void add_entry(st_revision_log *log, st_revision *entry)
 {
     assert(log->count < log->capacity && entry->point.revision == st_log_head(log) + 1);
@@ -364,7 +367,8 @@ static void add_entry(st_revision_log *log, st_revision *entry)
     log->bytes += entry->size;
 }
 
-/* Adds the reserved entry, for a change that is no undo or redo, so that its state is a new one. */
+/* Adds the reserved entry for a change that is no undo or redo, so that the entry has a new state:
+ * contents that no earlier entry has. */
 static st_revision *add_spare(st_revision_log *log, const st_logged *change, const he_mesh *content)
 {
     st_revision *entry = log->spare;
@@ -414,8 +418,8 @@ void st_log_add_edit(st_revision_log *log, const st_logged *edit, const he_mesh 
         log->bytes += step->charged;
     }
     st_log_settle(log);
-    /* If there was no memory to trim the delta, the step can exceed the budget although st_log_fits
-     * has counted less for it. */
+    /* If memory was too short to trim the delta, the step can exceed the budget although
+     * st_log_fits has counted fewer bytes for the delta. */
     if (log->bytes > log->budget) {
         forget_deltas(log);
     }
@@ -442,7 +446,7 @@ void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, 
     }
 }
 
-/* Swaps the numbers of created and deleted elements, because an undo creates the elements that the
+/* Swaps the numbers of created and deleted elements, because an undo creates the elements that its
  * edit deleted. */
 static void turn_tally(st_tally *tally)
 {
@@ -451,8 +455,9 @@ static void turn_tally(st_tally *tally)
     memcpy(tally->deleted, before.created, sizeof tally->deleted);
 }
 
-/* Makes an entry that undoes or redoes a step. It copies the texts of the entry that applied the
- * step last, and applies the step in the other direction. Every step on a stack has that entry. */
+/* Makes an entry that undoes or redoes a step. The new entry copies the texts of the entry that
+ * applied the step last, and has the other direction. Every step on a stack still has an entry that
+ * applied it last. */
 static st_revision *step_entry(const st_revision_log *log, const st_step *step)
 {
     const st_revision *last = step->kept != NULL ? step->kept : st_entry_of(log, step->applied);

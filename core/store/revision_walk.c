@@ -1,5 +1,5 @@
 /* revision_walk.c - reads a revision log: finds the facts of a revision, and moves copies of the
- * mesh there. */
+ * mesh to a revision. */
 #include "store/revision_entry.h"
 
 #include <assert.h>
@@ -76,8 +76,8 @@ st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t 
         *steps = 0;
         return ST_OK;
     }
-    /* Undo has arrived when the step of the wanted edit is on top of its stack, redo when that step
-     * was redone. */
+    /* Undos have led to the wanted revision when the step of its edit is on top of the undo stack,
+     * redos when that step was redone. */
     uint32_t count = undo ? 0 : 1;
     const st_step *step = undo ? log->undo_top : log->redo_top;
     for (; step != NULL && step->revision != wanted; step = step->below) {
@@ -128,8 +128,8 @@ he_status st_log_walk(const st_revision_log *log, he_replay *copy, uint64_t *at,
             .key = step->revision,
             .delta = step->delta,
             .undo = entry->forward == back,
-            /* The delta holds the columns and contents from before the change of the entry that
-             * applied it last. */
+            /* The delta holds the columns and contents that the mesh had before the entry that
+             * applied the delta last. */
             .held = back && step->applied == entry->point.revision,
             .issued = point_of(log, next)->issued,
         };

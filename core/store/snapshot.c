@@ -6,8 +6,8 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* A snapshot: a reference to a copy that many callers may share, and the mesh's facts when the
- * caller asked for it. */
+/* A snapshot: a reference to a copy of the mesh that many callers may share, and the mesh's facts
+ * when the snapshot was taken. */
 struct st_snapshot {
     st_copy *copy;
     st_mesh_info info;
@@ -22,8 +22,8 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Sets how much memory a cached copy counts for: the bytes of its content now. Edits that bring the
- * copy forward later add little, so the count is not updated. */
+/* Counts the memory of a cached copy of a mesh for monitoring: the present bytes of its content.
+ * Edits that bring the copy forward later add little, so the count is not updated. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
     copy->counts = &mesh->followers->counts;
@@ -32,15 +32,15 @@ static void count_copy(st_copy *copy, const st_mesh *mesh)
 }
 
 /* Returns true if only the cache has a reference to a copy. While the caller holds the snapshot
- * lock, no other thread can get one. */
+ * lock, no other thread can get a reference. */
 static bool is_cached_alone(const st_copy *copy)
 {
     return atomic_load_explicit(&copy->uses, memory_order_acquire) == 1;
 }
 
-/* Decides whether a copy is brought forward rather than made anew. Replaying costs about one random
- * access for each record, copying is sequential: if the deltas take more than half the mesh's
- * bytes, a new copy is cheaper. */
+/* Decides whether a cached copy is brought forward to the present revision rather than made anew.
+ * Replaying deltas costs about one random access for each record, copying is sequential: if the
+ * deltas take more than half the mesh's bytes, a new copy is cheaper. */
 static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
 {
     return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
@@ -118,8 +118,8 @@ st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
     return status;
 }
 
-/* Makes a replay, which is at the revision, the mesh's cached copy of an earlier revision. Takes
- * the replay. The caller holds the past lock. */
+/* Makes `replay`, a copy that was brought to an earlier revision, the mesh's cached copy of an
+ * earlier revision, and takes it. The caller holds the past lock (store.h). */
 static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision, double time)
 {
     st_copy *copy = he_mem_zero(1, sizeof *copy);
@@ -137,8 +137,8 @@ static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision,
     return ST_OK;
 }
 
-/* Decides whether the history in memory reaches back to the revision, and whether the cached copy
- * can be moved there. */
+/* Decides whether the history in memory reaches back to the wanted revision, and whether the cached
+ * copy of an earlier revision can be moved there. */
 static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool *movable)
 {
     const st_copy *copy = mesh->past;
@@ -156,8 +156,8 @@ static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool 
     return status;
 }
 
-/* Makes the copy of an earlier revision from the history in memory. The caller holds the past
- * lock. */
+/* Makes the copy of an earlier revision from the history in memory. The caller holds the past lock
+ * (store.h). */
 static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
 {
     he_replay *replay = NULL;
@@ -179,9 +179,9 @@ static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
     return status == ST_OK ? cache_past(mesh, replay, revision, time) : status;
 }
 
-/* Makes the copy of an earlier revision that the history in memory has dropped: loads a second mesh
- * from the records on the disk, and that becomes the cached copy. The caller holds the past
- * lock. */
+/* Makes the copy of an earlier revision that the history in memory has dropped: loads the mesh a
+ * second time from the records on the disk, up to that revision; the content becomes the cached
+ * copy. The caller holds the past lock (store.h). */
 static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
 {
     st_mesh *loaded;
@@ -201,8 +201,8 @@ static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
     return status;
 }
 
-/* Moves the cached copy of an earlier revision to this revision, or makes a new one. The caller
- * holds the past lock. */
+/* Moves the cached copy of an earlier revision to the wanted revision, or makes a new copy. The
+ * caller holds the past lock (store.h). */
 static st_status seek_past(st_mesh *mesh, uint64_t revision)
 {
     if (mesh->past != NULL && mesh->past->revision == revision) {
@@ -221,7 +221,8 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     st_lock_mutex(&mesh->past_lock);
     st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
-        /* The facts of the snapshot are the present ones, except for the revision and its time. */
+        /* The facts of the snapshot are the present facts of the mesh, except for the revision and
+         * its time. */
         snapshot->copy = mesh->past;
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
         (void)st_read_begin(mesh, &snapshot->info);
@@ -268,7 +269,7 @@ void st_copy_shed(st_mesh *mesh)
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
     st_queue_shed(&mesh->queue);
-    /* A thread that holds the lock is making a copy, which is then not freed. */
+    /* If another thread holds the lock, it is making a copy, so this copy is not freed. */
     if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);

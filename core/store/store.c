@@ -11,7 +11,7 @@
 
 enum { MESH_BATCH = 64 };
 
-/* --- calls of the journal, which come on its own thread --- */
+/* --- functions that the journal calls, on its own thread --- */
 
 static void moved(void *context, uint64_t position)
 {
@@ -19,8 +19,8 @@ static void moved(void *context, uint64_t position)
     st_waits_moved(store->followers.waits, position);
 }
 
-/* Handles a loss that the journal reports. The loss is noted first, so that answers made from a
- * lost mesh are not sent any more. */
+/* Handles a loss of records that the journal reports. The loss is noted first, so that answers made
+ * from a lost mesh are not sent any more. */
 static void lost(void *context, const st_loss *loss)
 {
     st_store *store = context;
@@ -36,8 +36,8 @@ static void lost(void *context, const st_loss *loss)
         }
     }
     /* Lost changes no longer count for the holders of meshes, so the journal's counts are read
-     * again. The journal accepts no write until the last loss was reported, so the disk then has
-     * every change. If the counts cannot be read, they stay as they were. */
+     * again. The journal accepts no write until the last loss was reported, so the disk has every
+     * change when the counts are read. If they cannot be read, they stay as they were. */
     (void)st_holders_count(&store->holders, &store->journal);
 }
 
@@ -219,8 +219,8 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
     return given;
 }
 
-/* Returns true if the change of a kept answer was lost. Such an answer is not given again; the
- * request is executed anew. */
+/* Returns true if the change that a kept answer reports was lost. Such an answer is not given
+ * again; if the request comes again, it is executed anew. */
 static bool is_lost(const st_store *store, const st_kept *kept)
 {
     const st_shown shown = {kept->position, kept->position - 1, kept->incarnation};
@@ -243,7 +243,8 @@ st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key
 
 /* --- notes in the journal --- */
 
-/* Writes a note to the journal. The journal of a test may lack the function for that. */
+/* Writes a note (the state of a job or a key of a request) to the journal. A journal that a test
+ * has made may lack the function `note`. */
 static st_status note(st_store *store, const st_note *what, uint64_t *position)
 {
     const st_journal *journal = &store->journal;
@@ -336,7 +337,7 @@ void st_store_health(const st_store *store, st_health *out)
     }
 }
 
-/* Measures the store. Its numbers may come from slightly different moments. */
+/* Measures the store. The numbers may come from slightly different moments. */
 void st_store_measure(st_store *store, st_store_measures *out)
 {
     st_store_counts *counts = &store->followers.counts;

@@ -10,7 +10,7 @@ static void copy_name(char *out, size_t size, const char *name)
     size_t length = strlen(name);
     if (length >= size) {
         length = size - 1;
-        /* The name must not be cut inside a UTF-8 sequence. */
+        /* The name is cut between characters, not inside the UTF-8 sequence of one. */
         while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) {
             length--;
         }
@@ -19,8 +19,8 @@ static void copy_name(char *out, size_t size, const char *name)
     out[length] = '\0';
 }
 
-/* Initialises a lock that prefers writers, so that a steady stream of readers does not starve a
- * writer. */
+/* Initialises a readers-writer lock that prefers writers, so that a steady stream of readers does
+ * not starve a writer. */
 static int init_lock(pthread_rwlock_t *lock)
 {
     pthread_rwlockattr_t attributes;
@@ -241,7 +241,7 @@ st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes)
 }
 
 /* Sets the bytes by which the mesh counts for its holder to those that its newest record states.
- * The journal counts in this way when st_holders_count reads it. */
+ * st_holders_count counts these bytes, too, when it reads the cards in the journal. */
 static void count_held(st_mesh *mesh, const st_record *record)
 {
     const bool removed = record->kind == ST_RECORD_REMOVE;
@@ -298,8 +298,8 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
     pthread_rwlock_unlock(&mesh->lock);
     if (found) {
         st_lock_write(&mesh->lock);
-        /* The loss is checked again under the lock: the mesh may have been removed meanwhile, and
-         * the removal is lost, too. */
+        /* Whether the newest change is lost is checked again under the lock: the mesh may have been
+         * removed meanwhile, and the removal is then lost, too. */
         if (is_lost(&mesh->info, loss)) {
             mesh->info.lost = true;
             st_queue_lose(&mesh->queue);
@@ -359,7 +359,7 @@ bool st_cache_get(st_mesh *mesh, void *value, size_t size)
     return found;
 }
 
-/* Keeps a value derived from the mesh. If memory is out nothing is kept, and the value is computed
+/* Keeps a value derived from the mesh. If memory is out, the value is not kept and is computed
  * again next time. */
 void st_cache_put(st_mesh *mesh, const void *value, size_t size)
 {

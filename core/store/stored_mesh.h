@@ -17,9 +17,10 @@
 typedef struct st_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
-    double time; /* when the revision was made, if it is an earlier one */
+    double time; /* when the revision of the copy was made, if it is not the present revision */
     he_replay *replay;
-    st_store_counts *counts; /* the counters to which `bytes` were added */
+    /* the counters of the store to which the bytes of the copy were added */
+    st_store_counts *counts;
     uint64_t bytes;
 } st_copy;
 
@@ -36,26 +37,33 @@ struct st_mesh {
     struct st_followers *followers;
     st_holders *holders;
 
-    pthread_rwlock_t lock; /* guards the fields down to `next_base` */
-    st_mesh_info info;     /* undo and redo are not set, because `log` has them */
+    pthread_rwlock_t lock; /* guards the members from here down to `next_base` */
+    /* facts of the mesh; the members undo and redo are not set here, because `log` has these
+     * numbers */
+    st_mesh_info info;
     he_mesh *content;
     st_revision_log log;
-    st_holding holding; /* its holder, and the bytes by which it counts for the holder */
-    bool claimed;       /* the delta that the log has reserved is lent to a long edit */
+    /* the mesh's holder (owner), and the bytes by which the mesh counts for the holder */
+    st_holding holding;
+    /* a long edit has claimed the mesh and uses the delta that the log has reserved */
+    bool claimed;
 
-    /* The sizes that were last added to the counters of the store; also written while the mesh is
-     * made, before other threads know it. */
+    /* The sizes of the mesh that were last added to the counters of the store; also written,
+     * without the lock, while the mesh is made and other threads do not know it. */
     uint64_t weights[ST_WEIGHT_COUNT];
 
-    /* The revision from which the mesh is loaded from the disk: later ones can be loaded, too. */
+    /* The revision of the mesh's base (content from which it is loaded) on the disk: this revision
+     * and later ones can be loaded. */
     uint64_t base;
-    uint64_t appended; /* bytes of records since the last snapshot that was made for rebase.c */
-    /* A snapshot that may become the new base, see rebase.c; NULL: there is none. */
+    /* bytes of records that were appended since the last snapshot that rebase.c made */
+    uint64_t appended;
+    /* A snapshot that may become the new base of the mesh, see rebase.c; NULL: there is none. */
     st_next_base *next_base;
 
     /* Messages for listeners, see followers.h. */
     st_queue queue;
-    /* The wait for the newest change to be durable; `waiting` says whether it is under way. */
+    /* The wait until the newest change is durable; `waiting` says whether this wait is under
+     * way. */
     st_wait wait;
     _Atomic bool waiting;
 
@@ -73,7 +81,8 @@ struct st_mesh {
     st_keys keys;
     struct {
         pthread_mutex_t lock;
-        pthread_cond_t ended; /* signalled when a thread ends its use of `place` */
+        /* signalled when a thread ends its use of the slot for a derived object */
+        pthread_cond_t ended;
         st_derived place;
     } derived[ST_DERIVED_COUNT];
 };
@@ -81,7 +90,8 @@ struct st_mesh {
 /* The limits and counts of listeners, shared by the meshes of a store. */
 typedef struct st_followers {
     st_render *render;
-    size_t most, most_of_mesh; /* most listeners in all, and to one mesh */
+    /* `most` is the most listeners of all meshes, `most_of_mesh` those of one mesh */
+    size_t most, most_of_mesh;
     struct st_waits *waits;
     _Atomic size_t count; /* listeners in all */
     st_store_counts counts;
@@ -101,7 +111,8 @@ typedef struct st_mesh_options {
  * Returns NULL if memory is out. */
 st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card);
 /* Makes a mesh at its first revision; `cause`, which may be NULL, names its holder. Takes
- * `content`. Returns NULL if memory is out. The holder's count does not include it yet. */
+ * `content`. Returns NULL if memory is out. The count of the holder does not include the new mesh
+ * yet. */
 st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
                      const st_cause *cause, he_mesh *content);
 /* Records that the mesh is used now, because the least recently used meshes are evicted first. */
@@ -109,15 +120,15 @@ void st_mesh_use(st_mesh *mesh);
 st_counts st_counts_of(const he_mesh *content);
 /* Copies the facts of a mesh. The caller holds the mesh's lock. */
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
-/* Frees the caches of a mesh: copies and bodies of remembered answers, unless a thread is reading
- * them, and derived objects. */
+/* Frees the caches of a mesh: its cached copies, the bodies of remembered answers, unless a thread
+ * is reading these, and derived objects. */
 void st_mesh_shed(st_mesh *mesh);
 /* Updates the counters of the store after the mesh's memory has changed. The caller holds the
  * exclusive lock, or is the only thread that knows the mesh. */
 void st_mesh_weigh(st_mesh *mesh);
 /* A change, rendered as a message for listeners. */
 typedef struct st_event {
-    char *bytes; /* NULL: there are no listeners, or memory was out */
+    char *bytes; /* bytes of the message; NULL: there are no listeners, or memory was out */
     size_t length;
 } st_event;
 
@@ -125,15 +136,18 @@ typedef struct st_event {
  * are rendered if there are listeners, or `events`, which are rendered already and whose bytes are
  * taken. */
 typedef struct st_group {
-    st_booking *booking; /* space in the journal for the records; it is used up and cleared */
+    /* reserved space in the journal for the records; publishing the group uses it up and clears
+     * it */
+    st_booking *booking;
     st_record *records;
     size_t count;
-    const st_change *changes; /* one for each record, or NULL */
-    st_event *events;         /* one for each record, or NULL */
+    /* `changes` is an array of changes, one for each record, or NULL */
+    const st_change *changes;
+    st_event *events; /* an array of rendered messages, one for each record, or NULL */
 } st_group;
 
-/* Returns the next record of the mesh, with its present facts. If the record is of a revision, that
- * revision must be in the log already. The caller holds the exclusive lock. */
+/* Returns the next record of the mesh, filled with the mesh's present facts. If the record is of a
+ * revision, that revision must be in the log already. The caller holds the exclusive lock. */
 st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause);
 /* Returns the facts of the mesh's newest record, as a record of this kind. The caller holds the
  * shared or the exclusive lock. */
@@ -154,16 +168,17 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
 /* Removes the mesh from the store's table of meshes. The caller holds the mesh's exclusive lock. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
 
-/* Adds a group of records that was appended to `appended`, and makes a new base if one is due
- * (rebase.c). The caller holds the exclusive lock. */
+/* Adds the bytes of a group of records to the mesh's member `appended`, and begins to make a new
+ * base if one is due (rebase.c). The caller holds the exclusive lock. */
 void st_rebase_note(st_mesh *mesh, const st_group *group);
-/* Returns about how many bytes a record takes on the disk, for deciding when a new base is due. */
+/* Returns about how many bytes a record takes on the disk, by which rebase.c decides when a new
+ * base is due. */
 uint64_t st_rebase_bytes(const st_record *record);
 /* Drops the snapshot of the mesh that was to become its new base. */
 void st_rebase_drop(st_mesh *mesh);
 
 void st_copy_release(st_copy *copy);
-/* Frees the cached copy of a mesh, unless a thread reads it. */
+/* Frees the cached copy of a mesh, unless a thread is reading the copy. */
 void st_copy_shed(st_mesh *mesh);
 
 #endif

@@ -1,4 +1,5 @@
-/* table.h - the collection of meshes by id, for store.c, lookup.c, cards.c and evict.c. */
+/* table.h - the store's table, which finds meshes by id; for store.c, lookup.c, cards.c and
+ * evict.c. */
 #ifndef HE_STORE_TABLE_H
 #define HE_STORE_TABLE_H
 
@@ -10,27 +11,31 @@ struct st_store {
     st_journal journal;
     uint64_t undo_budget;
     uint64_t max_meshes;
-    st_pool *pool;       /* the threads that make new bases of meshes; NULL: none are made */
-    uint64_t base_bytes; /* bytes of records after which a mesh gets another base */
+    /* the threads that make new bases (contents from which meshes are loaded); NULL: no bases are
+     * made */
+    st_pool *pool;
+    /* bytes of records after which a mesh gets a new base, from which it is loaded */
+    uint64_t base_bytes;
     st_followers followers;
     st_lookups lookups;
     st_memory_giver giver;
-    /* Time until which no eviction is tried, because the last one found nothing to evict. */
+    /* Time until which no eviction is tried, because the last try found no mesh to evict. */
     _Atomic uint64_t barren;
     pthread_mutex_t
         room; /* held by the one thread that frees memory for requests; taken before `lock` */
     pthread_rwlock_t lock; /* guards the table of meshes */
-    /* The table: meshes in memory, in the order of ids, with a reference to each. */
+    /* The table: an array of the meshes in memory, in the order of ids, with a reference to each
+     * mesh. */
     st_mesh **meshes;
     size_t count, capacity;
-    st_keys keys; /* Idempotency-Keys of requests that create a mesh */
+    st_keys keys; /* the Idempotency-Keys of requests that create a mesh */
     st_holders holders;
 };
 
 /* Returns the settings that the store gives to its meshes. */
 st_mesh_options st_store_mesh_options(st_store *store);
 /* Returns the index of the first mesh in the table whose id is not below `id`; *found says whether
- * the mesh has that id. The caller holds the table's lock. */
+ * that mesh has the id `id`. The caller holds the table's lock. */
 size_t st_table_place(const st_store *store, const char *id, bool *found);
 /* Adds a mesh to the table, which adds a reference to it. The caller holds the table's exclusive
  * lock.
@@ -40,8 +45,8 @@ st_status st_table_insert(st_store *store, st_mesh *mesh);
 
 /* Tries to make `bytes` and a sixteenth of the memory budget free: frees caches, then evicts unused
  * meshes that the journal can load again, the least recently used first. Frees nothing if `bytes`
- * is more than the budget could ever have free. The caller may hold no lock but that of a mesh's
- * copy of an earlier revision. */
+ * is more than the budget could ever have free. The caller may hold no lock but the one named
+ * `past` (store.h). */
 void st_make_room(st_store *store, uint64_t bytes);
 /* Makes a memory giver (memory.h): a function that evicts unused meshes when an allocation would be
  * refused. The thread that allocates may hold locks. */

@@ -1,4 +1,4 @@
-/* write.h - changes a stored mesh: every change is one st_write.
+/* write.h - changes a stored mesh: every change is one write (st_write).
  *
  *     st_write_begin --+-- the content is changed, st_write_changes ---+
  *     (the lock)       +-- st_write_step: undo, redo                   +-- st_write_commit
@@ -31,47 +31,52 @@ typedef enum st_write_kind {
     ST_WRITE_REMOVE
 } st_write_kind;
 
-/* A write under way. It is in the caller's storage, from a successful st_write_begin or
- * st_write_claim to the commit or abort. */
+/* A write (change of a mesh) that has begun. The struct is in the caller's storage, from a
+ * successful st_write_begin or st_write_claim to the commit or abort. */
 typedef struct st_write {
-    st_mesh *mesh; /* NULL: no write is under way */
-    /* The content to be changed, which records its changes; for a claim it is the copy, NULL until
-     * the copy is made. */
+    st_mesh *mesh; /* the mesh that is changed; NULL: no write is under way */
+    /* The content to be changed; every change made to it is recorded. In a claim this is the copy,
+     * NULL until the copy is made. */
     he_mesh *content;
-    he_delta *delta;    /* the recorded changes; NULL if info.busy, and after a step or replace */
-    he_changes changes; /* the net changes, until the write ends */
-    st_mesh_info info;  /* facts of the mesh when the write began; after the commit, the new ones */
+    /* `delta` has the recorded changes; NULL if a long edit has claimed the mesh (info.busy), and
+     * after an undo, redo or replacement */
+    he_delta *delta;
+    he_changes changes; /* the net changes of the write, valid until it ends */
+    st_mesh_info info; /* facts of the mesh when the write began; after the commit, its new facts */
 
-    /* --- private to the store --- */
+    /* --- the members below are private to core/store --- */
     st_write_kind kind;
-    bool claimed, found; /* claimed: this is a claim; found: `changes` is filled in */
+    /* `claimed` is true if the write is a claim, `found` if `changes` is filled in */
+    bool claimed, found;
     st_cause cause;
     he_savepoint mark; /* where the changes of this write begin in `delta` */
-    const char *name;  /* new name, if the write is a rename */
-    /* ST_UNDO or ST_REDO, if the write is a step; the next four members belong to it, too. */
+    const char *name;  /* `name` is the new name, if the write is a rename */
+    /* ST_UNDO or ST_REDO, if the write undoes or redoes steps; the next four members are used only
+     * then. */
     st_action which;
     uint32_t steps;
     he_delta **deltas;
     struct st_event *events;
     st_record *records;
     st_booking booking;   /* room in the journal */
-    const st_shown *from; /* records of other meshes that the change is made from */
+    const st_shown *from; /* `from` are the records of other meshes that the change is made from */
     size_t from_count;
 } st_write;
 
 /* Begins a write and takes the exclusive lock of the mesh. `cause` is the reason for the write, or
- * NULL; its records store it. If info.busy, a long edit has claimed the mesh, which can then only
- * be removed. `info` is filled in on failure, too, and the lock is then not held.
+ * NULL; the records of the write store the reason. If the member info.busy of the write is true, a
+ * long edit has claimed the mesh, which can then only be removed. The member `info` is filled in on
+ * failure, too, and the lock is then not held.
  * Returns ST_ABSENT if the mesh was removed.
  * Returns ST_LOST if the mesh has a change that was lost.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
-/* Claims the mesh for a long edit, which then works on a copy without the lock. `info` is filled in
- * on failure, too.
+/* Claims the mesh for a long edit, which then works on a copy without the lock. The member `info`
+ * of the write is filled in on failure, too.
  * Returns ST_ABSENT or ST_LOST if the store no longer has the mesh.
  * Returns ST_DAMAGED if the content of the mesh is damaged on the disk.
  * Returns ST_NEWER if a newer release of hedge wrote the content.
- * Returns ST_BUSY if a long edit has claimed it.
+ * Returns ST_BUSY if another long edit has claimed the mesh.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);
 /* Returns the content of a claimed mesh, which may be read until the claim ends. */
@@ -81,48 +86,50 @@ HE_NODISCARD he_status st_write_copy(st_write *write, he_progress *progress, he_
 /* Frees the copy that the claim works on, with its changes; the mesh stays claimed. */
 void st_write_discard_copy(st_write *write);
 
-/* Declares that the change is made from the records that `shown` shows, which must outlive the
- * write. If one of these is lost, the change is lost, too, or is refused if it is not committed
- * yet. */
+/* Declares that the change is made from the records that `shown` names; `shown` must outlive the
+ * write. If one of these records is lost, the change is lost, too, or is refused if it is not
+ * committed yet. */
 void st_write_from(st_write *write, const st_shown *shown, size_t count);
-/* Computes the net changes of the edit that was recorded. */
+/* Computes the net changes of the edit that the write has recorded. */
 HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
 /* Returns true if the edit could be undone if it were committed; must be called after
- * st_write_changes. It is false if the edit is larger than the undo budget or renumbers elements;
- * its commit then clears the history. */
+ * st_write_changes. Returns false if the edit is larger than the undo budget or renumbers elements;
+ * the commit of such an edit clears the history. */
 bool st_write_undoable(const st_write *write);
-/* Undoes or redoes `steps` steps, at least one, and computes the net changes. Each step becomes a
- * revision of its own.
+/* Undoes or redoes `steps` steps, at least one, and computes the net changes of all of them. Each
+ * step becomes a revision of its own.
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_step(st_write *write, st_action which, uint32_t steps);
-/* Makes the write replace the whole content of the mesh (PUT). Takes `stage`, too: the content that
- * st_store_stage has written in advance, or NULL. */
+/* Makes the write replace the whole content of the mesh (PUT). Takes the new content, and `stage`:
+ * NULL, or the stage to which st_store_stage has written this content in advance. */
 void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
 /* Makes the write rename the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME
  * bytes. */
 void st_write_rename(st_write *write, const char *name);
 void st_write_remove(st_write *write);
 
-/* Commits the write and ends it: `info` has the new facts. `ops` names the operations of an edit
- * for the history, NULL for anything else. On failure the write has ended and the mesh is as it
- * was. The commit of a claim may wait for the disk, so a worker must not call it.
- * Returns ST_DAMAGED or ST_NEWER if the mesh has no content and this is not its removal.
+/* Commits the write and ends it: its member `info` then has the new facts of the mesh. `ops` names
+ * the operations of an edit for the history, NULL for anything else. On failure the write has ended
+ * and the mesh is as it was. The commit of a claim may wait for the disk, so a worker must not call
+ * it.
+ * Returns ST_DAMAGED or ST_NEWER if the mesh has no content and the write does not remove it.
  * Returns ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY or ST_TOO_LARGE if the journal refuses.
  * Returns ST_QUOTA if the mesh would take more than its holder may have (holder/holders.h).
  * Returns ST_ABSENT if a claimed mesh was removed meanwhile.
- * Returns ST_LOST if it was lost meanwhile, or what the change was made from is lost
- * (st_write_from). */
+ * Returns ST_LOST if the mesh was lost meanwhile, or if records that the change was made from are
+ * lost (st_write_from). */
 st_status st_write_commit(st_write *write, const char *ops);
 /* Ends the write without a change; the mesh is as it was. */
 void st_write_abort(st_write *write);
 
-/* Sets the id of the job that has claimed the mesh, which other requests find in info.job. It takes
- * no lock. */
+/* Sets the id of the job that has claimed the mesh; other requests find this id in the member `job`
+ * of the mesh's facts. Takes no lock. */
 void st_claimed_by(st_mesh *mesh, const char *id);
 /* Finds `steps`, the number of undos (redos) that lead to the content of a revision, 0 if the mesh
- * has it now, and `bytes`, those of all their deltas. If `revision` is 0, `steps` is an input and
- * only the bytes are found. The caller holds the shared or the exclusive lock.
+ * has this content now, and `bytes`, the bytes of all their deltas (recorded changes). If
+ * `revision` is 0, `steps` is an input and only `bytes` is found. The caller holds the shared or
+ * the exclusive lock.
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_AHEAD, ST_GONE or ST_ELSEWHERE as st_log_steps_to does. */
 st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,

@@ -40,8 +40,8 @@ static char *put_digits(char *at, int value, int digits)
     return at + digits;
 }
 
-/* Formats a time without the C library's functions, which would take as long as the rest of a line
- * of the access log. */
+/* Formats a time without the C library's functions: these would take as long as writing all the
+ * rest of a line of the access log. */
 void st_clock_format(double utc, char out[ST_TIMESTAMP])
 {
     time_t seconds = (time_t)utc;

@@ -6,8 +6,8 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* The most copies of a table. More would cost memory and save little: there are about as many
- * counting threads as cores, and a cache line that two of them share is still fast enough. */
+/* The most copies of a table. More copies would cost memory and save little: there are about as
+ * many counting threads as cores, and a cache line that two threads share is still fast enough. */
 enum { MOST_COPIES = 8, LINE = 64 / sizeof(uint64_t) };
 
 struct st_counters {
@@ -20,7 +20,8 @@ struct st_counters {
 /* The number of threads that have counted so far. A thread gets its number when it counts for the
  * first time. */
 static _Atomic size_t threads;
-static _Thread_local size_t own_number; /* number of this thread, from 1; 0: none yet */
+/* number of this thread, from 1; 0: the thread has none yet */
+static _Thread_local size_t own_number;
 
 static size_t number(void)
 {

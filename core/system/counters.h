@@ -1,8 +1,9 @@
 /* counters.h - a table of counters that many threads add to and one thread sums up now and then.
  *
- * There are several copies of the table. A thread adds to one of them, mostly its own, so that
- * threads on different cores seldom write to one cache line; a sum adds up the copies. No lock is
- * taken, and adding allocates nothing. A sum is never lower than an earlier one. */
+ * There are several copies of the table. Each thread adds to one copy, which few or no other
+ * threads use, so that threads on different cores seldom write to one cache line; a sum adds up the
+ * copies. No lock is taken, and adding allocates nothing. A sum is never lower than an earlier
+ * one. */
 #ifndef HE_SYSTEM_COUNTERS_H
 #define HE_SYSTEM_COUNTERS_H
 

@@ -1,9 +1,9 @@
 /* histogram.h - histograms that threads add to without a lock.
  *
- * All histograms have the same number of buckets: one for each bound of their scale, which counts
- * values up to it and above the one before, and one for larger values. Threads add at any time; a
- * copy of a histogram has all values that were added before the copying began, and may have or lack
- * those that are added meanwhile. */
+ * All histograms have the same number of buckets: for each bound of its scale, a bucket counts the
+ * values up to this bound and above the bound before; one more bucket counts the values above the
+ * last bound. Threads add at any time; a copy of a histogram has all values that were added before
+ * the copying began, and may have or lack values that are added during the copying. */
 #ifndef HE_SYSTEM_HISTOGRAM_H
 #define HE_SYSTEM_HISTOGRAM_H
 
@@ -16,7 +16,8 @@ enum { ST_BOUNDS = 14, ST_BUCKETS = ST_BOUNDS + 1 };
 /* A scale consists of ST_BOUNDS rising bounds. */
 /* The scale for times: 100 microseconds to 300 seconds. */
 extern const uint64_t st_scale_micros[ST_BOUNDS];
-extern const uint64_t st_scale_counts[ST_BOUNDS]; /* the scale for numbers: 1 to 8192, doubling */
+/* the scale for counts of things: 1 to 8192, each bound twice the one before */
+extern const uint64_t st_scale_counts[ST_BOUNDS];
 
 /* Returns the bucket of a value, 0 to ST_BOUNDS. */
 static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t value)

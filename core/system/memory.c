@@ -9,9 +9,9 @@
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
-static _Atomic uint64_t outside; /* bytes of `used` that st_memory_count has added */
+static _Atomic uint64_t outside; /* those of the used bytes that st_memory_count has added */
 static _Atomic uint64_t budget_bytes;
-/* Whether the last block that was refused was refused by the budget and not by the C library. */
+/* True if the memory budget, and not the C library, refused the last block that was refused. */
 static _Atomic bool over_budget;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
@@ -33,8 +33,8 @@ static bool try_take(size_t size)
     return false;
 }
 
-/* Takes `size` bytes from the budget, if necessary after asking the thread's giver to free memory.
- * The giver is not called for allocations that it makes itself. */
+/* Takes `size` bytes from the budget, if necessary after calling the thread's giver, a function
+ * that frees memory. The giver is not called for allocations that it makes itself. */
 static bool take(size_t size)
 {
     const st_memory_giver *giver = asked;
@@ -163,10 +163,11 @@ bool st_memory_is_short(void)
            st_memory_used() + budget / ST_MEMORY_SHORT_SHARE > budget - budget / RESERVE_SHARE;
 }
 
-/* A process that worked at least WORKED_MICROS since it last returned memory to the system, and
- * less than RESTING_MICROS since the last call, counts as idle. glibc has a heap for each thread,
- * and returns only memory that is free at the end of a heap. Free pages in the middle stay: after
- * minutes of mixed requests they are more than all memory in use. */
+/* The process counts as idle, and returns memory to the system, if it used at least WORKED_MICROS
+ * of processor time since it last did so, and less than RESTING_MICROS since the last call of
+ * st_memory_rests. glibc has a heap for each thread, and returns only memory that is free at the
+ * end of a heap. Free pages in the middle stay: after minutes of mixed requests they are more than
+ * all memory in use. */
 enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
 
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor)

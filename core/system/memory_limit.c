@@ -7,12 +7,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The most bytes of a line of /proc/self/mountinfo that are read. Only an overlay with many layers
- * has a longer line. */
+/* The most bytes of a line of /proc/self/mountinfo that are read. Only an overlay file system with
+ * many layers has a longer line. */
 enum { LINE = 8192, DIGITS = 19 };
 
-/* The two versions of control groups, and the files that limit memory in each. memory.high counts
- * as a limit, too, because above it the kernel slows a group down until it hardly runs. */
+/* A version of Linux control groups: the name of its file system, and the files in it that limit
+ * memory. memory.high counts as a limit, too, because the kernel slows a group that uses more down
+ * until the group hardly runs. */
 typedef struct version {
     const char *filesystem;
     const char *files[3];
@@ -25,7 +26,8 @@ static const version versions[] = {
 
 enum { VERSION_1, VERSION_2, VERSIONS };
 
-/* The path of the process's group in the hierarchy of each version; empty if it is in none. */
+/* The path of the process's control group in the hierarchy (tree of groups) of each version; empty
+ * if the process is in no group of that version. */
 typedef struct membership {
     char path[VERSIONS][PATH_MAX];
 } membership;
@@ -96,8 +98,9 @@ static FILE *open_beneath(const char *root, const char *name)
     return length < 0 || (size_t)length >= sizeof path ? NULL : fopen(path, "re");
 }
 
-/* Reads the path of the process's group in each hierarchy. Lines are NUMBER:CONTROLLERS:PATH; the
- * line of version 2 names no controllers. */
+/* Reads the path of the process's control group in each hierarchy (tree of groups) from
+ * /proc/self/cgroup. Its lines are NUMBER:CONTROLLERS:PATH; the line of version 2 names no
+ * controllers. */
 static void read_membership(const char *root, membership *m)
 {
     char line[LINE];
@@ -136,10 +139,11 @@ static void unescape(char *text)
 }
 
 typedef struct mount {
-    char *root;  /* the group that is visible at `point` */
-    char *point; /* the folder where the hierarchy is mounted */
+    char *root;  /* path of the control group whose files are in the folder `point` */
+    char *point; /* the folder where the tree of control groups is mounted */
     char *filesystem;
-    /* Options of the file system; in version 1 they include the controllers of the hierarchy. */
+    /* Options of the mounted file system; for control groups of version 1 they include the names of
+     * the controllers, such as "memory". */
     char *options;
 } mount;
 
@@ -168,7 +172,8 @@ static bool parse_mount(char *line, mount *m)
     return true;
 }
 
-/* Returns the part of `path` below `above`; NULL if it is not below it, "" if they are equal. */
+/* Returns the end of `path` that follows the folder `above`: "" if the two paths are equal, NULL if
+ * `path` is not below `above`. */
 static const char *below(const char *path, const char *above)
 {
     size_t length = strlen(above);
@@ -181,9 +186,10 @@ static const char *below(const char *path, const char *above)
     return path + length;
 }
 
-/* Reads the limits of the process's group and of all groups above it that this mount shows. If the
- * mount does not show the process's group, its root is either a group above the process (a
- * namespace calls that "/..") or the only visible group; the limit of the root is then read. */
+/* Reads the limits of the process's control group and of all groups above it that are visible in
+ * the folder of this mount. If the process's own group is not visible there, the group at the
+ * mount's root is either a group above the process (a namespace calls that "/..") or the only
+ * visible group; the limit of that group is then read. */
 static void look_through(const char *root, const mount *m, const version *v, const char *path,
                          st_memory_limit *limit)
 {

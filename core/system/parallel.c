@@ -5,13 +5,14 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 
-/* A loop in parts. It is on the stack of the thread that called `run`. */
+/* A loop in parts. This struct is on the stack of the thread that called `run`. */
 typedef struct work {
     he_part part;
     void *context;
     uint32_t parts, begun, running;
-    bool stopped;    /* no more parts are begun */
-    uint32_t failed; /* index of the first part that failed; if none failed, the number of parts */
+    bool stopped; /* no more parts are begun */
+    /* index of the first part that failed; if no part failed, the number of parts */
+    uint32_t failed;
     he_status status;
     he_error err;
     pthread_cond_t ended; /* signalled when no part of this work is running */
@@ -28,7 +29,8 @@ struct st_parallel {
     pthread_t *threads;
 };
 
-/* All functions below are called with the lock held; it is released only while a part runs. */
+/* All functions below are called with the lock of the pool held. The lock is released only while a
+ * part (a piece of a parallel loop) runs. */
 
 static bool has_parts(const work *w)
 {
@@ -55,8 +57,9 @@ static void take_out(st_parallel *h, const work *w)
     }
 }
 
-/* Runs the next part of `w` with the lock released. When this was its last running part, the thread
- * that owns `w` is woken and may free it, so a pool thread must not use it afterwards. */
+/* Runs the next part of the loop `w` with the lock released. When this was its last running part,
+ * the thread that owns `w` is woken and may free it, so a pool thread must not use it
+ * afterwards. */
 static void run_next(st_parallel *h, work *w)
 {
     he_error err = {0};

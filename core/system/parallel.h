@@ -4,9 +4,9 @@
  * A thread that has a loop in parts runs the parts itself, and idle threads of this pool run some
  * of them. The thread never waits for help: if all pool threads are busy, or there are none, it
  * does the work alone. Work inside a part may be cut into parts again. The thread only waits for
- * parts that another thread has begun, and each part is short.
+ * parts that another thread has already begun, and each part is short.
  *
- * If several loops run, idle threads take one part of each in turn, so that a large import does not
+ * If several loops run, idle threads take one part of each in turn, so that one large loop does not
  * keep the pool for itself. There is one lock, which is held only while a thread takes a part. */
 #ifndef HE_SYSTEM_PARALLEL_H
 #define HE_SYSTEM_PARALLEL_H
@@ -22,7 +22,8 @@ typedef struct st_parallel st_parallel;
 st_parallel *st_parallel_new(size_t threads);
 /* Frees the pool. No loop may be running. */
 void st_parallel_free(st_parallel *parallel);
-/* Returns the pool as an he_parallel (parallel.h), which is valid as long as `parallel`. */
+/* Returns the pool as an he_parallel (core/base/parallel.h), which is valid as long as the pool
+ * `parallel`. */
 const he_parallel *st_parallel_host(const st_parallel *parallel);
 
 #endif

@@ -12,7 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Reads a file by its descriptor. A FILE would allocate memory that memory.h does not count. */
+/* Reads a file by its descriptor. A FILE of the C library would allocate memory that the memory
+ * budget (memory.h) does not count. */
 static void read_text(const char *path, char *out, size_t size)
 {
     ssize_t got = -1;
@@ -67,8 +68,9 @@ static void read_start(st_process *out)
     }
 }
 
-/* Returns the number of open descriptors. Since Linux 6.2 the size of the folder is this number;
- * before, the entries are counted, and one of them is the descriptor of the folder itself. */
+/* Returns the number of open descriptors. Since Linux 6.2 the size of the folder /proc/self/fd is
+ * this number. On older systems the entries of the folder are counted; one of the entries is the
+ * descriptor by which the folder is read. */
 static uint64_t count_descriptors(void)
 {
     static const char folder[] = "/proc/self/fd";
@@ -85,7 +87,8 @@ static uint64_t count_descriptors(void)
         count++;
     }
     closedir(open_ones);
-    return count > 3 ? count - 3 : 0; /* "." and ".." are no descriptors */
+    /* the folder's entries "." and ".." are not counted, because they are no descriptors */
+    return count > 3 ? count - 3 : 0;
 }
 
 void st_process_read(st_process *out)

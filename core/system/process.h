@@ -14,7 +14,7 @@ typedef struct st_process {
     uint64_t most_descriptors; /* limit of open descriptors */
 } st_process;
 
-/* Reads the facts from /proc, which does not wait for a disk. */
+/* Reads the facts about this process from /proc, which does not wait for a disk. */
 void st_process_read(st_process *out);
 
 #endif

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <sys/random.h>
 
-/* Fills bytes with random numbers. getrandom fails only when a signal interrupts it; the daemon
- * needs a kernel that has it. */
+/* Fills bytes with random numbers. The system call getrandom fails only when a signal interrupts
+ * it; the daemon needs a kernel that has this call. */
 static void fill(void *bytes, size_t size)
 {
     unsigned char *at = bytes;

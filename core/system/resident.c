@@ -13,9 +13,9 @@
 enum { MEASURE_MICROS = 100 * 1000 };
 
 /* The resident memory is too near to the budget when less than 1/NEAR_SHARE of the budget is left.
- * It must grow by 1/GROWTH_SHARE of the budget before that is reported again: it does not fall at
- * once after an eviction, so otherwise every call would evict more, until no mesh is left in
- * memory. */
+ * Before this is reported again, the resident memory must grow by 1/GROWTH_SHARE of the budget:
+ * after meshes were evicted (removed from memory), resident memory does not fall at once, so
+ * otherwise every call would evict more, until no mesh is left in memory. */
 enum { NEAR_SHARE = 32, GROWTH_SHARE = 192 };
 
 static bool watched;
@@ -34,7 +34,8 @@ static uint64_t resident(void)
     const ssize_t length = read(fd, text, sizeof text - 1);
     close(fd);
     text[length < 0 ? 0 : length] = '\0';
-    /* The first number is the pages of address space, the second is the resident pages. */
+    /* The first number in the file is the process's pages of address space, the second is its
+     * resident pages. */
     const char *second = strchr(text, ' ');
     return second == NULL ? 0 : strtoull(second, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE);
 }

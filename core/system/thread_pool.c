@@ -6,8 +6,9 @@
 #include <string.h>
 #include <sys/prctl.h>
 
-/* The number of stamps that are kept for flows (thread_pool.h). Flows whose hashes have equal low
- * bits share a stamp, so they are scheduled as if they were one flow. */
+/* The number of stamps (virtual times) that are kept for flows. A flow is the tasks of one client
+ * for one mesh (thread_pool.h). Flows whose hashes have equal low bits share a stamp, so they are
+ * scheduled as if they were one flow. */
 enum { FLOWS = 256 };
 
 enum { NAME = 16 /* most bytes of a thread's name with its NUL, a limit of prctl(2) */ };
@@ -18,8 +19,8 @@ typedef struct waiting {
     uint64_t number; /* number of the task, in the order of submission */
 } waiting;
 
-/* The waiting tasks of a share, as a binary heap: no task comes before its parent, which is at (i -
- * 1) / 2. */
+/* The waiting tasks of a share, as a binary heap: a task never precedes its parent, and the parent
+ * of the task at index i is at (i - 1) / 2. */
 typedef struct queue {
     waiting *heap;
     size_t count, room;
@@ -33,9 +34,9 @@ struct st_pool {
     bool ending;
     size_t capacity; /* most tasks that each queue can hold */
     queue queues[ST_SHARES];
-    size_t most_long;     /* most tasks of the shares LONG and JOB that may run at once */
+    size_t most_long;     /* most tasks of the shares LONG and JOB together that may run at once */
     size_t idle;          /* threads that wait for `wake`, or were woken and do not run yet */
-    double clock;         /* stamp of the task that was begun last */
+    double clock;         /* stamp (virtual end time) of the task that was begun last */
     double stamps[FLOWS]; /* for each flow, the stamp of its newest task */
     uint64_t submitted;
     char name[NAME];
@@ -106,7 +107,8 @@ static bool may_begin(const st_pool *pool, st_share share)
            (share == ST_SHARE_BRIEF || long_running < pool->most_long);
 }
 
-/* Returns the share whose first task is next; ST_SHARES if no task may begin. */
+/* Returns the share (kind of tasks) whose first task is to begin next; ST_SHARES if no task may
+ * begin. */
 static st_share next_share(const st_pool *pool)
 {
     st_share next = ST_SHARES;
@@ -148,7 +150,7 @@ static void run_next(st_pool *pool, st_share share)
     const waiting next = pop(q);
     pool->clock = next.stamp > pool->clock ? next.stamp : pool->clock;
     q->running++;
-    unlock(pool); /* another task may be able to begin, too */
+    unlock(pool); /* Another waiting task may be able to begin now, so a thread is woken. */
     next.task.work(next.task.context);
     pthread_mutex_lock(&pool->lock);
     q->running--;
@@ -169,8 +171,8 @@ static void *run(void *context)
             run_next(pool, share);
         }
     }
-    /* Other threads may be waiting for a task that they may begin; no task comes any more, so all
-     * threads are woken to end. */
+    /* The pool is closing and no task is added any more, so all waiting threads are woken, to
+     * end. */
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -260,7 +262,7 @@ void st_pool_look(st_pool *pool, st_share share, st_pool_state *out)
 }
 
 /* Adds a text to a hash by FNV-1a, 64 bits. Each text is added with its NUL, so different pairs of
- * texts are different sequences of bytes. */
+ * texts are hashed as different sequences of bytes. */
 static uint64_t add_text(uint64_t hash, const char *text)
 {
     do {

@@ -18,8 +18,9 @@ static bool exists(const char *path)
 
 /* --- files that no process writes to --- */
 
-/* Makes a URI that opens the file as immutable, so that SQLite makes neither a lock nor a -shm for
- * it. If there is a -wal, the URI is not immutable, because SQLite has to read the -wal, too. */
+/* Makes a URI by which SQLite opens the file as immutable, so that it makes neither a lock nor a
+ * -shm file. If the file has a -wal (write-ahead log) beside it, the URI does not say immutable,
+ * because SQLite has to read the -wal, too. */
 static bool uri_of(const char *file, char *out, size_t size)
 {
     static const char hex[] = "0123456789ABCDEF";
@@ -57,7 +58,8 @@ static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAG
     return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
 }
 
-/* Checks the structure of a database. If SQLite finds a fault, `message` has the first one. */
+/* Checks the structure of a database. If SQLite finds faults, `message` describes the first of
+ * them. */
 static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     sqlite3_stmt *s = NULL;
@@ -144,8 +146,8 @@ static bool names_file_of(const char *folder, const char *own, const struct stat
            there.st_dev == status->st_dev && there.st_ino == status->st_ino;
 }
 
-/* Returns false if the backup would replace a file of a store: the store that is copied, by
- * whatever path, or any other whose folder contains the file. */
+/* Returns false if the backup would replace a file of a store: of the store that is copied, by
+ * whatever path, or of any other store whose folder would contain the backup. */
 static bool may_be_backup(const char *store, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     char folder[PATH_MAX], database[PATH_MAX];
@@ -179,7 +181,8 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     st_folder_above(file, folder);
     if (st_db_number(from, "PRAGMA page_count", 0, &pages) != ST_SQL_DONE ||
         statvfs(folder, &system) != 0) {
-        return true; /* the space is not known, and if it is too small, the write will fail */
+        /* the free space is not known; if it is too small, writing the backup will fail */
+        return true;
     }
     const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
     const uint64_t there = (uint64_t)system.f_bavail * system.f_frsize;
@@ -202,8 +205,8 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
     }
     if (outcome == ST_SQL_DONE) {
         sqlite3_backup *backup = sqlite3_backup_init(to.handle, "main", from->handle, "main");
-        /* All pages are copied in one step, which gives the state of one moment while other
-         * connections write. */
+        /* All pages are copied in one step, so that the copy has the state of one moment although
+         * other connections write. */
         (void)(backup != NULL && sqlite3_backup_step(backup, -1));
         outcome = st_db_outcome(&to, backup == NULL ? sqlite3_extended_errcode(to.handle)
                                                     : sqlite3_backup_finish(backup));
@@ -276,7 +279,7 @@ bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLI
     return good;
 }
 
-/* --- journals that only read --- */
+/* --- journals that only read a store --- */
 
 static bool open_readers(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {

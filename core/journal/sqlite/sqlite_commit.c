@@ -3,8 +3,8 @@
  *
  *     WRITES   everything queued is taken as one group (take_group) and committed (commit_group),
  *              with a slice of background work. commit_group leads to the states below
- *     FULL     what is queued is lost (lose); removals are accepted, the ballast is freed for them;
- *              each second seek_space tries to lead back to WRITES
+ *     FULL     what is queued is lost (lose); only removals are accepted, and the ballast (reserved
+ *              disk space) is freed for them; each second seek_space tries to return to WRITES
  *     FAILED   everything appended is lost; the state never ends */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -16,16 +16,18 @@
 enum {
     GROUP_RECORDS = 4096,
     GROUP_BYTES = 8 << 20,
-    SLICE_BESIDE = 64 << 10, /* bytes of background work in one transaction, if records wait, too */
-    /* Bytes of background work in one transaction, if no record waits; one that comes has to wait
-     * for it. */
+    /* Bytes of background work in one transaction, if records are waiting to be written, too. */
+    SLICE_BESIDE = 64 << 10,
+    /* Bytes of background work in one transaction, if no record waits; a record that comes
+     * meanwhile has to wait for the transaction. */
     SLICE_ALONE = 256 << 10,
-    /* A checkpoint is made when the write-ahead log has this many pages. Records wait for a
-     * checkpoint, the longer the more pages it copies. While background work fills the log,
-     * checkpoints are made more often, so that each takes no longer than a slice of that work. */
+    /* A checkpoint copies the write-ahead log into the database; it is made when the log has this
+     * many pages. Records wait for a checkpoint, the longer the more pages it copies. While
+     * background work fills the log, checkpoints are made more often, so that a checkpoint takes no
+     * longer than one transaction's background work. */
     CHECKPOINT_PAGES = 1000,
     CHECKPOINT_PAGES_BESIDE = 256,
-    /* Bytes of the write-ahead log from which on loads wait for a checkpoint. */
+    /* When the write-ahead log has this many bytes, loads of meshes wait for a checkpoint. */
     LONG_LOG = 64 << 20,
     SECOND = 1000000,
     RETRY_MICROS = 20000,
@@ -37,10 +39,11 @@ typedef struct group {
     st_item *first, *last;
     uint64_t records /* number of records and notes */, position, made, removed;
     bool freeing;
-    /* The stage of which a slice is written, too; NULL: the background work is a purge. */
+    /* The stage (a content written in advance) of which this transaction writes a slice; NULL: the
+     * background work is a purge, the deletion of what is not needed. */
     st_stage *stage;
     size_t slice; /* bytes of background work in this transaction; 0: none */
-    bool purged;  /* when this transaction is committed, nothing is left to be purged */
+    bool purged;  /* when this transaction is committed, nothing is left to be purged (deleted) */
 } group;
 
 /* --- taking items from the queue; the caller holds the lock --- */
@@ -145,8 +148,8 @@ static uint64_t charge_of(const st_item *item)
     return charge;
 }
 
-/* Ends the writing of a slice of a stage (a content written in advance): it was written, or never
- * will be. The caller holds the lock. */
+/* Ends the writing of a slice of a stage (a content written in advance): the slice was written, or
+ * never will be. The caller holds the lock. */
 static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
 {
     st_stage **at = &self->stages;
@@ -189,8 +192,8 @@ static void stop_writing(st_sqlite *self, st_write_mode mode)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Takes the lost items from the queue: all rooms (groups of records), and in the state FAILED all
- * other items, too. The caller holds the lock. */
+/* Takes the items that are lost from the queue: all rooms (groups of records), and in the state
+ * FAILED all other items, too. The caller holds the lock. */
 static st_item *take_lost(st_sqlite *self)
 {
     st_item *lost = NULL, **lost_end = &lost, **at = &self->first;
@@ -299,7 +302,7 @@ static st_sql put_progress(st_sqlite *self, const st_progress *progress)
                     progress->meshes, (uint64_t)st_progress_sum(progress));
 }
 
-/* Copies SQLite's message about a failure, because the next statement replaces it. */
+/* Copies SQLite's message about a failure, because the next statement replaces the message. */
 static void note_refusal(st_sqlite *self, st_sql outcome)
 {
     if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
@@ -365,9 +368,9 @@ static bool is_closing(st_sqlite *self)
     return closing;
 }
 
-/* Tries to commit a group until the disk has accepted or refused it. If the disk is full, the group
- * is tried again without background work; if it is a purge alone, it is not tried again, because it
- * comes again anyway. */
+/* Tries to commit a group of queued items until the disk has accepted or refused it. If the disk is
+ * full, the group is tried again without background work. A group that is only a purge (deletion of
+ * what is not needed) is not tried again, because the next purge deletes the rows. */
 static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 {
     for (unsigned tries = 1;; tries++) {
@@ -375,8 +378,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
         if (outcome == ST_SQL_FULL && g->slice > 0 && (g->first != NULL || g->stage != NULL)) {
             g->slice = 0;
         } else if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
-            /* Damage in rows that are being deleted must not stop the journal, so the group is
-             * tried without this slice of deletions. */
+            /* Damage in rows that are being deleted must not stop the journal, so the next try
+             * leaves these rows out. */
         } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
                    (tries < CLOSING_TRIES || !is_closing(self))) {
             rest(self);
@@ -388,8 +391,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 
 static void write_mark(st_sqlite *self)
 {
-    /* If the mark cannot be written, it still names an older commit. Then it cannot reveal the loss
-     * of newer commits, but what it says is true. */
+    /* If the mark of the last commit cannot be written, it still names an older commit. Then it
+     * cannot reveal the loss of newer commits, but what it says is true. */
     (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
                                                   self->progress.position});
 }
@@ -408,8 +411,8 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
     self->charged -= charge_of(g->first);
     move(self, g->position);
     pthread_mutex_unlock(&self->lock);
-    /* Memory of the items is freed first: the listener may wake a thread that was refused
-     * memory. */
+    /* The items of the group are freed before the listener is called, because the listener may wake
+     * a thread that was refused memory. */
     free_items(g->first);
     if (g->records > 0) {
         tell(self, NULL, g->position);
@@ -418,7 +421,8 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
 
 static void count_commit(st_sqlite *self, const group *g, uint64_t micros)
 {
-    /* Otherwise the group is background work alone, for which no client waits. */
+    /* A group without records is background work alone, for which no client waits, so it is not
+     * counted. */
     if (g->records > 0) {
         st_histogram_add(&self->commits, st_scale_micros, micros);
         st_histogram_add(&self->groups, st_scale_counts, g->records);
@@ -462,16 +466,17 @@ static bool checkpoint(st_sqlite *self, int how)
     st_histogram_add(&self->checkpoints, st_scale_micros, st_clock_micros() - begun);
     self->log_tried = self->log_pages;
     pthread_mutex_lock(&self->lock);
-    /* New loads of meshes still have to wait if running loads may have kept this checkpoint from
-     * copying the whole log. After a complete checkpoint, new loads read nothing from the log, and
-     * the next commit overwrites it from the start. */
+    /* New loads of meshes still have to wait if loads that are under way may have kept this
+     * checkpoint from copying the whole write-ahead log. After a complete checkpoint, new loads
+     * read nothing from the log, and the next commit overwrites it from the start. */
     self->log_is_long = self->mode == ST_WRITES && log_is_long(self) && self->loads_taken > 0;
     if (!self->log_is_long) {
         pthread_cond_broadcast(&self->moved);
     }
     pthread_mutex_unlock(&self->lock);
     note_refusal(self, outcome);
-    /* If the disk is full, the checkpoint has not failed, because the log is intact. */
+    /* A checkpoint that stops because the disk is full is no failure, because the write-ahead log
+     * is intact. */
     return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
            (stop_writing(self, ST_WRITES_FAILED), false);
 }
@@ -480,7 +485,9 @@ static void checkpoint_when_due(st_sqlite *self, const group *g)
 {
     const uint64_t pages = g->slice > 0 ? CHECKPOINT_PAGES_BESIDE : CHECKPOINT_PAGES;
     if (self->log_pages < self->log_tried) {
-        self->log_tried = 0; /* the next commit overwrites the log from the start */
+        /* the write-ahead log was overwritten from the start, so the old count of pages is
+         * obsolete */
+        self->log_tried = 0;
     }
     if (self->log_pages >= self->log_tried + pages) {
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
@@ -499,8 +506,8 @@ int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
 /* --- the disk is full --- */
 
 /* Frees space on a full disk, by steps that need little space themselves: deletes rows that are not
- * needed and returns free pages to the file system. The caller holds the lock; it is released
- * meanwhile. */
+ * needed and returns free pages to the file system. The caller holds the lock, which is released
+ * while the disk works. */
 static bool make_space(st_sqlite *self)
 {
     bool good, closing;
@@ -546,9 +553,9 @@ static bool cut_log(st_sqlite *self)
     return is_read || checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);
 }
 
-/* Ends the state FULL if the ballast (reserved disk space) can be made again and there is more free
- * space. With less, the next few changes would fill the disk again. The caller holds the lock; it
- * is released meanwhile. */
+/* Ends the state FULL if the ballast (reserved disk space) can be made again and the disk has some
+ * more free space. Without that, the next few changes would fill the disk again. The caller holds
+ * the lock, which is released while the disk works. */
 static void seek_space(st_sqlite *self)
 {
     pthread_mutex_unlock(&self->lock);
@@ -567,7 +574,7 @@ static void seek_space(st_sqlite *self)
 
 /* --- the thread --- */
 
-/* Returns true if the thread has something to do now. The caller holds the lock. */
+/* Returns true if the commit thread has something to do now. The caller holds the lock. */
 static bool has_work(const st_sqlite *self)
 {
     switch (self->mode) {
@@ -582,7 +589,8 @@ static bool has_work(const st_sqlite *self)
     return self->first != NULL || (self->losing && self->old_rooms == 0);
 }
 
-/* Does one step of the thread's work. The caller holds the lock; it is released meanwhile. */
+/* Does one step of the commit thread's work. The caller holds the lock, which is released while the
+ * disk works. */
 static void work_once(st_sqlite *self)
 {
     if (self->mode == ST_WRITES_FAILED || self->losing) {
@@ -598,7 +606,7 @@ static void work_once(st_sqlite *self)
         (void)st_ballast_drop(&self->folder);
     }
     if (g.first == NULL && g.slice == 0) {
-        /* Loads of meshes wait for this checkpoint. */
+        /* Nothing is to be written, but loads of meshes wait for this checkpoint. */
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
     } else if (commit_group(self, &g)) {
         checkpoint_when_due(self, &g);
@@ -629,8 +637,8 @@ void *st_commit_thread(void *context)
         }
         self->idle = false;
     }
-    /* If the disk is full, some items that delete something are still queued when the thread
-     * ends. */
+    /* When the disk is full, items of the queue that delete something may still be there when the
+     * thread ends. */
     free_items(self->first);
     self->first = NULL;
     self->end = &self->first;

@@ -12,8 +12,8 @@
 
 /* --- memory --- */
 
-/* SQLite asks for the size of its blocks, which base/mem.h does not know. So the size is stored in
- * HEADER bytes before each block. */
+/* SQLite asks its allocator for the sizes of memory blocks, which base/mem.h does not know. So the
+ * size is stored in HEADER bytes before each block. */
 enum { HEADER = 16, ROUND = 8 };
 
 static void *block_resize(void *memory, int size)
@@ -102,16 +102,17 @@ st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *tex
     }
     sqlite3_extended_result_codes(db->handle, 1);
     sqlite3_busy_timeout(db->handle, BUSY_MILLIS);
-    /* SQLite does not report errors of the checkpoint that it makes when it closes a database, so
-     * that checkpoint is switched off, and one is made before closing. */
+    /* SQLite does not report errors of the checkpoint that it makes when it closes a database. So
+     * that checkpoint is switched off, and st_db_close makes a checkpoint before it closes the
+     * database. */
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     return st_db_outcome(db, code);
 }
 
-/* The cache has at least 16 pages, so that the path from the root of a tree to a row stays in
- * it. */
+/* The cache has at least 16 pages, so that all pages from the root of a table's tree down to a row
+ * stay in the cache. */
 enum { LEAST_CACHE_KIB = 64, FULL_CACHE_BUDGET = 256 << 20 };
 
 st_sql st_db_set_cache(st_db *db, unsigned kib)
@@ -121,7 +122,7 @@ st_sql st_db_set_cache(st_db *db, unsigned kib)
         budget == 0 || budget >= FULL_CACHE_BUDGET ? kib : kib * budget / FULL_CACHE_BUDGET;
     char text[64];
     share = share < LEAST_CACHE_KIB ? LEAST_CACHE_KIB : share;
-    /* In this pragma a negative number counts KiB, a positive number counts pages. */
+    /* The pragma cache_size takes a negative number as KiB, a positive number as pages. */
     (void)snprintf(text, sizeof text, "PRAGMA cache_size = -%u", (unsigned)share);
     return st_db_run(db, text);
 }
@@ -163,9 +164,9 @@ st_sql st_db_outcome(const st_db *db, int code)
         if (code == SQLITE_IOERR_NOMEM) {
             return ST_SQL_NO_MEMORY;
         }
-        /* SQLite reports a full disk only for ENOSPC, and not when it extends the -shm. So the
-         * error of the system is examined here. A sync that fails with ENOSPC is not a full disk
-         * but a failure. */
+        /* SQLite reports a full disk only for the error ENOSPC, and not when it extends the -shm
+         * file. So the error of the system is examined here. A sync that fails with ENOSPC is not a
+         * full disk but a failure. */
         if (code == SQLITE_IOERR_WRITE || code == SQLITE_IOERR_SHMSIZE) {
             const int reason = sqlite3_system_errno(db->handle);
             return reason == EDQUOT || reason == ENOSPC ? ST_SQL_FULL : ST_SQL_FAILED;

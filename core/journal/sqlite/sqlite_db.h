@@ -28,7 +28,8 @@ enum { ST_DB_STATEMENTS = 40 };
 
 typedef struct st_db {
     sqlite3 *handle;
-    const char *const *texts; /* SQL texts of the statements; NULL: no such statement */
+    /* `texts` are the SQL texts of the statements; NULL: there is no statement of this number */
+    const char *const *texts;
     sqlite3_stmt *statements[ST_DB_STATEMENTS];
 } st_db;
 
@@ -41,11 +42,11 @@ bool st_db_prepare(void);
  * connection. The caller must close the connection even after a failure. */
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count);
 /* Limits the connection's cache of pages to `kib` KiB, or to proportionally less if the memory
- * budget is below 256 MiB, because SQLite is never refused memory. */
+ * budget is below 256 MiB. The limit is needed because SQLite is never refused memory. */
 st_sql st_db_set_cache(st_db *db, unsigned kib);
-/* Returns false if SQLite fails to close. */
+/* Closes the connection. Returns false if SQLite fails to close it. */
 bool st_db_close(st_db *db);
-/* Returns SQLite's last message about the connection. */
+/* Returns the last error message of SQLite about the connection. */
 const char *st_db_message(const st_db *db);
 
 /* Runs a text of SQL without parameters, such as a pragma, and ignores its rows. */
@@ -66,10 +67,10 @@ st_sql st_db_step(st_db *db, sqlite3_stmt *statement);
 void st_db_reset(sqlite3_stmt *statement); /* takes NULL */
 /* Runs a statement that returns no rows. Parameters are passed as to st_db_find. */
 st_sql st_db_do(st_db *db, unsigned which, const char *format, ...);
-/* Begins a transaction with statement `begin`. If a lack of memory has left the last transaction
- * open, statement `end` ends that first. */
+/* Begins a transaction by the statement number `begin`. If a lack of memory has left the last
+ * transaction open, the statement number `end` ends that transaction first. */
 st_sql st_db_begin(st_db *db, unsigned begin, unsigned end);
-/* Turns a result code of SQLite into ST_SQL_DONE or a failure. */
+/* Turns a result code of SQLite into ST_SQL_DONE or the constant of a failure. */
 st_sql st_db_outcome(const st_db *db, int code);
 
 static inline uint64_t st_db_word(sqlite3_stmt *statement, int column)
@@ -78,7 +79,7 @@ static inline uint64_t st_db_word(sqlite3_stmt *statement, int column)
 }
 /* Copies the text of a column to `out`, cut to `size` bytes with its NUL. */
 void st_db_text(sqlite3_stmt *statement, int column, char *out, size_t size);
-/* Returns the bytes of a column; NULL if it is empty. */
+/* Returns the bytes of a column; NULL if the column is empty. */
 const unsigned char *st_db_bytes(sqlite3_stmt *statement, int column, size_t *size);
 
 #endif

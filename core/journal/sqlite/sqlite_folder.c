@@ -37,8 +37,8 @@ static bool write_owner(st_folder *folder)
     int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
-           /* Even if the owner cannot be written, the process has the lock. Other processes then
-            * cannot name its owner. */
+           /* Even if the owner cannot be written into the lock file, this process has the lock.
+            * Other processes then cannot name its owner in their messages. */
            errno == ENOSPC || errno == EDQUOT || st_folder_fail(folder, "cannot write", "lock");
 }
 
@@ -105,7 +105,8 @@ bool st_folder_open(st_folder *folder, const char *path)
     }
     if (made && !sync_above(path)) {
         (void)st_folder_fail(folder, "the parent folder cannot be synced", "");
-        (void)rmdir(path); /* the folder is removed, so that the next start tries again */
+        /* the folder is removed, so that the next start makes and syncs it again */
+        (void)rmdir(path);
         return false;
     }
     folder->folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -125,8 +126,8 @@ void st_folder_close(st_folder *folder)
 
 const char *st_folder_doubt(const st_folder *folder)
 {
-    /* These are magic numbers from linux/magic.h, and from fs/nfs, fs/fuse, fs/9p and fs/smb of the
-     * kernel. */
+    /* These numbers identify kinds of file systems; they are from linux/magic.h, and from fs/nfs,
+     * fs/fuse, fs/9p and fs/smb of the kernel. */
     enum { NFS = 0x6969, FUSE = 0x65735546, P9 = 0x01021997 };
     const uint32_t cifs = UINT32_C(0xff534d42), smb2 = UINT32_C(0xfe534d42);
     struct statfs system;
@@ -178,8 +179,8 @@ bool st_folder_sync(st_folder *folder)
 
 /* --- the mark of the last commit --- */
 
-/* The layout of a slot of the mark: number of the store, commits, position, 4 bytes of zeros,
- * CRC-32C of all these. */
+/* The layout of a slot in the file of the mark: number of the store, number of commits, position of
+ * the last record, 4 bytes of zeros, CRC-32C of all these. */
 enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
 
 bool st_mark_open(st_folder *folder)
@@ -255,7 +256,7 @@ bool st_ballast_make(st_folder *folder)
 }
 
 /* Returns true if the file system reports enough free blocks and they can be allocated. Only
- * allocation shows whether a quota is exhausted. */
+ * allocating them shows whether the user's disk quota is exhausted. */
 bool st_folder_has_space(st_folder *folder)
 {
     struct statvfs space;

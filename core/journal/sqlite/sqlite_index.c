@@ -1,11 +1,11 @@
 /* sqlite_index.c - compares the table of meshes with its indexes. A mesh whose index entry is
  * damaged would seem not to exist, and another mesh could be created with its id.
  *
- * SQLite's integrity_check looks up each row in each index, at random places of the file: that
+ * SQLite's integrity_check looks up each row in each index, at random places of the file: this
  * takes half a minute for a million meshes. Here the table and its indexes are read sequentially.
- * They agree if their structure is intact (quick_check), the entries of each index are in order, so
- * that a lookup finds every entry, and the sum of the hashes of all entries equals that of all
- * rows. */
+ * Table and indexes agree if their structure is intact (quick_check), the entries of each index are
+ * in order, so that a lookup finds every entry, and the sum of the hashes of all entries equals
+ * that of all rows. */
 #include "base/siphash.h"
 #include "journal/sqlite/sqlite_state.h"
 

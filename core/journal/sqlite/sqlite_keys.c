@@ -1,10 +1,10 @@
-/* sqlite_keys.c - reads stored keys of requests: those of one mesh, or of the store. */
+/* sqlite_keys.c - reads stored Idempotency-Keys of requests: the keys of one mesh, or those of the
+ * store. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
 
-/* Selects the newest keys that belong to the store: those at most ?1 seconds older than the newest
- * one. */
+/* Selects those keys of the store that are at most ?1 seconds older than its newest key. */
 static const char of_store[] =
     "SELECT * FROM (SELECT " ST_KEPT_COLUMNS
     " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
@@ -53,8 +53,8 @@ st_sql st_kept_count_damaged(st_db *db, uint64_t *out)
     return outcome;
 }
 
-/* Passes a key to `take`. A damaged key is passed, too, so that a repeated request is not executed
- * again. */
+/* Passes a key to the function `take`. A damaged key is passed, too, so that a repeated request
+ * with this key is not executed again. */
 static bool give(const st_kept_row *row, bool good, st_take_key *take, void *to)
 {
     const st_kept_key key = {.key = {.text = row->text,
@@ -79,8 +79,8 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     bool taken = true;
     uint64_t damaged = 0;
     if (self->only_reads) {
-        /* A journal that only reads needs no keys, and damaged keys must not prevent reading the
-         * mesh. */
+        /* A journal that only reads passes no keys: it needs none, and damaged keys must not
+         * prevent reading the mesh. */
         return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);

@@ -1,6 +1,6 @@
-/* sqlite_notes.c - notes: the state of jobs, and keys of requests that changed nothing. A note is
- * stored in a room (memory of a queued group) without records. So it has a position in the order of
- * records, and if it is lost, so are all records after it.
+/* sqlite_notes.c - notes: the state of jobs, and keys of requests that changed nothing. A note
+ * waits in the queue in a room (memory for a group of records) that has no records. So a note has a
+ * position in the order of records, and if it is lost, all records after it are lost, too.
  *
  *     accepted ----> done             by the room of the record that is the job's work: both or
  *         |            |              neither
@@ -26,7 +26,7 @@ static void texts_of(st_job *job, const char **out[JOB_TEXTS])
     }
 }
 
-/* Returns the bytes that a copy of the job's texts and body takes. */
+/* Returns how many bytes a copy of the job's texts and body takes. */
 static size_t bytes_of(const st_job *job)
 {
     st_job copy = *job;
@@ -90,7 +90,7 @@ static st_sql make_row(st_sqlite *self, const st_job *job)
                  (int64_t)job->status, (uint64_t)job->shown, job->headers[ST_JOB_TYPE],
                  job->headers[ST_JOB_DISPOSITION], job->headers[ST_JOB_TAG],
                  job->headers[ST_JOB_WARNINGS], job->body, job->length, (uint64_t)st_job_sum(job));
-    /* When a job is stored, up to two expired ones are deleted. */
+    /* When a job is stored, up to two expired jobs are deleted. */
     return outcome == ST_SQL_DONE ? st_db_do(&self->db, ST_SQL_JOBS_TRIM, "d", now - ST_JOB_SECONDS)
                                   : outcome;
 }

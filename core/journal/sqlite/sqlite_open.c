@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns SQLite's message about damage. If SQLite found no error, a checksum or value in a row was
- * wrong, and the message says that. */
+/* Returns SQLite's message about damage. If SQLite itself found no error, the message says that a
+ * checksum or value in a row is wrong. */
 static const char *damage_of(const st_db *db)
 {
     const int code = db->handle == NULL ? SQLITE_OK : sqlite3_errcode(db->handle);
@@ -112,7 +112,8 @@ static bool make_store(st_sqlite *self, const char *path, const char *release,
     return true;
 }
 
-/* Checks that the database has every commit up to the one that the mark names. */
+/* Checks that the database has every commit up to the commit that the mark (note of the last
+ * commit) names. */
 static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
 {
     st_mark mark;
@@ -186,16 +187,16 @@ static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return good;
 }
 
-/* Checks the stored keys. If a key is damaged, a repeated request may be executed again, so the
- * start warns about it. */
+/* Checks the stored Idempotency-Keys. If a key is damaged, a repeated request may be executed
+ * again, so the daemon warns about it when it starts. */
 static bool check_keys(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     const st_sql outcome = st_kept_count_damaged(&self->db, &self->damaged_keys);
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* Finds the highest key that a row of a table ever had. New keys must be higher, or a key would be
- * used again. */
+/* Finds the highest key that a row of a table ever had. New rows get higher keys, because a key
+ * must never be used again. */
 static st_sql last_key(st_db *db, const char *table, int64_t *out)
 {
     char text[96];
@@ -209,7 +210,8 @@ static st_sql last_key(st_db *db, const char *table, int64_t *out)
     return outcome == ST_SQL_DONE && *out < most ? ST_SQL_DAMAGED : outcome;
 }
 
-/* Reads the numbers from which the commit thread continues to count. */
+/* Reads the numbers from which the commit thread continues to count: the highest keys of rows, and
+ * how many Idempotency-Keys are stored. */
 static st_sql read_counts(st_sqlite *self)
 {
     int64_t keys = 0;
@@ -274,8 +276,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
            check_tables(self, path, out) && check_keys(self, path, out);
 }
 
-/* Cleans up after the last process: copies its write-ahead log into the database and deletes
- * contents that it was writing in advance. */
+/* Cleans up after the last process that had the store open: copies its write-ahead log into the
+ * database and deletes contents that it was still writing before their publication. */
 static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     int code =
@@ -388,8 +390,8 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
         return false;
     }
     /* The store also works without a ballast, the file that reserves disk space. But if the ballast
-     * was removed so that the daemon could start, the disk counts as full: the freed space is for
-     * removals. */
+     * was removed so that the daemon could start, the disk counts as full, because the freed space
+     * is for removals of meshes. */
     if (!st_ballast_make(&self->folder) && full) {
         self->mode = ST_WRITES_FULL;
         self->fulls = 1;

@@ -16,8 +16,8 @@ st_sqlite_room *st_room_of(st_item *item)
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
-    /* There is one head more than records, because the frame of the record with the body is written
-     * directly before the body. */
+    /* The room has memory for one head of a frame (encoded record) more than there are records: the
+     * record with a body uses another place than the others, directly before the body. */
     return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
            !__builtin_add_overflow(heads, entries, out) &&
@@ -25,7 +25,8 @@ static bool size_of_room(const st_room_need *need, size_t *out)
            !__builtin_add_overflow(*out, need->bytes, out);
 }
 
-/* Decides whether a group of `size` bytes is accepted now. The caller holds the lock. */
+/* Decides whether the queue accepts a group of records of `size` bytes now. The caller holds the
+ * lock. */
 static st_status admit(const st_sqlite *self, size_t size, bool freeing)
 {
     if (self->mode == ST_WRITES_FAILED) {
@@ -76,7 +77,8 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
     return ST_OK;
 }
 
-/* Counts a room as no longer reserved. The caller holds the lock. */
+/* Counts a room (memory for a group of records) as no longer reserved. The caller holds the
+ * lock. */
 static void come_back(st_sqlite *self, const st_sqlite_room *room)
 {
     self->rooms--;
@@ -147,7 +149,8 @@ void st_room_key(st_sqlite_room *room, const st_kept_key *kept)
 }
 
 /* Fills in the room's facts about the job that made the change. The answer of the job does not
- * exist yet, so its HTTP status is the one that follows from the record, until a note states it. */
+ * exist yet, so the status that follows from the record is stored as its HTTP status, until a note
+ * states the true one. */
 static void fill_job(st_sqlite_room *room, const st_record *record, bool made)
 {
     enum { CREATED = 201, NO_CONTENT = 204 };

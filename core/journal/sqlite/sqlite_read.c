@@ -1,4 +1,5 @@
-/* sqlite_read.c - reads meshes: cards by one connection, loads by ST_LOADS others. */
+/* sqlite_read.c - reads meshes: cards (short descriptions) by one connection to the database, whole
+ * meshes by ST_LOADS other connections. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -24,10 +25,11 @@ static const char *const texts[STATEMENTS] = {
 /* The state of the load of a mesh: what is read next. */
 typedef enum stage_of_load {
     AT_BASE,
-    AT_BASE_PARTS,   /* parts of the base's content, which have rows of their own */
-    AT_INLINE_PARTS, /* parts of the base's content, which are inside its record */
+    AT_BASE_PARTS, /* next are parts of the base's content that are stored in rows of their own */
+    /* next are parts of the base's content that are stored inside the base's record */
+    AT_INLINE_PARTS,
     AT_RECORDS,
-    AT_RECORD_PARTS /* parts of the stage of the last record */
+    AT_RECORD_PARTS /* next are parts of the stage (large content or edit) of the last record */
 } stage_of_load;
 
 struct st_reader {
@@ -36,7 +38,9 @@ struct st_reader {
     st_mesh_row row;
     stage_of_load at;
     st_frame frame;
-    uint64_t number, chain; /* number of the last record read; chain of hashes of the next one */
+    /* `number` is that of the last record read, `chain` the chain (a hash) of the record after
+     * it */
+    uint64_t number, chain;
     sqlite3_stmt *records, *parts, *base;
     int64_t snapshot;
     uint64_t part, parts_left;
@@ -57,7 +61,8 @@ enum { CACHE_KIB = 2 << 10 };
 static st_sql open_one(st_db *db, const char *path)
 {
     st_sql outcome = st_db_open(db, path, SQLITE_OPEN_READONLY, texts, STATEMENTS);
-    /* The file is not mapped into memory, because a bad sector would then raise SIGBUS. */
+    /* The database file is not mapped into memory, because a bad sector of the disk would then
+     * raise SIGBUS. */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(db, "PRAGMA mmap_size = 0");
     }
@@ -67,7 +72,8 @@ static st_sql open_one(st_db *db, const char *path)
     return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
 }
 
-/* Prepares the statements that begin and end a load, so that ending one needs no memory. */
+/* Prepares the SQL statements that begin and end the load of a mesh, so that ending a load needs no
+ * memory. */
 static st_sql open_loader(st_db *db, const char *path)
 {
     st_sql outcome = open_one(db, path);
@@ -186,7 +192,8 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
     sqlite3_stmt *s;
     bool taken = true;
     if (self->only_reads) {
-        /* A journal that only reads creates no mesh, so the limits of holders do not matter. */
+        /* A journal that only reads passes no holders: it creates no mesh, so their limits do not
+         * matter. */
         return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);
@@ -207,8 +214,8 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
 
 /* --- damage found by loads --- */
 
-/* Returns what an earlier load has found damaged in a mesh; NULL if it found nothing. The caller
- * holds the lock. */
+/* Returns the damage that an earlier load has found in a mesh; NULL if no damage was found. The
+ * caller holds the lock. */
 static st_finding *find_finding(st_sqlite *self, uint64_t incarnation, uint64_t base)
 {
     for (size_t i = 0; i < ST_FINDINGS; i++) {
@@ -230,7 +237,8 @@ static void note_finding(st_sqlite *self, const st_finding *noted)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Marks a card as damaged if a load found damage that is not in the mesh's row yet. */
+/* Marks a card as damaged if a load found damage in the mesh that is not in the mesh's row in the
+ * database yet. */
 static st_status add_finding(st_sqlite *self, st_mesh_row *row)
 {
     st_card *card = &row->card;
@@ -251,7 +259,7 @@ void st_sqlite_condemn(st_reader *reader, const char *damage)
     note_finding(self, &finding);
     st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
-        return; /* if memory is out, the next load will find the damage again */
+        return; /* if memory is out, the damage is not noted; the next load will find it again */
     }
     condemned->item.kind = ST_ITEM_CONDEMN;
     condemned->finding = finding;
@@ -345,7 +353,8 @@ void st_sqlite_shut(st_reader *reader)
     }
 }
 
-/* Fills in a piece from its frame and, for what the frame lacks, from the card of the mesh. */
+/* Fills in a piece from its frame (encoded record) and, for what the frame lacks, from the card of
+ * the mesh. */
 static void fill_piece(st_reader *reader, st_piece_kind kind, st_piece *out)
 {
     const st_card *card = &reader->row.card;
@@ -379,7 +388,8 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
     return ST_OK;
 }
 
-/* Finds the row of the snapshot that has the content of record `number`, whose parts are read next.
+/* Finds the row of the snapshot that has the mesh's content after record `number`; the parts of the
+ * snapshot are read next.
  * Returns ST_ABSENT if there is none. */
 static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
 {
@@ -409,7 +419,7 @@ static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
 }
 
 /* Decompresses a part. A part with a coding that this release does not know stays as it is, because
- * core/stored reports that. */
+ * core/stored reports the unknown coding. */
 static st_status unpack(st_reader *reader, st_piece *piece)
 {
     const char *why = "";
@@ -433,7 +443,8 @@ static st_status unpack(st_reader *reader, st_piece *piece)
                          (unsigned long long)reader->part, (unsigned long long)reader->number, why);
 }
 
-/* Reads the next part of the snapshot; after the last part, *out stays as it is. */
+/* Reads the next part of the snapshot (stored content) into *out, which stays as it is after the
+ * last part. */
 static st_status read_part(st_reader *reader, bool *got, st_piece *out)
 {
     st_db *db = &reader->slot->db;
@@ -546,7 +557,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
 {
     st_status status = find_snapshot(reader, reader->row.base, true);
     reader->at = AT_BASE_PARTS;
-    /* If the table of snapshots cannot be read, the content may still be in the record itself. */
+    /* If the table of snapshots cannot be read, the content of the base may still be in its
+     * record. */
     if (status == ST_ABSENT || (status == ST_DAMAGED && reader->journal->salvage.on)) {
         status = read_inline_base(reader);
         reader->at = AT_INLINE_PARTS;
@@ -561,7 +573,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
     return status;
 }
 
-/* Ends the load: checks that the last record read is the last one that the card counts. */
+/* Ends the load: checks that the last record read is the newest record of the mesh according to its
+ * card. */
 static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;
@@ -613,7 +626,7 @@ static st_status read_record(st_reader *reader, st_piece *out)
                            (unsigned long long)number);
         }
         reader->at = AT_RECORD_PARTS;
-        /* This pointer is never used; it only shows the store that there is a stage. */
+        /* This pointer is never followed; it only shows the store that the record has a stage. */
         out->record.stage = (st_stage *)reader;
         out->parts = reader->parts_left;
         out->record.body = NULL;

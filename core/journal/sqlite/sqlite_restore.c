@@ -1,4 +1,5 @@
-/* sqlite_restore.c - replaces a store by a backup, in the steps that sqlite_backup.h lists. */
+/* sqlite_restore.c - replaces a store by a backup of it, in the steps that sqlite_backup.h
+ * lists. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "system/clock.h"
@@ -36,7 +37,7 @@ static bool copy_bytes(st_folder *folder, const char *file, int from, int to)
 }
 
 /* Removes the copy of a backup that a killed restore has left. Otherwise SQLite would replay the
- * journal of that copy into the next one. */
+ * log of that copy into the next copy. */
 static bool remove_copy(st_folder *folder)
 {
     static const char *const names[] = {"restored.db-journal", "restored.db-wal", "restored.db-shm",
@@ -92,7 +93,8 @@ static st_sql draw_incarnations(st_db *db)
         const bool good = st_mesh_row_read(s, &row);
         st_db_reset(s);
         row.card.incarnation = st_random();
-        /* A row that was damaged keeps a wrong checksum, so that it stays damaged. */
+        /* A row that was damaged before this change gets a wrong checksum again, so that it still
+         * counts as damaged. */
         const uint32_t sum = st_mesh_row_sum(&row) ^ (good ? 0 : 1);
         outcome = st_db_do(db, MESH_PUT, "iii", row.key, row.card.incarnation, (uint64_t)sum);
         if (outcome != ST_SQL_DONE) {
@@ -102,8 +104,8 @@ static st_sql draw_incarnations(st_db *db)
     }
 }
 
-/* Removes the ETags of stored answers to keyed requests, because the states that they name may no
- * longer exist. */
+/* Removes the ETags of stored answers to requests with an Idempotency-Key, because the states that
+ * the ETags name may no longer exist. */
 static st_sql take_tags_of_keys(st_db *db)
 {
     st_kept_texts row_texts;
@@ -117,7 +119,8 @@ static st_sql take_tags_of_keys(st_db *db)
         const bool good = st_kept_row_read(s, &row_texts, &row);
         st_db_reset(s);
         row.incarnation = row.revision = row.metadata = 0;
-        /* A row that was damaged keeps a wrong checksum, so that it stays damaged. */
+        /* A row that was damaged before this change gets a wrong checksum again, so that it still
+         * counts as damaged. */
         const uint32_t sum = st_kept_row_sum(&row) ^ (good ? 0 : 1);
         outcome = st_db_do(db, KEPT_PUT, "itti", row.mesh, row.holder, row.text, (uint64_t)sum);
         if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
@@ -129,7 +132,8 @@ static st_sql take_tags_of_keys(st_db *db)
     }
 }
 
-/* Removes the ETags of jobs' answers, because the states that they name may no longer exist. */
+/* Removes the ETags of jobs' answers, because the states that the ETags name may no longer
+ * exist. */
 static st_sql take_tags_of_jobs(st_db *db)
 {
     char last[ST_JOB_ID + 1] = "";
@@ -142,7 +146,8 @@ static st_sql take_tags_of_jobs(st_db *db)
         }
         const bool good = st_job_read(s, &job);
         job.headers[ST_JOB_TAG] = "";
-        /* A row that was damaged keeps a wrong checksum, so that it stays damaged. */
+        /* A row that was damaged before this change gets a wrong checksum again, so that it still
+         * counts as damaged. */
         const uint32_t sum = st_job_sum(&job) ^ (good ? 0 : 1);
         st_db_reset(s);
         outcome = st_db_do(db, JOB_PUT, "ti", job.id, (uint64_t)sum);
@@ -158,7 +163,7 @@ static st_sql take_tags_of_jobs(st_db *db)
 
 static st_sql renew(st_db *db)
 {
-    /* The copy leaves WAL mode, so that all of it is in one file. */
+    /* The copy of the backup leaves SQLite's WAL mode, so that all of the copy is in one file. */
     st_sql outcome = st_db_run(db, "PRAGMA journal_mode = DELETE");
     if (outcome == ST_SQL_DONE) {
         outcome = st_schema_raise(db);
@@ -259,7 +264,8 @@ bool st_sqlite_finish_restore(st_folder *folder)
     if (!st_folder_finds(folder, "restoring")) {
         return true;
     }
-    /* If the copy is gone, it was renamed before the restore was interrupted. */
+    /* If there is no file restored.db, it was renamed to hedge.db before the restore was
+     * interrupted. */
     if (st_folder_finds(folder, "restored.db")) {
         if (!read_note(folder, before)) {
             return st_refuse(folder->message,
@@ -285,15 +291,17 @@ bool st_sqlite_finish_restore(st_folder *folder)
 
 static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES])
 {
-    /* An interrupted restore is finished before this one begins, because its file `restoring` says
-     * that the file restored.db is complete. */
+    /* An interrupted restore is finished before this restore begins, because the file `restoring`
+     * that it left says that the file restored.db is complete. */
     bool good = st_folder_open(folder, path);
     if (good && st_folder_finds(folder, "restoring") && st_folder_finds(folder, "restored.db") &&
         !read_note(folder, before)) {
-        /* The file `restoring` was not written completely, so nothing was moved. */
+        /* The file `restoring` was not written completely, so no file was moved yet and the old
+         * restore can be dropped. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
-    /* Only the file itself is copied, so changes in a log beside it would be left out. */
+    /* Only the file of the backup itself is copied, so a backup with a log of SQLite beside it is
+     * refused: the changes in the log would be left out. */
     good = good && st_sqlite_finish_restore(folder) &&
            st_sqlite_has_no_log(
                file,

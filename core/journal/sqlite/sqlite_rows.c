@@ -1,5 +1,5 @@
-/* sqlite_rows.c - writes records to the tables of the database, within a transaction of the commit
- * thread. */
+/* sqlite_rows.c - writes records (changes of meshes) to the tables of the database, within a
+ * transaction of the commit thread. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
@@ -96,8 +96,8 @@ static bool holds(const st_head *head, uint64_t incarnation)
     return head->row.key != 0 && head->row.card.incarnation == incarnation;
 }
 
-/* Finds the slot of the cache for a mesh; if the slot has the changed row of another mesh, that row
- * is written first. */
+/* Finds the cache's slot for the row of a mesh; if the slot contains the changed row of another
+ * mesh, that row is written to the database first. */
 static st_sql place_of(st_sqlite *self, uint64_t incarnation, st_head **out)
 {
     *out = &self->heads.slots[incarnation % ST_HEADS];
@@ -175,7 +175,8 @@ st_sql st_heads_flush(st_sqlite *self)
 
 /* --- records --- */
 
-/* Removes a mesh. It works even if the mesh's row is damaged, because the index has its key. */
+/* Removes a mesh. This works even if the mesh's row is damaged, because the table's index has the
+ * key of the row. */
 static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
 {
     st_head *head;
@@ -188,7 +189,8 @@ static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
     if (outcome == ST_SQL_DONE) {
         head->row.key = 0;
         outcome = read_row(self, incarnation, &row, &good);
-        /* A removal must come after the first record of its mesh, so a missing row is a failure. */
+        /* A removal must come after the first record of its mesh, so the mesh must have a row; a
+         * missing row is a failure. */
         outcome = outcome == ST_SQL_DONE ? ST_SQL_FAILED : outcome;
     }
     if (outcome == ST_SQL_ROW) {
@@ -218,14 +220,15 @@ static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
     return outcome;
 }
 
-/* Writes the row of a record, and makes its stage a content or an edit of the mesh. */
+/* Writes the row of a record. If the record has a stage (data written in advance), the stage
+ * becomes a content or an edit of the mesh. */
 static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
 {
     const bool is_base = entry->barrier && !entry->staged_edit &&
                          (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
     st_sql outcome = ST_SQL_DONE;
-    /* The row of a snapshot has the facts of its record, so the record itself need not be
-     * written. */
+    /* A record whose content is a stage needs no row of its own, because the row of the snapshot,
+     * which the stage becomes, contains the facts of the record. */
     if (!is_base || entry->stage == NULL) {
         outcome = st_db_do(&self->db, ST_SQL_RECORD_MAKE, "iib", head->row.key, entry->number,
                            entry->frame, entry->size);
@@ -243,7 +246,8 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     }
     if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
         head->row.base = entry->number;
-        head->row.card.damage[0] = '\0'; /* the damage was in records that are purged now */
+        /* the damage that the card stated was in records that are purged (deleted) now */
+        head->row.card.damage[0] = '\0';
         outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
     }
     return outcome;
@@ -261,7 +265,8 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
         return outcome;
     }
     if (head == NULL || head->row.card.record + 1 != entry->number) {
-        return ST_SQL_FAILED; /* the store has numbered the records differently from the disk */
+        /* the number of the record does not follow that of the last record on the disk */
+        return ST_SQL_FAILED;
     }
     uint64_t chain = st_frame_seal(entry->frame, entry->size, head->row.chain);
     outcome = add_frame(self, head, entry, chain);
@@ -271,8 +276,9 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
     return outcome;
 }
 
-/* When a key is stored, up to two expired keys are deleted. The keys of a mesh are counted, and cut
- * to the limit, only for about one of CUT_EVERY new keys, chosen by chance. */
+/* When an Idempotency-Key is stored, up to two expired keys are deleted. Only for about one in
+ * CUT_EVERY new keys, chosen by chance, the keys of the mesh are counted and the keys beyond the
+ * limit deleted. */
 enum { CUT_EVERY = 64, CUT_MOST = 16 * CUT_EVERY };
 
 static st_sql trim_keys(st_sqlite *self, const st_kept_row *row, uint32_t sum)
@@ -295,7 +301,8 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
 {
     st_kept_row row = room->key;
     if (row.mesh != 0 && head == NULL) {
-        return ST_SQL_DONE; /* the mesh was removed, and its keys with it */
+        /* the key is not stored, because the mesh was removed and its keys with it */
+        return ST_SQL_DONE;
     }
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
     const uint32_t sum = st_kept_row_sum(&row);
@@ -303,12 +310,12 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
         st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiiit", row.mesh, row.text, row.digest,
                  sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
                  row.position, (uint64_t)row.made, (uint64_t)sum, row.holder);
-    self->keys++; /* a key that replaces an equal one is counted twice until the next start */
+    self->keys++; /* a key that replaces an equal key is counted twice until the next start */
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 
-/* Stores the key of a request that changed nothing; the mesh of the request may have been removed
- * meanwhile. */
+/* Stores the Idempotency-Key of a request that changed nothing; the mesh of the request may have
+ * been removed meanwhile. */
 static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
 {
     st_head *head = NULL;

@@ -1,7 +1,7 @@
-/* sqlite_salvage.c - reads files whose structure is damaged: reports the faults, and finds meshes
- * without using indexes. The rows of the table of meshes are read in the order of their keys; if a
- * page of it cannot be read, each following key is tried until one is in a page that can be
- * read. */
+/* sqlite_salvage.c - reads database files whose structure is damaged: reports the faults, and finds
+ * meshes without using indexes. The rows of the table of meshes are read in the order of their
+ * keys; if a page of the table cannot be read, each following key is tried until a row is found in
+ * a page that can be read. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -98,7 +98,8 @@ static st_sql find_row(st_db *db, unsigned which, int64_t key, st_mesh_row *out)
     return outcome;
 }
 
-/* Returns the largest key that may exist, from the counter of keys and the end of the table. */
+/* Returns the largest key that a row of the table of meshes may have, from the counter of keys and
+ * from the end of the table. */
 static int64_t last_key(st_db *db)
 {
     int64_t counted = 0, found = 0;
@@ -111,8 +112,8 @@ static int64_t last_key(st_db *db)
     return found > counted ? found : counted;
 }
 
-/* Reads the next row of a mesh that can be read.
- * Returns ST_SQL_DONE after the last one. */
+/* Reads the next row of the table of meshes that can be read.
+ * Returns ST_SQL_DONE after the last row. */
 static st_sql next_row(st_db *db, int64_t after, st_mesh_row *out)
 {
     st_sql outcome = find_row(db, NEXT, after, out);

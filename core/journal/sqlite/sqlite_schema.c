@@ -18,7 +18,8 @@ static const char *const tables[] = {
     "boundary INTEGER NOT NULL, bytes INTEGER NOT NULL, base INTEGER NOT NULL, "
     "damage TEXT NOT NULL, fence INTEGER NOT NULL DEFAULT 0, node TEXT NOT NULL DEFAULT '', "
     "holder TEXT NOT NULL DEFAULT '', sum INTEGER NOT NULL)",
-    /* The records of all meshes are in one tree, so that small records share pages. */
+    /* The records of all meshes are in one table, whose rows lie in one tree, so that small records
+     * share pages. */
     "CREATE TABLE record(mesh INTEGER, number INTEGER, bytes BLOB NOT NULL, "
     "PRIMARY KEY(mesh, number)) WITHOUT ROWID",
     "CREATE TABLE snapshot(key INTEGER PRIMARY KEY AUTOINCREMENT, mesh INTEGER NOT NULL, "
@@ -91,8 +92,8 @@ uint32_t st_mesh_row_sum(const st_mesh_row *row)
     sum = add_word(add_word(sum, card->counts.faces), card->counts.boundary);
     sum = add_word(add_word(sum, card->bytes), row->base);
     sum = add_text(sum, card->damage);
-    /* If a mesh has no holder, the checksum does not include that column, as in rows from before
-     * version 3. */
+    /* If a mesh has no holder, the checksum does not include the column `holder`; so it equals the
+     * checksum that older versions, which had no such column, gave to the row. */
     return card->holder[0] == '\0' ? sum : add_text(sum, card->holder);
 }
 
@@ -113,8 +114,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row)
 uint32_t st_kept_row_sum(const st_kept_row *row)
 {
     uint32_t sum = add_text(add_word(begin("kept"), (uint64_t)row->mesh), row->text);
-    /* If a key has no holder, the checksum does not include that column, as in rows from before
-     * keys had holders. */
+    /* If a key has no holder, the checksum does not include the column `holder`; so it equals the
+     * checksum that older versions, which had no such column, gave to the row. */
     sum = row->holder[0] == '\0' ? sum : add_text(sum, row->holder);
     sum = add_time(add_word(add_word(sum, row->digest[0]), row->digest[1]), row->time);
     sum = add_word(add_text(sum, row->id), row->incarnation);
@@ -246,7 +247,8 @@ static const char *const texts[STATEMENTS] = {
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
-/* Returns the connection `db` with the statements of this file in place of its own. */
+/* Returns the connection `db` with the statements of this file in place of the connection's own
+ * statements. */
 static st_db borrowed(const st_db *db)
 {
     return (st_db){.handle = db->handle, .texts = texts};
@@ -311,7 +313,7 @@ st_sql st_schema_make(st_db *db, const st_identity *identity)
 }
 
 /* Reads the version of the schema.
- * Returns ST_SQL_DAMAGED if there never was such a version. */
+ * Returns ST_SQL_DAMAGED if no release ever had this version. */
 static st_sql read_version(st_db *db, int64_t *out)
 {
     st_sql outcome = st_db_number(db, "PRAGMA user_version", 0, out);
@@ -355,7 +357,7 @@ st_sql st_schema_check(st_db *db)
     return outcome;
 }
 
-/* Reads a value of the table `meta` by its name: a number, or, if `text` is not NULL, a text. */
+/* Reads the value of a name from the table `meta`: a number, or, if `text` is not NULL, a text. */
 static st_sql get_meta(st_db *db, const char *name, uint64_t *word, char *text)
 {
     sqlite3_stmt *s;

@@ -10,11 +10,12 @@
 #include "journal/sqlite/sqlite_db.h"
 
 enum {
-    ST_SCHEMA_VERSION = 3,              /* version 1 had no jobs, version 2 no holders */
+    /* the present version of the tables: version 1 had no jobs, version 2 no holders of meshes */
+    ST_SCHEMA_VERSION = 3,
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
     ST_KEY_TEXT = 255,                  /* most bytes of an Idempotency-Key */
-    ST_KEY_HOLDER = 64                  /* most bytes of the name of the client that sent the key */
+    ST_KEY_HOLDER = 64 /* most bytes of the name of the client that sent an Idempotency-Key */
 };
 
 /* The identity of the store, which is drawn when the store is made and never changes. */
@@ -23,25 +24,25 @@ typedef struct st_identity {
     char made_by[ST_RELEASE];
 } st_identity;
 
-/* How far the database is: its last commit, the position of its last record, and its number of
- * meshes. Written with each commit. */
+/* How far the database has come: its last commit, the position of its last record, and its number
+ * of meshes. This row is written with each commit. */
 typedef struct st_progress {
     uint64_t commits, position, meshes;
 } st_progress;
 
-/* The row of a mesh. The card has the mesh's facts; `origin` is the number with which the chain of
- * hashes of its records began (record_bytes.h), `chain` is the chain of the next record, and `base`
- * is the number of the record from which the mesh is loaded. */
+/* The row of a mesh. `card` has the mesh's facts; `origin` is the random number with which the
+ * chain of hashes of its records began (record_bytes.h), `chain` is the hash that the next record
+ * of the mesh must have, and `base` is the number of the record from which the mesh is loaded. */
 typedef struct st_mesh_row {
     int64_t key;
     st_card card;
     uint64_t origin, chain, base;
 } st_mesh_row;
 
-/* The row of a snapshot: a whole content in parts, of the mesh after record `number`. If it belongs
- * to no mesh yet, `process` is the process that is writing it. `facts` is the frame
- * (record_bytes.h) of record `number` without a body, `chain` is the chain of the record after
- * that. */
+/* The row of a snapshot: the whole content of a mesh after record `number`, stored in parts. If the
+ * snapshot belongs to no mesh yet, `process` is the process that is writing it. `facts` is record
+ * `number`, encoded without a body (a frame, record_bytes.h), and `chain` is the hash that the
+ * record after `number` must have. */
 typedef struct st_snapshot_row {
     int64_t key, mesh;
     uint64_t number, revision, parts, process, chain;
@@ -69,10 +70,10 @@ typedef struct st_kept_row {
     uint64_t digest[2];
     double time;
     uint64_t incarnation, revision, metadata, position;
-    bool made; /* the request created the mesh, so its answer was 201 */
+    bool made; /* the request with the key created the mesh, so its answer was 201 */
 } st_kept_row;
 
-/* Memory for the texts of a stored key's row that was read. */
+/* Memory for the texts of the row of a stored Idempotency-Key. */
 typedef struct st_kept_texts {
     char id[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1], holder[ST_KEY_HOLDER + 1];
 } st_kept_texts;
@@ -86,8 +87,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row);
 uint32_t st_kept_row_sum(const st_kept_row *row);
 uint32_t st_job_sum(const st_job *job);
 
-/* The number of bytes before the part itself in the row of a part: 4 of the checksum, 1 of the
- * coding. The checksum also covers the numbers of the snapshot and of the part. */
+/* The row of a part of a content begins with ST_PART_HEAD bytes: 4 of the checksum, 1 of the
+ * coding. The checksum covers the part and also the numbers of the snapshot and of the part. */
 enum { ST_PART_HEAD = 5 };
 uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size);
 
@@ -105,7 +106,7 @@ enum { ST_KEPT_COUNT = 12 }; /* number of the columns above */
     "id, number, state, operation, phase, mesh, location, holder, progress, created, started, " \
     "finished, status, shown, type, disposition, tag, warnings, body, sum"
 
-/* Reads a mesh's row. Returns false if the checksum is wrong; *out is filled in even then. */
+/* Reads the row of a mesh. Returns false if the checksum is wrong; *out is filled in even then. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);
 /* Reads the row of a snapshot; `facts` is borrowed from the statement. Returns false if the
  * checksum is wrong. */
@@ -119,9 +120,9 @@ bool st_job_read(sqlite3_stmt *statement, st_job *out);
 
 /* Makes the tables, in one transaction. */
 st_sql st_schema_make(st_db *db, const st_identity *identity);
-/* Upgrades the tables of an older version, in one transaction. */
+/* Upgrades tables of an older version to this version, in one transaction. */
 st_sql st_schema_raise(st_db *db);
-/* Compares the texts of the tables with those of the version.
+/* Compares the SQL texts by which the tables were made with the texts of the version.
  * Returns ST_SQL_DAMAGED if they differ. */
 st_sql st_schema_check(st_db *db);
 /* Reads the identity of the store.

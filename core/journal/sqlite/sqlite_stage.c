@@ -10,15 +10,15 @@
 
 /* --- the thread that stages --- */
 
-/* The data being staged: a content, or the rest of an encoded edit. */
+/* The data being staged (written in advance): a content, or the rest of an encoded edit. */
 typedef struct source {
     he_stored_writer *content;
     const unsigned char *edit;
     size_t left;
 } source;
 
-/* Encodes the next part of the data being staged. Returns its number of bytes, 0 after the last
- * part. */
+/* Encodes the next part of the data being staged (written in advance). Returns the part's number of
+ * bytes, 0 after the last part. */
 static size_t next_part(source *from, unsigned char *to, unsigned *coding)
 {
     if (from->content != NULL) {
@@ -32,8 +32,8 @@ static size_t next_part(source *from, unsigned char *to, unsigned *coding)
     return size;
 }
 
-/* Fills a slice with the next parts. Returns false if the parts ran out before the slice was
- * full. */
+/* Fills a slice (up to ST_SLICE_PARTS parts) with the next parts. Returns false if the data ended
+ * before the slice was full. */
 static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
@@ -91,7 +91,7 @@ static st_status stage_parts(st_sqlite *self, source *from, uint64_t parts, st_s
         he_mem_free(slice);
         return ST_NO_MEMORY;
     }
-    /* An edit is not compressed, because it is loaded as one block of plain bytes. */
+    /* An edit is staged without compression, because it is loaded as one block of plain bytes. */
     st_packer *packer = from->content == NULL ? NULL : st_packer_new();
     stage->slice = slice;
     stage->parts = parts;
@@ -136,7 +136,8 @@ static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
 void st_sqlite_unstage(void *context, st_stage *stage)
 {
     if (stage != NULL && stage->key == 0) {
-        he_mem_free(stage); /* no part of the stage is on the disk */
+        /* no part of the stage is on the disk, so nothing is to be deleted there */
+        he_mem_free(stage);
     } else if (stage != NULL) {
         queue(context, stage, ST_ITEM_UNSTAGE);
     }
@@ -187,7 +188,8 @@ st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most)
         (void)he_put_u32(bytes, st_part_sum(key, part, bytes + 4, size - 4));
         outcome = st_db_do(&self->db, ST_SQL_PART_MAKE, "iib", key, part, bytes, size);
     }
-    /* The parts count as written only after the transaction was committed (st_stage_written). */
+    /* The parts that this transaction writes count as written only after its commit
+     * (st_stage_written). */
     stage->writing = outcome == ST_SQL_DONE ? count : 0;
     stage->new_key = key;
     return outcome;
@@ -215,11 +217,13 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
     return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_PARTS, stage->key, 0) : outcome;
 }
 
-/* The record after which a stage is the content of the mesh. If that record was lost, another one
- * may have its number. */
+/* The record after which the mesh had the content of a stage. If that record was lost, another
+ * record may have its number now. */
 typedef struct staged_record {
-    bool same;            /* whether the record is the right one */
-    uint64_t chain, next; /* its chain (record_bytes.h), and that of the record after it */
+    bool same; /* whether the record on the disk is the one from which the stage was made */
+    /* `chain` is the chain of the record (a hash, record_bytes.h), `next` that of the record after
+     * it */
+    uint64_t chain, next;
 } staged_record;
 
 static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head,
@@ -243,8 +247,8 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     return ST_SQL_DONE;
 }
 
-/* Returns true if a row of the table of snapshots is a content. A large edit also has a row in that
- * table. */
+/* Returns true if a row of the table of snapshots is a content and not a large edit, which also has
+ * a row in that table. */
 static bool is_content(const st_snapshot_row *row)
 {
     st_frame frame;
@@ -283,7 +287,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     } else if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    /* A mesh is loaded from its base, so a stage of an older record is useless. */
+    /* A mesh is loaded from its base, so a stage with the content after an older record than the
+     * base is useless. */
     if (head != NULL && stage->number > head->row.base) {
         outcome = read_record(self, stage, head, &record);
     }
@@ -306,8 +311,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
-        /* The damage that was found may be in records that are purged now, so the mark is removed;
-         * the next load checks the others again. */
+        /* The damage that the card states may be in records that are purged (deleted) now, so it is
+         * taken off the card; the next load checks the remaining records again. */
         head->row.card.damage[0] = '\0';
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);

@@ -6,8 +6,8 @@
  *     sqlite_queue.c    reserve, append: rooms on their way to the commit thread
  *     sqlite_commit.c   the commit thread: groups, checkpoints, faults of the disk
  *     sqlite_rows.c     what a record changes in the tables
- *     sqlite_notes.c    jobs, and keys of requests that changed nothing
- *     sqlite_stage.c    contents in parts, and which of them a mesh is loaded from
+ *     sqlite_notes.c    jobs, and Idempotency-Keys of requests that changed nothing
+ *     sqlite_stage.c    contents in parts, and which content a mesh is loaded from
  *     sqlite_purge.c    deletes what is no longer needed, in slices
  *     sqlite_read.c     reads meshes
  *     sqlite_salvage.c  reads meshes from a file whose structure is damaged
@@ -37,9 +37,9 @@ enum { ST_LOG_PAGE_BYTES = 4096 };
 
 typedef enum st_item_kind {
     ST_ITEM_ROOM,    /* a group of records */
-    ST_ITEM_REBASE,  /* a stage is to become a base */
-    ST_ITEM_UNSTAGE, /* a stage is to be deleted */
-    ST_ITEM_CONDEMN  /* a card is to be marked as damaged */
+    ST_ITEM_REBASE,  /* a stage is to become a base, from which its mesh is loaded */
+    ST_ITEM_UNSTAGE, /* a stage (content written in advance) is to be deleted */
+    ST_ITEM_CONDEMN  /* the card (short description) of a mesh is to be marked as damaged */
 } st_item_kind;
 
 typedef struct st_item {
@@ -58,35 +58,36 @@ typedef struct st_queued {
     bool staged_edit;
 } st_queued;
 
-/* What a room (memory of a group of records, or of a note) says about the job `job`. */
+/* What a room (memory of a group of records, or of a note) says about its job, the member `job`. */
 typedef enum st_job_word {
     ST_JOB_UNNAMED,
-    ST_JOB_WORK,  /* the records of the room are the work of the job */
+    ST_JOB_WORK,  /* the room has the records of the changes that the job made */
     ST_JOB_IS,    /* the room is a note with the state of the job */
     ST_JOB_LEAVES /* the room is a note that deletes the job */
 } st_job_word;
 
-/* A room: one block of memory with its entries, their heads of frames, and the bodies. A room
- * without records is a note. */
+/* A room: one block of memory with an entry for each record, the encoded records (frames), and
+ * their bodies. A room without records is a note. */
 typedef struct st_sqlite_room {
     st_room room; /* the members that callers of the journal see */
     st_item item;
-    uint64_t generation; /* value of st_sqlite.generation when the room was reserved */
-    size_t charge;       /* bytes that the room takes of the queue */
+    uint64_t generation; /* value of `generation` of the journal when the room was reserved */
+    size_t charge;       /* bytes by which the room counts against the limit of the queue */
     bool freeing;
-    size_t most, count; /* most records that fit, and records so far */
-    uint64_t last;      /* position of the room's last record, or of the note */
+    /* `most` is how many records fit into the room, `count` how many it has so far */
+    size_t most, count;
+    uint64_t last; /* position of the room's last record, or of the note */
     /* Number of meshes that the records create, less the number that they remove. */
     uint64_t meshes;
-    st_card card; /* card of the mesh after the records */
+    st_card card; /* card (short description) of the mesh after the records of the room */
     bool has_key;
-    st_kept_row key; /* its texts are in `key_text` and `key_holder` */
+    st_kept_row key; /* the Idempotency-Key, whose texts are in `key_text` and `key_holder` */
     char key_text[ST_KEY_TEXT + 1], key_holder[ST_KEY_HOLDER + 1];
     st_job_word job_word;
-    /* Its texts and body are in the room's bytes; with ST_JOB_WORK it has only the facts that the
-     * records state. */
+    /* The job, whose texts and body are in the room's bytes. If job_word is ST_JOB_WORK, the job
+     * has only the facts that the records state. */
     st_job job;
-    /* Space for the frames without bodies: ST_FRAME_HEAD bytes for each record. */
+    /* Space for the encoded records without bodies: ST_FRAME_HEAD bytes for each record. */
     unsigned char *heads;
     st_queued entries[];
 } st_sqlite_room;
@@ -114,19 +115,21 @@ typedef struct st_slice {
 
 struct st_stage {
     st_item item;
-    int64_t key;    /* key of the stage's row in the table of snapshots, 0 before the row exists */
-    uint64_t parts; /* number of all parts, and of those written */
+    int64_t key; /* key of the stage's row in the table of snapshots; 0 before that row exists */
+    /* number of all parts of the stage; `written` is how many of them are written */
+    uint64_t parts;
     uint64_t written;
-    st_slice *slice; /* the slice being filled or written; NULL after the last one */
-    /* Number of parts of the slice that the present transaction writes. In this transaction the row
-     * of the stage has the key new_key. */
+    /* the slice (group of parts) that is being filled or written; NULL after the last slice */
+    st_slice *slice;
+    /* How many parts of the slice the present transaction writes. In this transaction the row of
+     * the stage has the key `new_key`. */
     size_t writing;
     int64_t new_key;
     bool waits; /* the slice is full and waits for the commit thread */
     st_status status;
     st_stage *next; /* the next stage whose slice waits */
-    /* The members below are set only if the item is a rebase, which makes a staged content the base
-     * of a mesh. */
+    /* The members from `incarnation` on are set only if the item is a rebase, which makes a staged
+     * content the base of a mesh. */
     uint64_t incarnation, number, revision, needed;
     double time;
     unsigned char facts[ST_FRAME_HEAD];
@@ -137,11 +140,12 @@ struct st_stage {
 
 /* The cached row of a mesh, so that the row need not be read for each record. */
 typedef struct st_head {
-    st_mesh_row row; /* key 0: the slot is empty */
-    bool dirty;      /* the row on the disk is older than this one */
-    bool made;       /* the row on the disk does not exist yet */
+    st_mesh_row row; /* the row; if its key is 0, this slot of the cache is empty */
+    bool dirty;      /* the row on the disk is older than this cached row */
+    bool made;       /* the mesh has no row on the disk yet */
     bool listed;
-    struct st_head *next; /* list of all heads that are dirty, and some others */
+    /* list of the heads to be written: all dirty ones, and some that are not */
+    struct st_head *next;
 } st_head;
 
 enum { ST_HEADS = 512 };
@@ -155,16 +159,17 @@ typedef enum st_write_mode { ST_WRITES, ST_WRITES_FULL, ST_WRITES_FAILED } st_wr
 
 /* --- connections that read --- */
 
-/* Number of connections that load meshes, and so of loads at the same time. */
+/* Number of connections that load meshes, and so the most meshes that are loaded at the same
+ * time. */
 enum { ST_LOADS = 2 };
 
 /* How many findings of damage are remembered; the oldest are dropped. While a finding is
- * remembered, the card shows the damage even before it is committed to the mesh's row. A journal
- * that only reads never commits it. */
+ * remembered, the mesh's card shows the damage even before the damage is committed to the mesh's
+ * row. A journal that only reads never commits findings. */
 enum { ST_FINDINGS = 64 };
 
-/* When a damaged file is searched by the keys of rows, the keys of this many meshes that were
- * listed last are remembered. */
+/* When a damaged file is searched for meshes by the keys of their rows, the keys of the last
+ * ST_SALVAGE_PAGE listed meshes are remembered. */
 enum { ST_SALVAGE_PAGE = 64 };
 
 typedef struct st_salvager {
@@ -185,7 +190,8 @@ typedef struct st_load_slot {
 struct st_sqlite {
     st_folder folder;
     st_identity identity;
-    /* Random number of this process; it marks the rows that the process stages. */
+    /* Random number of this process. Rows of contents that the process writes in advance contain
+     * this number. */
     uint64_t process;
     uint64_t queue_bytes; /* most bytes of the queue */
     uint64_t most_keys;   /* most rows of the table `kept`, which has the Idempotency-Keys */
@@ -193,30 +199,32 @@ struct st_sqlite {
     bool has_thread;
     bool only_reads; /* the journal only reads */
 
-    /* --- shared, guarded by `lock` --- */
+    /* --- shared by threads, guarded by `lock` --- */
     pthread_mutex_t lock;
-    pthread_cond_t work;  /* signalled when the commit thread has work */
-    pthread_cond_t moved; /* signalled for threads that wait for the commit thread */
+    pthread_cond_t work; /* signalled when the commit thread has work */
+    /* signalled when the commit thread has ended something that threads wait for */
+    pthread_cond_t moved;
     bool closing;
     st_write_mode mode;
     uint64_t fulls; /* how often the disk was full */
     /* Number of damaged rows of the table `kept`, counted each time one is found. */
     uint64_t damaged_keys;
-    char refusal[ST_HEALTH_TEXT]; /* the system's message when the disk failed */
-    bool losing;                  /* something was lost, and not all losses are reported yet */
+    char refusal[ST_HEALTH_TEXT]; /* the system's message about the failure, if the disk failed */
+    /* records or notes were lost, and not all losses are reported to the listener yet */
+    bool losing;
     uint64_t generation;
-    /* Numbers of rooms that are reserved, and of those among them that are of an older
-     * generation. */
+    /* `rooms` is how many rooms are reserved, `old_rooms` how many of these were reserved in an
+     * older generation, before a loss. */
     size_t rooms, old_rooms;
-    uint64_t charged;      /* bytes of rooms that are reserved or queued */
+    uint64_t charged;      /* bytes of all rooms that are reserved or queued */
     st_item *first, **end; /* the queue */
     st_stage *stages;      /* list of stages that wait to be written, the oldest first */
-    uint64_t newest;       /* the newest position that was assigned */
-    /* Position up to which every record is durable or was reported as lost. */
+    uint64_t newest;       /* the highest position that was assigned to a record or note */
+    /* Position up to which every record is durable or was reported to the listener as lost. */
     uint64_t told;
-    uint64_t meshes;  /* number of meshes, changes in the queue included */
+    uint64_t meshes;  /* number of meshes, creations and removals in the queue included */
     uint64_t lost;    /* number of records and notes that were lost */
-    unsigned waiting; /* number of threads that wait for `moved` */
+    unsigned waiting; /* number of threads that wait for the condition `moved` */
     bool idle;        /* the commit thread waits for work */
     bool log_is_long; /* loads wait until the write-ahead log was copied into the database */
     st_load_slot loads[ST_LOADS];
@@ -232,25 +240,29 @@ struct st_sqlite {
     st_journal_listener listener;
 
     pthread_mutex_t cards_lock;
-    st_db cards; /* the connection that reads cards and lists */
+    st_db cards; /* the connection that reads cards of single meshes and lists of cards */
     st_salvager salvage;
 
     /* --- used by the commit thread only --- */
     st_db db;
     st_heads heads;
-    st_progress progress;             /* commits and positions as of the last commit */
-    int64_t last_mesh, last_snapshot; /* the keys that were given last to rows of these tables */
+    /* number of commits, newest position and number of meshes at the last commit */
+    st_progress progress;
+    /* `last_mesh` and `last_snapshot` are the highest keys of rows in the tables of meshes and
+     * snapshots */
+    int64_t last_mesh, last_snapshot;
     /* The number of pages of the write-ahead log after the last commit. Other threads may read
      * it. */
     _Atomic uint64_t log_pages;
-    /* Pages of the write-ahead log after the last checkpoint that could not copy all of them. */
+    /* Number of pages of the write-ahead log at the last checkpoint, which may not have copied all
+     * of them; 0 once the log was overwritten from the start. */
     uint64_t log_tried;
-    uint64_t keys; /* most rows that the table `kept` can have now */
-    bool purged;   /* nothing is left to be purged */
-    /* purging: the row of `purge` that is worked on; stuck: the one that met damage; kind 0:
-     * none. */
+    uint64_t keys; /* highest possible number of rows of the table `kept` (Idempotency-Keys) now */
+    bool purged;   /* nothing is left to be purged (deleted) */
+    /* `purging` is the row of the table `purge` that is worked on, `stuck` the row whose deletions
+     * met damage; a kind of 0 means that there is no such row. */
     st_purge_row purging, stuck;
-    bool purge_damaged; /* the last slice of the purge met damage, too */
+    bool purge_damaged; /* the last slice of deletions (purge) met damage */
     bool purge_ended;   /* the table `purge` itself is damaged */
 };
 
@@ -265,20 +277,22 @@ void st_sqlite_listen(void *self, const st_journal_listener *listener);
 /* Copies the Idempotency-Key of a request, with the state of its answer, into the room. */
 void st_room_key(st_sqlite_room *room, const st_kept_key *key);
 /* Queues the room for the commit thread, and assigns it the next `positions` positions. Returns the
- * last one. */
+ * last of these positions. */
 uint64_t st_room_push(st_sqlite *self, st_sqlite_room *room, uint64_t positions);
 /* Appends an item to the queue of the commit thread. The caller holds self->lock. */
 void st_queue_put(st_sqlite *self, st_item *item);
 st_sqlite_room *st_room_of(st_item *item);
-/* Frees a room that was committed or lost, and its share of the queue's bytes. The caller holds
- * self->lock. */
+/* Frees a room that was committed or lost, and subtracts its bytes from those of the queue. The
+ * caller holds self->lock. */
 void st_room_done(st_sqlite *self, st_sqlite_room *room);
-/* Waits until everything appended before is durable or was reported as lost. */
+/* Waits until every record and note that was appended before this call is durable or was reported
+ * as lost. */
 void st_queue_settle(st_sqlite *self);
 
 /* --- sqlite_commit.c --- */
 void *st_commit_thread(void *self);
-/* A hook by which SQLite reports the number of pages of the write-ahead log after a commit. */
+/* A function that SQLite calls after each commit with the number of pages of the write-ahead
+ * log. */
 int st_commit_log_grew(void *self, sqlite3 *db, const char *name, int pages);
 
 /* --- sqlite_rows.c: functions to be called within a transaction --- */
@@ -319,9 +333,10 @@ enum st_writer_statement {
 };
 /* Finds the head (the cached row) of a mesh, or reads the row; *out is NULL if there is no such
  * mesh.
- * Returns ST_SQL_DAMAGED if its row is damaged. */
+ * Returns ST_SQL_DAMAGED if the row of the mesh is damaged. */
 st_sql st_head_find(st_sqlite *self, uint64_t incarnation, st_head **out);
-/* Marks the head as changed, so that its row will be written. */
+/* Marks the head (the cached row of a mesh) as changed, so that it will be written to the
+ * database. */
 void st_head_touch(st_sqlite *self, st_head *head);
 void st_heads_forget(st_sqlite *self);
 /* Writes all heads (cached rows of meshes) that have changed. */
@@ -346,7 +361,7 @@ void st_sqlite_rebase(void *self, st_stage *stage, const st_record *facts, uint6
 st_sql st_stage_adopt(st_sqlite *self, const st_snapshot_row *row);
 st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage);
 st_sql st_stage_drop(st_sqlite *self, const st_stage *stage);
-/* Writes up to `most` parts of the stage's present slice, at least one. */
+/* Writes up to `most` parts of the stage's present slice (group of parts), at least one part. */
 st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most);
 /* Counts the parts that the last transaction wrote; must be called after it was committed. */
 void st_stage_written(st_stage *stage);
@@ -354,11 +369,12 @@ void st_stage_written(st_stage *stage);
 /* --- sqlite_purge.c: functions to be called within a transaction --- */
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before);
 /* Purges the records and snapshots of a mesh that are before record `base`, from which the mesh is
- * loaded from now on. `is_inline` says that the record itself contains the whole content. */
+ * loaded from now on. `is_inline` is true if record `base` itself contains the whole content. */
 st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inline);
 /* Purges everything that belongs to a mesh that was removed. */
 st_sql st_purge_mesh(st_sqlite *self, int64_t mesh);
-/* Deletes about `bytes` bytes of what the table `purge` lists. Sets *done when nothing is left. */
+/* Deletes about `bytes` bytes of what the table `purge` lists. Sets *done when nothing is left to
+ * be deleted. */
 st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done);
 /* Must be called after a transaction that met damage. Returns true if the damage was in the rows
  * being purged; the next slice then skips them. */
@@ -374,37 +390,38 @@ void st_sqlite_condemn(st_reader *reader, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
 st_status st_sqlite_holdings(void *self, st_take_holding *take, void *context);
 /* Reads the row of a mesh as a card.
- * Returns ST_DAMAGED if the card says that the mesh is damaged, or if its checksum is wrong. */
+ * Returns ST_DAMAGED if the card says that the mesh is damaged, or if the checksum of the row is
+ * wrong. */
 st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row);
 /* --- sqlite_salvage.c: functions whose caller must hold cards_lock --- */
-/* Lists the next meshes of a damaged file that can be read, up to `limit` or ST_SALVAGE_PAGE; none
- * after the last. */
+/* Lists the next meshes of a damaged file whose rows can be read, at most `limit` and at most
+ * ST_SALVAGE_PAGE; lists none after the last mesh. */
 st_sql st_salvage_list(st_sqlite *self, bool from_start, st_card *out, size_t limit, size_t *count);
 /* Finds the row of one of the meshes that st_salvage_list listed last.
- * Returns ST_SQL_DONE if it is none of them. */
+ * Returns ST_SQL_DONE if the mesh is none of these. */
 st_sql st_salvage_find(st_sqlite *self, st_db *reader, const char *id, st_mesh_row *out);
 /* --- sqlite_keys.c --- */
 /* Reads the row of a stored Idempotency-Key into *row; the texts are copied to *texts. Returns
  * false if the checksum is wrong: the key then counts as damaged. */
 bool st_kept_row_read(sqlite3_stmt *statement, st_kept_texts *texts, st_kept_row *row);
-/* Checks all stored keys and counts in *out those that are damaged. */
+/* Checks all stored Idempotency-Keys and counts the damaged keys in *out. */
 st_sql st_kept_count_damaged(st_db *db, uint64_t *out);
 st_status st_sqlite_keys(void *self, const char *id, st_take_key *take, void *context);
-/* These open and close the connections that read. */
+/* The next functions open and close the connections to the database that read. */
 st_sql st_readers_open(st_sqlite *self, const char *path);
 bool st_readers_close(st_sqlite *self);
 
 /* --- sqlite_open.c --- */
 void st_sqlite_begun(void *self);
 void st_sqlite_close(void *self);
-/* Makes the state of an open store. Returns NULL if memory is out. Freeing it closes everything
- * that was opened for it. */
+/* Makes the state of an open journal. Returns NULL if memory is out. Freeing the state closes
+ * everything that was opened for it. */
 st_sqlite *st_sqlite_new(const st_sqlite_options *options);
 void st_sqlite_free(st_sqlite *self);
-/* Returns a journal with `self` and the functions of this room. */
+/* Returns a journal that consists of the state `self` and the functions of this folder. */
 st_journal st_sqlite_filled(st_sqlite *self);
 /* Checks that the database is a store of a version that `release` knows. If not, `message` is a
- * sentence about `path`. *empty says that it has no tables yet. */
+ * sentence about `path`. *empty becomes true if the database has no tables yet. */
 bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
                              char message[ST_SQLITE_MESSAGE]);
 /* Writes a sentence about a statement that failed on the database at `path` to `message`. Returns
@@ -413,13 +430,14 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
                        char message[ST_SQLITE_MESSAGE]);
 
 /* --- sqlite_backup.c --- */
-/* Checks that the file has no -wal or -journal beside it, which SQLite would replay into it. If it
- * has one, the function returns false, and `message` says so and ends with `advice`. */
+/* Checks that there is no -wal or -journal file beside the database file, which SQLite would replay
+ * into the database. If there is one, the function returns false, and `message` says so and ends
+ * with `advice`. */
 bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_SQLITE_MESSAGE]);
 
 /* --- sqlite_index.c --- */
 /* Compares the table of meshes with its indexes; reads the table and each index once.
- * Returns ST_SQL_DAMAGED if the table or an index is damaged, or they differ. */
+ * Returns ST_SQL_DAMAGED if the table or an index is damaged, or if they differ. */
 st_sql st_index_check(st_sqlite *self);
 
 /* --- sqlite_restore.c --- */

@@ -22,7 +22,7 @@ void st_holders_clear(st_holders *holders)
     pthread_mutex_destroy(&holders->lock);
 }
 
-/* --- functions whose caller holds the lock --- */
+/* --- functions whose caller holds the lock of the holders --- */
 
 static st_holder **place_of(st_holders *holders, const char *name)
 {
@@ -34,7 +34,7 @@ static st_holder **place_of(st_holders *holders, const char *name)
     return at;
 }
 
-/* Finds the holder of this name, or adds it. Returns NULL if memory is out. */
+/* Finds the holder of this name, or adds a holder of this name. Returns NULL if memory is out. */
 static st_holder *find_or_add(st_holders *holders, const char *name)
 {
     st_holder **at = place_of(holders, name);
@@ -69,7 +69,7 @@ static bool is_beyond(uint64_t before, uint64_t after, uint64_t most)
     return most != 0 && after > before && after > most;
 }
 
-/* --- functions that take the lock --- */
+/* --- functions that take the lock of the holders --- */
 
 st_status st_holders_find(st_holders *holders, const char *name, st_holder **out)
 {

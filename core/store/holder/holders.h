@@ -2,16 +2,18 @@
  *
  * The holder of a mesh is the name of the token that created it (st_cause). A mesh keeps its
  * holder, whichever client changes it, and counts for that holder whether it is in memory or not.
- * It counts with the bytes that its content took in memory when it was last changed, which its card
- * (st_card) states. A mesh created without a token counts for no holder.
+ * The bytes that count are those that the mesh's content took in memory after its last change; its
+ * card (short description, st_card) states them. A mesh created without a token counts for no
+ * holder.
  *
- * Every change first reserves what the mesh will count for. If that is more than before and more
- * than the holder may have, the change is refused and nothing is changed. Two changes at the same
- * time cannot together exceed the limit. If a limit is lowered, meshes beyond it stay.
+ * Every change first reserves the bytes that the mesh will count for after the change. If they are
+ * more than before and exceed what the holder may have, the change is refused and nothing is
+ * changed. Two changes at the same time cannot together exceed the limit. If a limit is lowered,
+ * meshes beyond it stay.
  *
  * At the start, and after changes were lost, the counts are read from the journal. The lock of the
- * holders is taken after those of a mesh and of the table of meshes. Under it only the cards in the
- * journal are read. */
+ * holders is taken after those of a mesh and of the table of meshes. A thread that holds it reads
+ * nothing from the disk but the cards in the journal. */
 #ifndef HE_STORE_HOLDERS_H
 #define HE_STORE_HOLDERS_H
 
@@ -21,7 +23,8 @@
 
 enum { ST_HOLDER_HEADS = 256 };
 
-/* A holder of meshes. It is made when its name first occurs, and not freed before the store. */
+/* A holder (owner) of meshes. The struct is made when the holder's name first occurs, and freed
+ * with the store. */
 typedef struct st_holder {
     struct st_holder *next;
     uint64_t meshes, bytes;
@@ -43,13 +46,13 @@ void st_holders_clear(st_holders *holders);
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_holders_find(st_holders *holders, const char *name, st_holder **out);
 
-/* How much one mesh counts for a holder; `holder` is NULL if it counts for none. */
+/* How much one mesh counts for a holder; `holder` is NULL if the mesh counts for no holder. */
 typedef struct st_holding {
     st_holder *holder;
     uint64_t bytes;
 } st_holding;
 
-/* Replaces what a mesh counted before, *gone, by what it counts now, *come.
+/* Replaces what a mesh counted before, *gone, by what the mesh counts now, *come.
  * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */
 st_status st_holders_move(st_holders *holders, const st_holding *gone, const st_holding *come);
 /* Replaces what a mesh counts like st_holders_move, but ignores the limits, because the change of
@@ -66,11 +69,12 @@ typedef struct st_usage {
     uint64_t most_meshes, most_bytes; /* 0: no limit */
 } st_usage;
 
-/* These do the work of st_limit_holders and st_holder_usage, which store.h documents. */
+/* The next two functions do the work of st_limit_holders and st_holder_usage, which store.h
+ * documents. */
 st_status st_holders_limit(st_holders *holders, const st_holder_limit *limits, size_t count);
 void st_holders_usage(st_holders *holders, const char *name, st_usage *out);
 
-/* Counts everything again from the journal.
+/* Counts the meshes and bytes of all holders again from the journal.
  * Returns ST_NO_MEMORY or ST_FAILED if the journal cannot be read. */
 st_status st_holders_count(st_holders *holders, const st_journal *journal);
 

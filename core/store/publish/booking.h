@@ -1,9 +1,10 @@
-/* booking.h - reserves space in the journal for a group of records and the body of the first one.
+/* booking.h - reserves space in the journal for a group of records and for the body of its first
+ * record.
  *
- * A write books space while it can still be refused; later it publishes its records into this
- * space, or gives the space back. The body is encoded here, so the commit of a long edit encodes it
- * before it takes the mesh's lock. A journal that keeps nothing gives no space, and then nothing is
- * encoded. */
+ * A write (a change of a mesh) books space while it can still be refused; later it publishes its
+ * records into this space, or gives the space back. The body is encoded when space is booked, so a
+ * long edit is encoded before its commit takes the mesh's lock. A journal that stores nothing gives
+ * no space, and then nothing is encoded. */
 #ifndef HE_STORE_BOOKING_H
 #define HE_STORE_BOOKING_H
 
@@ -12,7 +13,7 @@
 
 typedef struct st_booking {
     st_room *room;
-    size_t body; /* bytes of `room` that the first record's body takes */
+    size_t body; /* how many bytes of `room` the first record's body takes */
     /* What was written to the disk in place of the first record's body: a content or an encoded
      * edit. */
     st_stage *stage;
@@ -22,23 +23,25 @@ typedef struct st_booking {
 /* The next three functions book space in the journal. On failure *out is as it was.
  * Returns ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY or ST_TOO_LARGE if the journal refuses. */
 
-/* Books space for records without a body. */
+/* Books space in the journal for records without a body. */
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out);
-/* Books space for an edit; `after` is the mesh after it. If the caller may wait for the disk, a
- * large body is staged, which means that it is written to the disk before the change is published.
- * The body is the encoded edit, or the whole content if the edit replaced it. */
+/* Books space in the journal for an edit; `after` is the mesh after the edit. If the caller may
+ * wait for the disk, a large body is staged, which means that it is written to the disk before the
+ * change is published. The body is the encoded edit, or the whole content if the edit replaced
+ * it. */
 st_status st_book_edit(const st_journal *journal, const he_delta *delta, const he_mesh *after,
                        bool may_wait, st_booking *out);
-/* Books space for `records` records, of which the first has the whole content. If the content was
- * written to the disk in advance, `stage` is not NULL and is taken on success. */
+/* Books space in the journal for `records` records, of which the first has the whole content. If
+ * the content was written to the disk in advance, `stage` is not NULL and is taken on success. */
 st_status st_book_content(const st_journal *journal, const he_mesh *content, st_stage *stage,
                           size_t records, st_booking *out);
-/* Writes a content that is too large for the body of a record to the disk, and may wait for that.
- * *out is NULL on failure, if the content is small, or if the journal keeps nothing. */
+/* Writes a content that is too large for the body of a record to the disk; may wait for the disk.
+ * *out is NULL on failure, if the content is small, or if the journal stores nothing. */
 st_status st_book_stage(const st_journal *journal, const he_mesh *content, st_stage **out);
-/* Fills in the body and the stage of the first record of the group from the booking. */
+/* Fills in the body and the stage (data written in advance) of the first record of the group from
+ * the booking. */
 void st_booking_fill(const st_booking *booking, st_record *first);
-/* Gives the space back; none of the records may have been published. */
+/* Gives the booked space back; none of the records may have been published. */
 void st_booking_leave(const st_journal *journal, st_booking *booking);
 
 #endif

@@ -7,7 +7,9 @@
 #include <string.h>
 
 struct st_message {
-    uint32_t uses; /* references from the ring and from listeners, guarded by the queue's lock */
+    /* number of references to the message from the queue's ring and from listeners, guarded by the
+     * queue's lock */
+    uint32_t uses;
     st_place place;
     uint64_t made; /* when the message was added, by st_clock_micros */
     size_t length;
@@ -131,8 +133,8 @@ static uint64_t newest_number(const st_queue *queue)
     return queue->floor_number + queue->count;
 }
 
-/* Returns the index of the first message that may not be read. Messages are in the order of
- * stamps. */
+/* Returns the index of the first message that may not be read yet. Messages are in the order of
+ * their stamps. */
 static size_t first_forbidden(const st_queue *queue)
 {
     size_t low = 0, high = queue->count;
@@ -317,7 +319,7 @@ void st_queue_leave(st_listener *listener)
     *listener = (st_listener){0};
 }
 
-/* Makes the next message that the listener may read its current one. */
+/* Makes the next message that the listener may read the one that it is reading. */
 static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
     if (listener->number < queue->floor_number) {

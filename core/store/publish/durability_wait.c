@@ -9,14 +9,18 @@
 struct st_waits {
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
-    st_wait *top;    /* top of the heap */
-    size_t resuming; /* threads that have taken waits off the heap and call their resume */
-    /* Signalled when `durable` was raised, the waits were stopped, or `resuming` fell. */
+    st_wait *top; /* top of the heap */
+    /* number of threads that have taken waits off the heap and are calling the waits' functions
+     * `resume` */
+    size_t resuming;
+    /* Signalled when the durable position was raised, the waits were stopped, or the number
+     * `resuming` fell. */
     pthread_cond_t caught;
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
-    /* All losses that there was no memory to list, merged into one; from > to: none. */
+    /* The losses for which memory was out when they were to be listed, merged into one loss; there
+     * are none if `from` is above `to`. */
     st_loss rest;
     bool stopped;
 };
@@ -67,15 +71,15 @@ static st_wait *without_top(st_wait *top)
     return all;
 }
 
-/* --- losses; the caller holds the lock --- */
+/* --- losses of records; the caller holds the lock --- */
 
 static bool concerns(const st_loss *loss, const st_shown *shown)
 {
     bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
                 loss->incarnation == shown->incarnation;
     /* If all records that the answer shows were durable when it was begun (position <= since), none
-     * of them can be lost. `since` may be above `position`: the journal may report a record as
-     * durable before its writer calls st_waits_appended. */
+     * of these records can be lost. `since` may be above `position`: the journal may report a
+     * record as durable before its writer calls st_waits_appended. */
     return same && shown->since < shown->position && loss->from <= shown->position &&
            loss->to > shown->since;
 }
@@ -105,8 +109,8 @@ static bool reserve_loss(st_waits *waits)
     return true;
 }
 
-/* Extends the newest loss of the list by this one if the two are adjacent: after the disk has
- * failed, the journal reports many small losses. */
+/* Extends the newest loss of the list by this loss if the positions of the two are adjacent: after
+ * the disk has failed, the journal reports many small losses. */
 static bool extend_last(st_waits *waits, const st_loss *loss)
 {
     st_loss *last = waits->loss_count == 0 ? NULL : &waits->losses[waits->loss_count - 1];
@@ -118,13 +122,13 @@ static bool extend_last(st_waits *waits, const st_loss *loss)
     return true;
 }
 
-/* Stores a loss. If memory is out, every record from this loss on counts as lost, which is safe
- * because it only refuses more answers. */
+/* Stores a loss of records. If memory is out, every record from this loss on counts as lost, which
+ * is safe because it only refuses more answers. */
 void st_waits_lose(st_waits *waits, const st_loss *loss)
 {
     pthread_mutex_lock(&waits->lock);
     if (extend_last(waits, loss)) {
-        /* The loss was merged into the last one. */
+        /* The loss was merged into the last loss of the list. */
     } else if (reserve_loss(waits)) {
         waits->losses[waits->loss_count++] = *loss;
     } else if (loss->from < waits->rest.from) {
@@ -138,7 +142,7 @@ void st_waits_lose(st_waits *waits, const st_loss *loss)
 
 /* --- waiting --- */
 
-/* Returns true if a wait is over, and sets how it ended. The caller holds the lock. */
+/* Returns true if a wait is over, and sets how the wait ended. The caller holds the lock. */
 static bool is_over(const st_waits *waits, st_wait *wait)
 {
     const st_shown *shown = &wait->shown;
@@ -150,8 +154,8 @@ static bool is_over(const st_waits *waits, st_wait *wait)
     return durable || waits->stopped;
 }
 
-/* Resumes the waits that are over, in the order of positions. They are all taken off the heap
- * first, because a resume function may free its wait. */
+/* Resumes the waits that are over, in the order of positions. All these waits are taken off the
+ * heap first, because the function `resume` of a wait may free it. */
 static void resume_those_over(st_waits *waits)
 {
     st_wait *first = NULL, **end = &first;
@@ -234,14 +238,15 @@ bool st_waits_is_lost(st_waits *waits, const st_shown *shown)
 }
 
 /* Decides whether records are durable. The journal reports a loss before it raises the durable
- * position above it, so losses are checked after the position. */
+ * position above the lost records, so the position is checked first and the losses afterwards. */
 bool st_waits_is_durable(st_waits *waits, const st_shown *shown)
 {
     return shown->position <= atomic_load(&waits->durable) && !st_waits_is_lost(waits, shown);
 }
 
-/* Adds a wait. It checks again under the lock whether the wait is over, because the journal may
- * have moved since the caller's check. After this call the journal finds the wait. */
+/* Adds a wait. The function checks again under the lock whether the wait is over, because records
+ * may have become durable since the caller's check. Once the wait is added, st_waits_moved ends
+ * it. */
 bool st_waits_add(st_waits *waits, st_wait *wait)
 {
     pthread_mutex_lock(&waits->lock);

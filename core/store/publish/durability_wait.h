@@ -1,16 +1,16 @@
-/* durability_wait.h - answers that wait until what they show is durable.
+/* durability_wait.h - answers to clients that wait until the changes which they show are durable.
  *
  * D1: no answer shows a change that a crash could lose. What an answer shows is given by the
- * position of the newest record it shows, in the order of all records (journal.h). If that record
- * is not durable yet, the thread that made the answer adds a wait. The wait ends once, by a call
- * from another thread, in one of these ways:
+ * position of the newest record that it shows, in the order of all records (journal.h). If that
+ * record is not durable yet, the thread that made the answer adds a wait. The wait ends once, by a
+ * call from another thread, in one of these ways:
  *     durable   every record up to the position is durable: the answer may be sent
  *     lost      a record that the answer shows will never be durable; `reason` says why
- *     stopped   the server stops before that is known
+ *     stopped   the server stops before it is known whether the records become durable
  * A lost position stays lost: a wait that is added after the loss ends as lost at once.
  *
- * Waits are in a heap, the oldest position on top: when the journal advances, only the waits that
- * end are taken from the top, and no others are visited. */
+ * Waits are in a heap, the oldest position on top: when more records become durable, only the waits
+ * that end are taken from the top, and no other waits are visited. */
 #ifndef HE_STORE_DURABILITY_WAIT_H
 #define HE_STORE_DURABILITY_WAIT_H
 
@@ -20,45 +20,46 @@
 
 typedef struct st_waits st_waits;
 
-/* The records that an answer shows, and whose loss makes it wrong. */
+/* The records that an answer to a client shows; if one of them is lost, the answer is wrong. */
 typedef struct st_shown {
-    uint64_t position; /* position of the newest record that it shows; 0: none */
+    uint64_t position; /* position of the newest record that the answer shows; 0: it shows none */
     /* The records up to this position were durable when the answer was begun, so a later loss of
      * records does not concern them. */
     uint64_t since;
-    uint64_t incarnation; /* incarnation of the mesh whose records it shows; 0: any mesh */
+    /* incarnation of the mesh whose records the answer shows; 0: records of any mesh */
+    uint64_t incarnation;
 } st_shown;
 
 typedef enum st_wait_end { ST_WAIT_DURABLE, ST_WAIT_LOST, ST_WAIT_STOPPED } st_wait_end;
 
-/* An answer's wait until its records are durable. It is in the caller's storage, which must outlive
- * the wait. */
+/* The wait of an answer until the records that it shows are durable. The struct is in the caller's
+ * storage, which must outlive the wait. */
 typedef struct st_wait {
     st_shown shown;
     void (*resume)(struct st_wait *wait);
     st_wait_end end;
-    st_status status;               /* with ST_WAIT_LOST: ST_FULL or ST_FAILED */
-    const char *reason;             /* with ST_WAIT_LOST: why, a string literal */
+    st_status status;   /* with ST_WAIT_LOST: ST_FULL or ST_FAILED */
+    const char *reason; /* `reason`, with ST_WAIT_LOST: why the record was lost, a string literal */
     struct st_wait *child, *beside; /* links of the heap */
 } st_wait;
 
-/* Makes the set of waits. Returns NULL if memory is out. */
+/* Makes a set of waits. Returns NULL if memory is out. */
 st_waits *st_waits_new(void);
-/* Frees the set; no wait may be left. */
+/* Frees the set of waits, which may contain no wait any more. */
 void st_waits_free(st_waits *waits); /* takes NULL */
 
-/* The journal's listener (journal.h) calls these functions when records up to `position` are
- * durable or lost, and when records are lost. */
+/* The journal's listener (journal.h) calls st_waits_moved when all records up to `position` are
+ * durable or lost, and st_waits_lose when records are lost. */
 void st_waits_moved(st_waits *waits, uint64_t position);
 void st_waits_lose(st_waits *waits, const st_loss *loss);
 
-/* Notes the position of a record that was appended to the journal. The caller must do this before
- * other threads can see the record. */
+/* Notes the position of a record that was appended to the journal. The caller must call this
+ * function before other threads can see the record. */
 void st_waits_appended(st_waits *waits, uint64_t position);
 /* Returns the position of the newest record in the journal, for answers that show the records of
  * many meshes, or that something does not exist. */
 uint64_t st_waits_newest(const st_waits *waits);
-/* Returns the position up to which every record is durable or lost. */
+/* Returns the durable position: every record up to it is durable or lost. */
 uint64_t st_waits_durable(const st_waits *waits);
 /* Returns true if the records of `shown` are all durable, so that the answer may be sent at
  * once. */
@@ -66,16 +67,16 @@ bool st_waits_is_durable(st_waits *waits, const st_shown *shown);
 /* Returns true if one of the records of `shown` will never be durable. */
 bool st_waits_is_lost(st_waits *waits, const st_shown *shown);
 
-/* Blocks until every record up to `position` is durable or lost. Returns false if that has not
- * happened when st_clock_micros reaches `until` or the waits are stopped. */
+/* Blocks until every record up to `position` is durable or lost. Returns false if st_clock_micros
+ * reaches `until`, or the waits are stopped, before that. */
 bool st_waits_block(st_waits *waits, uint64_t position, uint64_t until);
 
-/* Adds a wait. Returns false if the wait is over already: wait->end is then filled in, and
- * wait->resume is not called. */
+/* Adds a wait to the set. Returns false if the wait is over already: wait->end is then filled in,
+ * and wait->resume is not called. */
 bool st_waits_add(st_waits *waits, st_wait *wait);
 /* Ends all waits as stopped, and every wait that is added later. When the call returns, no wait is
- * being resumed by another thread, so the caller may free what the waits belong to. It must not be
- * called by a resume function. */
+ * being resumed by another thread, so the caller may free what the waits belong to. No function
+ * `resume` of a wait may call this function. */
 void st_waits_stop(st_waits *waits);
 
 #endif

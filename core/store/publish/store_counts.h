@@ -1,8 +1,8 @@
 /* store_counts.h - the counters of a store, for monitoring (st_store_measure).
  *
  * Counters are updated without a lock. The memory of all meshes is a sum that is never computed by
- * visiting them: a mesh remembers what it added last, adds the difference when it changes
- * (st_mesh_weigh), and subtracts it when it is freed. */
+ * visiting the meshes: each mesh remembers which size it added last, adds the difference when its
+ * size changes (st_mesh_weigh), and subtracts its size when it is freed. */
 #ifndef HE_STORE_STORE_COUNTS_H
 #define HE_STORE_STORE_COUNTS_H
 
@@ -14,15 +14,15 @@
 /* The outcome of loading a mesh from the disk. */
 typedef enum st_loaded {
     ST_LOADED_WHOLE,
-    ST_LOADED_NOTHING, /* there is no mesh of the id */
+    ST_LOADED_NOTHING, /* there is no mesh with the id */
     ST_LOADED_DAMAGED, /* it cannot be read */
-    ST_LOADED_FAILED,  /* no memory, or the disk failed */
+    ST_LOADED_FAILED,  /* the mesh could not be loaded: memory was out, or the disk failed */
     ST_LOADED_COUNT
 } st_loaded;
 
-/* The uses of a mesh's memory, which are counted separately. */
+/* The purposes for which a mesh uses memory, which are counted separately. */
 typedef enum st_weight {
-    ST_WEIGHT_MESHES, /* 1 for each mesh in memory */
+    ST_WEIGHT_MESHES, /* counts the meshes: 1 for each mesh in memory */
     ST_WEIGHT_VERTICES,
     ST_WEIGHT_EDGES,
     ST_WEIGHT_FACES,
@@ -35,10 +35,11 @@ typedef struct st_store_counts {
     _Atomic uint64_t weights[ST_WEIGHT_COUNT];
     _Atomic uint64_t copies;    /* bytes of cached copies of meshes */
     _Atomic uint64_t revisions; /* revisions made */
-    _Atomic uint64_t evicted;   /* meshes that were removed from memory to free it */
+    /* number of meshes that were evicted: removed from memory to free it */
+    _Atomic uint64_t evicted;
     _Atomic uint64_t loads[ST_LOADED_COUNT];
-    st_histogram load_time; /* microseconds of the loads that found a mesh */
-    st_queue_counts queues; /* the counts of all meshes' queues of messages */
+    st_histogram load_time; /* how many microseconds the loads that found a mesh took */
+    st_queue_counts queues; /* the counts that the message queues of all meshes share */
 } st_store_counts;
 
 static inline void st_count(_Atomic uint64_t *counter, uint64_t amount)
