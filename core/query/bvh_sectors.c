@@ -24,9 +24,10 @@ typedef struct sectors {
     he_pair_search *search;
     uint32_t hub;
     uint32_t *spokes; /* triangles that have area */
-    he_bounds *arcs;  /* box around the arc of each spoke */
+    he_bounds *arcs;  /* box around the arc of directions of each spoke */
     uint32_t count;
-    const uint32_t *order; /* the spokes in the order of the tree over their arcs */
+    /* Indices of the spokes, in the order of the leaves of the tree over their arcs. */
+    const uint32_t *order;
 } sectors;
 
 static void include(he_bounds *b, he_vec3 p, double pad)

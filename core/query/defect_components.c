@@ -9,10 +9,12 @@
 #include <float.h>
 
 typedef struct shell {
-    uint32_t face; /* the face with the lowest id */
+    uint32_t face; /* the component's face with the lowest id */
     bool open;
-    double min[3], max[3]; /* in coordinates times the scale, like the fields below */
-    double volume, reach;  /* six times the volume; the most that the sum of its terms could be */
+    /* Corner of the box of the component; like all fields below, in coordinates times the scale. */
+    double min[3], max[3];
+    /* `volume` is six times the volume; `reach` is the sum of the absolute values of its terms */
+    double volume, reach;
 } shell;
 
 typedef struct survey {

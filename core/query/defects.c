@@ -133,7 +133,7 @@ static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 
 static void of_face(const measure *s, uint32_t f, he_defects *out)
 {
     uint32_t first = s->m->c.face_halfedge[f], budget = he_ring_budget(s->m);
-    int exponent; /* true lengths are those of `r` times 2^exponent */
+    int exponent; /* lengths in the mesh are lengths computed with `r` times 2^exponent */
     he_ring r = he_ring_measure(s->m, first, &budget, &exponent);
     he_vec3 normal;
     bool degenerate = !he_ring_normal(&r, &normal);

@@ -59,8 +59,10 @@ enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
     uint32_t id;
-    uint32_t other; /* the other element concerned; HE_NONE if there is none */
-    double value;   /* what was measured, see above; 0 if there is nothing */
+    /* The second element concerned, such as the vertex at the same position; HE_NONE: there is
+     * none. */
+    uint32_t other;
+    double value; /* what was measured, as the head of defects.h says; 0 if that names no value */
 } he_defect_found;
 
 typedef struct he_defect_list {

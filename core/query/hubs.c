@@ -18,7 +18,8 @@ typedef struct search {
     const uint32_t *triangles;
     size_t stride;
     uint32_t count;
-    uint32_t *corners; /* number of corners, by vertex; then the number of the vertex's hub */
+    /* For each vertex first the number of triangle corners at it, later the number of its hub. */
+    uint32_t *corners;
     he_budget *budget;
 } search;
 
@@ -60,10 +61,10 @@ static he_status count_corners(const search *s, he_error *err)
     return status;
 }
 
-/* Lists the vertices at which hubs may be. All vertices are counted by the hash of their position
- * in a small table, where positions may collide. A slot with few corners contains no hub; the
- * vertices in other slots, which are few unless a file was made to fill them, are compared
- * exactly. */
+/* Lists the vertices at which hubs may be. A small table, with one slot for each hash of a
+ * position, counts the corners of triangles at all vertices; several positions may share a slot. A
+ * slot with few corners contains no hub. Vertices in the other slots are listed to be compared
+ * exactly; they are few unless a file was made to fill these slots. */
 static he_status list_candidates(const search *s, candidate **out, size_t *count, he_error *err)
 {
     uint32_t vertices = s->m->c.vertices.issued;
