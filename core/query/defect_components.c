@@ -13,7 +13,7 @@ typedef struct shell {
     bool open;
     /* Corner of the box of the component; like all fields below, in coordinates times the scale. */
     double min[3], max[3];
-    /* `volume` is six times the volume; `reach` is the sum of the absolute values of its terms */
+    /* `volume` is six times the volume; `reach` bounds the sum of its absolute terms */
     double volume, reach;
 } shell;
 
@@ -25,7 +25,8 @@ typedef struct survey {
     shell *shells;
 } survey;
 
-/* A volume below this share of `reach`, the sum of the absolute terms, may be rounding noise. */
+/* A volume smaller than this part of `reach` (a bound of the sum of the absolute terms) may be
+ * rounding noise. */
 static const double NOISE = 1e-10;
 
 static he_vec3 corner(const survey *s, uint32_t h)
