@@ -29,7 +29,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
         if (he_bits_get(gone, f)) {
             continue;
         }
-        /* The write position never passes the read position: faces <= f and corners <= begin. */
+        /* Faces are moved up in place; what is written never passes what is read next: faces <= f
+         * and corners <= begin. */
         soup->starts[faces] = corners;
         out->face_from[faces++] = out->face_from[f];
         for (uint32_t c = begin; c < end; c++, corners++) {
@@ -96,7 +97,8 @@ static bool same(const way *a, const way *b)
 }
 
 typedef struct slot {
-    uint32_t hash, face; /* hash, and number of a face + 1; 0 in a free slot */
+    /* `hash` is that of a face, `face` its number + 1; both are 0 in a free slot */
+    uint32_t hash, face;
 } slot;
 
 /* Returns the earlier face that face f repeats. If there is none, adds f to the table and returns

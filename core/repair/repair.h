@@ -67,13 +67,13 @@ static inline unsigned he_repair_bit(he_repair repair)
 }
 
 typedef struct he_repair_plan {
-    unsigned which; /* a set of repairs; 0: none */
+    unsigned which; /* a set of bits (he_repair_bit) of the repairs to apply; 0: none */
     /* The largest distance between vertices that weld merges; finite, not negative. */
     double tolerance;
     size_t hole_edges; /* the most edges of a hole that fill closes */
 } he_repair_plan;
 
-/* The number of elements that are listed for each repair: the first ones. */
+/* The most elements, the first ones, that the account of a repair lists. */
 enum { HE_REPAIR_NAMED = 100 };
 
 typedef struct he_repair_pair {
@@ -89,8 +89,9 @@ typedef struct he_repair_account {
     /* A second number. drop_degenerate: faces that lost corners or were cut; orient: components
      * with reversed faces; split: vertices that had several fans. */
     uint64_t parts;
-    uint64_t moved; /* weld: values of vertices that differed and moved to corners */
-    uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
+    uint64_t moved; /* weld: number of vertex values that differed and were moved to corners */
+    /* Orient: number of components that cannot be oriented; fill: number of holes left open. */
+    uint64_t left;
     /* The elements concerned, as pairs. weld: the merged vertex, the one it was merged into;
      * drop_degenerate: the face, and how many faces were made of it; drop_duplicates: the dropped
      * face, the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent;
@@ -99,24 +100,25 @@ typedef struct he_repair_account {
     size_t named;
 } he_repair_account;
 
-/* A face of a component that cannot be oriented, and the edge at which that was found. */
+/* A face of a component that cannot be oriented, and the edge, from `vertex` to `other`, along
+ * which this face and a neighbour run in one direction. */
 typedef struct he_repair_clash {
     uint32_t face, vertex, other;
 } he_repair_clash;
 
 typedef struct he_repaired {
-    /* The number in the input of each vertex and face of the soup; NULL if all kept their
+    /* For each vertex (face) of the repaired soup, its number in the input; NULL if all kept their
      * numbers. */
     uint32_t *vertex_from, *face_from;
     size_t vertices, faces; /* lengths of the two arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
-    /* The first places at which orient found that a component cannot be oriented;
-     * accounts[HE_REPAIR_ORIENT].left is their number. */
+    /* The first HE_REPAIR_NAMED places at which orient found that a component cannot be oriented;
+     * accounts[HE_REPAIR_ORIENT].left is the number of all. */
     he_repair_clash clashes[HE_REPAIR_NAMED];
 } he_repaired;
 
 void he_repaired_clear(he_repaired *repaired);
-/* Returns true if a repair changed anything that he_build reads. */
+/* Returns true if a repair changed the soup that he_build reads. */
 bool he_repaired_soup(const he_repaired *repaired);
 /* Renames the elements of a report about the repaired soup to their names in the input. */
 void he_repaired_report(const he_repaired *repaired, he_report *report);
