@@ -92,7 +92,7 @@ typedef enum he_result_type {
     HE_RESULT_ELEMENTS, /* a list of ids */
     HE_RESULT_NUMBER,
     HE_RESULT_MAP,    /* old id -> new id, null if dead */
-    HE_RESULT_COUNTS, /* the numbers of vertices, edges and faces after each step */
+    HE_RESULT_COUNTS, /* the number of elements of one kind after each step of subdivision */
     HE_RESULT_CHOICE  /* one of the strings in `choices` */
 } he_result_type;
 

@@ -18,7 +18,7 @@ typedef struct search {
     const uint32_t *triangles;
     size_t stride;
     uint32_t count;
-    /* For each vertex first the number of triangle corners at it, later the number of its hub. */
+    /* The number of triangle corners at each vertex; later the number of the vertex's hub. */
     uint32_t *corners;
     he_budget *budget;
 } search;

@@ -31,7 +31,7 @@ typedef struct mending {
     uint32_t *stamp; /* a mark for each vertex, used by he_soup_find_repeat */
     he_ids loops;    /* numbers of the corners that are kept, loop after loop, face by face */
     he_ids ends;     /* where in `loops` each loop ends */
-    /* For each loop, the number of the face of `flat` made of it; HE_NONE: not cut. */
+    /* The number of the face of `flat` that each loop became; HE_NONE if the loop is not cut. */
     he_ids cut;
     he_ids done;     /* for each degenerate face, where in `ends` its loops end */
     he_ids stack;    /* corners of the loop that is being divided */

@@ -97,7 +97,8 @@ static bool same(const way *a, const way *b)
 }
 
 typedef struct slot {
-    /* `hash` is that of a face, `face` its number + 1; both are 0 in a free slot */
+    /* `hash` is the hash of a face's corners, `face` the face's number + 1; both are 0 in a free
+     * slot */
     uint32_t hash, face;
 } slot;
 

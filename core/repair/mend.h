@@ -8,7 +8,7 @@ typedef struct he_mend {
     he_soup *soup;
     he_repaired *out;
     bool has_corner_values; /* there are attributes of corners */
-    /* For each corner of the soup, its number in the input; NULL if all corners kept their
+    /* The number that each corner of the soup had in the input; NULL if all corners kept their
      * numbers. */
     uint32_t *corner_from;
     uint64_t *turned; /* one bit for each face, set if orient reversed it; NULL if none was */

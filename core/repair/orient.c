@@ -8,8 +8,8 @@ typedef enum state { UNSEEN, KEPT, TURNED } state;
 typedef struct orienting {
     he_soup *soup;
     he_repaired *out;
-    /* For each corner, the corner of the second face on its edge; HE_NONE unless the edge has
-     * exactly two faces. */
+    /* The corner of the second face on the edge of each corner; HE_NONE unless the edge has exactly
+     * two faces. */
     uint32_t *mate;
     uint32_t *face_of; /* face of each corner */
     uint32_t *queue;   /* a queue of faces, component after component */
@@ -30,8 +30,8 @@ static he_status find_mates(orienting *o, he_error *err)
         return status;
     }
     uint32_t *met = he_mem_zero(
-        /* `first` has for each edge its number of corners; later, for an edge of two corners, the
-         * first of these. */
+        /* `met` has the number of corners of each edge; later, for an edge of two corners, the
+         * first corner. */
         edges + 1, sizeof *met);
     if (met == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to orient %zu faces", soup->face_count);

@@ -90,7 +90,8 @@ typedef struct he_repair_account {
      * with reversed faces; split: vertices that had several fans. */
     uint64_t parts;
     uint64_t moved; /* weld: number of vertex values that differed and were moved to corners */
-    /* Orient: number of components that cannot be oriented; fill: number of holes left open. */
+    /* The number of things left: components that orient could not orient, holes that fill left
+     * open. */
     uint64_t left;
     /* The elements concerned, as pairs. weld: the merged vertex, the one it was merged into;
      * drop_degenerate: the face, and how many faces were made of it; drop_duplicates: the dropped
@@ -107,8 +108,8 @@ typedef struct he_repair_clash {
 } he_repair_clash;
 
 typedef struct he_repaired {
-    /* For each vertex (face) of the repaired soup, its number in the input; NULL if all kept their
-     * numbers. */
+    /* The number that each vertex (face) of the repaired soup had in the input; NULL if all kept
+     * their numbers. */
     uint32_t *vertex_from, *face_from;
     size_t vertices, faces; /* lengths of the two arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];

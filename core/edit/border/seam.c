@@ -12,10 +12,11 @@ void he_seam_clear(he_seam *seam)
 
 typedef struct plan {
     he_ids cuts;  /* the edges to cut, in rising order: new edge i comes from cuts[i] */
-    he_ids ends;  /* the ends of these edges, in rising order */
-    he_ids parts; /* half-edges with which the parts of fans begin that get a new vertex */
-    size_t moved; /* number of half-edges that leave the vertex in those parts, old and new */
-    /* A bit for each cut edge: at one of its ends the fan is closed and has no other cut edge. */
+    he_ids ends;  /* the vertices at the ends of these edges, in rising order */
+    he_ids parts; /* the first half-edge of each part of a fan that gets a new vertex */
+    size_t moved; /* number of half-edges, old and new, that will leave the new vertices */
+    /* A bit for each cut edge: set if at one of its ends the fan is closed and has no other cut
+     * edge. */
     uint64_t *once;
     bool marked;
     he_marks marks;
@@ -89,8 +90,8 @@ static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfe
     return status != HE_OK ? status : he_ids_add(&p->parts, first.i, err);
 }
 
-/* Counts the cut edges of the fan that begins at `first`; *lowest is set to the half-edge of the
- * cut edge with the lowest id. */
+/* Counts the cut edges of the fan that begins at `first`; *lowest is set to the fan's half-edge of
+ * the cut edge with the lowest id. */
 static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge *lowest)
 {
     uint32_t count = 0;

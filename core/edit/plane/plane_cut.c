@@ -19,9 +19,9 @@ typedef struct cutter {
     he_sides sides;
     const he_plane *plane;
     int away;        /* the side that is cut off: 1 above, -1 below */
-    uint64_t *going; /* a bit for each face: it will be deleted */
+    uint64_t *going; /* a bit for each face: set if the face will be deleted */
     he_ids faces;    /* list of these faces */
-    he_ids rim;      /* half-edges of these faces whose twins belong to faces that stay */
+    he_ids rim;      /* half-edges of the deleted faces whose twins belong to faces that stay */
     he_cut_parts made;
 } cutter;
 
@@ -157,7 +157,7 @@ static he_status cut(cutter *c, bool cap, he_error *err)
      * whole edit. */
     const struct {
         he_status (*run)(cutter *c, he_error *err);
-        /* Name of the step for progress reports; NULL: the step names its parts itself. */
+        /* Name of the step for progress reports; NULL if the step reports names of its own. */
         const char *phase;
         double to;
         bool wanted;

@@ -180,7 +180,8 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
 
 /* --- COMMIT: writing --- */
 
-/* The first new ids of each kind; those for half-edge i of the rim are counted from them. */
+/* The first new id of each kind of element; half-edge i of the rim gets vertex `vertex` + i, edges
+ * `edge` + 2i and `edge` + 2i + 1, and face `face` + i. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;

@@ -4,8 +4,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The new element that stands for each live element: vertex[f] of face f, edge[e] of edge e,
- * face[v] of vertex v. */
+/* The new element that stands for each live element: vertex[f] for face f, edge[e] for edge e,
+ * face[v] for vertex v. */
 typedef struct rows {
     uint32_t *vertex, *edge, *face;
     /* Number of ids of each kind that were issued before the edit. */

@@ -36,7 +36,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
     return status;
 }
 
-/* If v is a bow-tie, adds v to `ties`, and to `need` what separating its fans will write. */
+/* If v is a bow-tie, adds v to `ties`, and adds to `need` what separating the fans of v will
+ * write. */
 static he_status plan(const he_mesh *m, he_vertex v, he_reservation *need, he_ids *ties,
                       he_error *err)
 {
