@@ -23,11 +23,11 @@
  *
  * An edge is not collapsed
  *
- *     if edge_collapse refuses it: the link condition, locked elements, F1 to F4 of features;
- *     if a face would turn by more than 60 degrees in this one step, or would have no area but for
- *     rounding (less than 1e-6 of the square of its longest side) where it had one;
- *     if the vertex that would be deleted or move has more than HE_DECIMATE_DEGREE edges;
- *     if its error would be more than `max_error`.
+ *     if edge_collapse refuses it: the link condition, locked elements, rules F1 to F4 for
+ * features; if a face would turn by more than 60 degrees in this one step, or would have no area
+ * but for rounding (less than 1e-6 of the square of its longest side) where it had one; if the
+ * vertex that would be deleted or move has more than HE_DECIMATE_DEGREE edges; if its error would
+ * be more than `max_error`.
  *
  * A refused edge is tried again when the faces around it have changed, or, if its error was too
  * large, when another vertex has been merged into an end, unless that end has more than

@@ -60,7 +60,8 @@ typedef struct he_node {
     uint32_t changes;
 } he_node;
 
-/* The elements that were merged, as pairs of a deleted element and the one that stays. */
+/* The elements that collapses merged, as pairs: the deleted element, then the element that
+ * stays. */
 typedef struct he_merges {
     he_ids vertices, edges;
 } he_merges;
@@ -120,8 +121,8 @@ static inline bool he_node_is_hub(const he_node *node)
 HE_NODISCARD he_status he_decimation_run(he_mesh *m, const he_decimate_options *options,
                                          he_progressive *log, he_decimated *out, he_error *err);
 
-/* The steps of he_decimation_run. `d` must have its mesh and options; the caller calls
- * he_decimation_end in any case. */
+/* The steps of he_decimation_run. Before the first step `d` must have its mesh and options; the
+ * caller calls he_decimation_end in any case. */
 HE_NODISCARD he_status he_decimation_begin(he_decimation *d, const he_decimate_options *options,
                                            he_error *err);
 HE_NODISCARD he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err);
@@ -135,7 +136,7 @@ bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
 HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                                            he_error *err);
 /* Decides whether an edge belongs in the queue, ASIDE or DEAR (see the head of decimation.h), and
- * computes its collapse unless it is ASIDE. */
+ * computes the cheapest collapse of the edge unless it is ASIDE. */
 he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);
 /* Records that an edge is in the queue, ASIDE or DEAR, as `place` says. It must not be in the queue
  * already. */

@@ -5,7 +5,7 @@
  * declares is produced and no other, V, E and F change as declared, the checker passes, and a
  * refusal leaves the mesh bit-identical.
  *
- * A row's name is also the C function's (edge_split is he_edge_split) and the tests'. */
+ * A row's name is also that of its C function (he_edge_split for edge_split) and of its tests. */
 #ifndef HE_OP_OP_H
 #define HE_OP_OP_H
 
@@ -91,7 +91,7 @@ typedef enum he_result_type {
     HE_RESULT_ELEMENT,  /* one id, or null */
     HE_RESULT_ELEMENTS, /* a list of ids */
     HE_RESULT_NUMBER,
-    HE_RESULT_MAP,    /* old id -> new id, null if dead */
+    HE_RESULT_MAP,    /* the new id of each old id, null if the element was deleted */
     HE_RESULT_COUNTS, /* the number of elements of one kind after each step of subdivision */
     HE_RESULT_CHOICE  /* one of the strings in `choices` */
 } he_result_type;

@@ -68,8 +68,8 @@ static uint32_t group_of(const builder *b, uint32_t thing)
     return b->group == NULL ? 0 : b->group[thing];
 }
 
-/* Returns the box by which a thing is placed while its run is divided: its own box, or that of its
- * group. */
+/* Returns the box that decides to which side a thing goes when its run is divided: the thing's own
+ * box, or the box of its group. */
 static const he_bounds *place_of(const builder *b, const run *r, uint32_t i)
 {
     uint32_t thing = b->tree.order[r->first + i];

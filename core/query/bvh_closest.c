@@ -7,7 +7,7 @@ static double square(he_vec3 a)
     return he_vec3_dot(a, a);
 }
 
-/* Returns where on the way from a to b the point nearest to p is: from 0 at a to 1 at b. */
+/* Returns where on the segment from a to b the point nearest to p is: 0 at a, 1 at b. */
 static double along(he_vec3 p, he_vec3 a, he_vec3 b)
 {
     he_vec3 ab = he_vec3_sub(b, a);

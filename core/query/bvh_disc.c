@@ -6,7 +6,7 @@
  * computed from the discs of their children, which makes them looser with each level. */
 enum { PATCH = 256 };
 
-/* Twice the rounding error of a normal in floats. */
+/* Twice the rounding error of a disc's normal, which is stored in floats. */
 static const double ROUNDING = 4e-7;
 
 static he_vec3 of_floats(const float v[3])

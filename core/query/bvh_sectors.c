@@ -16,8 +16,8 @@
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
 
-/* The rounding error of the coordinates of a direction, and of values computed from them here, is
- * below this. */
+/* The rounding error of the coordinates of a direction, and of values computed from these
+ * coordinates here, is below ROUNDING. */
 static const double ROUNDING = 1e-14;
 
 typedef struct sectors {

@@ -20,7 +20,7 @@ static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t
     }
 }
 
-/* The best result of a walk so far: a triangle, and a point in it. */
+/* The best result of a walk (search down the tree) so far: a triangle, and a point in it. */
 typedef struct he_bvh_found {
     uint32_t triangle; /* HE_NONE if nothing was found yet */
     double weight[3];

@@ -47,8 +47,8 @@ HE_NODISCARD he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_
                                      he_error *err);
 
 /* Computes half the sum of the cotangents of the angles opposite to each edge; on the boundary
- * there is only one such angle. NaN beside a degenerate triangle. Parameters and errors are those
- * of he_curvatures. */
+ * there is only one such angle. The result is NaN for an edge beside a degenerate triangle.
+ * Parameters and errors are those of he_curvatures. */
 HE_NODISCARD he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
                                           uint64_t most, he_progress *progress, double *out,
                                           he_error *err);

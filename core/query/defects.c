@@ -58,7 +58,8 @@ static he_status of_vertices(const he_mesh *m, he_progress *progress, he_defects
         if (h == HE_NONE) {
             he_defects_add(out, HE_DEFECT_ISOLATED, v, HE_NONE, 0);
         } else if (h != HE_DEAD && m->c.face[h] == HE_NONE) {
-            /* Only vertices on the boundary can have several fans, so others are skipped. */
+            /* Only vertices on the boundary can have several fans (runs of connected faces), so
+             * other vertices are skipped. */
             uint32_t fans = he_vertex_fans(m, (he_vertex){v});
             if (fans > 1) {
                 he_defects_add(out, HE_DEFECT_BOWTIE, v, HE_NONE, fans);

@@ -54,7 +54,8 @@ typedef struct he_thresholds {
  * that have edges, or around all vertices if none has an edge. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
-/* The most defects of each code that are listed, the first ones by rising id. All are counted. */
+/* The most defects of each code (kind of defect) that are listed: those with the lowest ids. All
+ * are counted. */
 enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
@@ -75,7 +76,8 @@ typedef struct he_defects {
     he_defect_list of[HE_DEFECTS];
 } he_defects;
 
-/* Counts a defect, and lists it unless HE_DEFECTS_LISTED of its code are listed already. */
+/* Counts a defect, and lists it unless HE_DEFECTS_LISTED defects of its code (kind of defect) are
+ * listed already. */
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
                     double value);
 

@@ -186,8 +186,8 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u vertices",
                              hubs->count);
     }
-    /* Each count first becomes the end of its hub's run of entries; filling the run from its last
-     * entry lowers it to the beginning. */
+    /* first[h] counts the spokes of hub h. It first becomes the end of this hub's run of entries in
+     * `spokes`; as the run is filled from its last entry, first[h] falls to the run's beginning. */
     uint32_t sum = 0;
     for (uint32_t h = 0; h < hubs->count; h++) {
         sum += hubs->first[h];

@@ -14,7 +14,8 @@ static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
                    he_kind_name(kind), id);
 }
 
-/* A vertex that the search has reached; its index is the one that the idmap gave it. */
+/* A vertex that the search has reached; its index in `nodes` is the index that the idmap gave to
+ * its id. */
 typedef struct node {
     double distance;
     uint32_t via; /* the half-edge by which the best path arrives; HE_NONE at the start */

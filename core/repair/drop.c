@@ -45,8 +45,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
     return HE_OK;
 }
 
-/* The canonical order of a face's corners, which is equal for all its duplicates: from its lowest
- * vertex towards that vertex's lower neighbour. */
+/* The order in which a face's corners are compared, equal for all duplicates of the face: from its
+ * lowest vertex towards the lower of that vertex's two neighbours. */
 typedef struct way {
     const uint32_t *corners;
     uint32_t count, first;

@@ -19,8 +19,8 @@
 
 #include <assert.h>
 
-/* A settled corner of the edge that is being handled, with the fans at its ends when it was
- * settled, which may have changed since. */
+/* A settled corner (tested, and given another mate if needed) of the edge being handled, with the
+ * numbers of the fans at both ends when the corner was settled; these may have changed since. */
 typedef struct slot {
     uint32_t epoch; /* number of the edge being handled + 1; a slot with another value is free */
     uint32_t corner, from, to;
@@ -29,8 +29,8 @@ typedef struct slot {
 typedef struct exchanging {
     he_splitting *s;
     uint32_t *edge_of; /* edge of each corner */
-    /* Where the corners of each edge begin in `list`, which only has edges with more than two
-     * corners. */
+    /* Where the corners of each edge begin in `list`, which has only corners of edges with more
+     * than two corners. */
     uint32_t *begin;
     uint32_t *list;
     size_t edges;

@@ -56,8 +56,8 @@ static he_status find_mates(orienting *o, he_error *err)
     return HE_OK;
 }
 
-/* Records that a component cannot be oriented: face f, at its corner c, and the face beside it
- * clash. */
+/* Records that a component cannot be oriented: along the edge at corner c, face f and the face
+ * beside it would run in one direction. */
 static void note_clash(orienting *o, uint32_t f, uint32_t c)
 {
     const he_soup *soup = o->soup;

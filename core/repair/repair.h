@@ -4,12 +4,12 @@
  *
  * Repairs are applied in this order, whatever the order of the request.
  *
- * weld: vertices at most `tolerance` apart are merged. In the order of their numbers, each is
- * merged into the first one kept so far that is near enough, or is kept. So none moves farther than
- * the tolerance, kept ones are farther apart than that, and merging does not run along chains. With
- * tolerance 0 only equal positions are merged (-0 equals 0). An attribute of vertices whose values
- * differ between merged vertices becomes an attribute of corners, so that seams of texture and
- * sharp edges stay (build/keep.h).
+ * weld: vertices at most `tolerance` apart are merged. In the order of their numbers, each vertex
+ * is merged into the first vertex kept so far that is near enough, or is kept itself. So no vertex
+ * moves farther than the tolerance, kept vertices are farther apart than that, and merging does not
+ * run along chains. With tolerance 0 only equal positions are merged (-0 equals 0). An attribute of
+ * vertices whose values differ between merged vertices becomes an attribute of corners, so that
+ * seams of texture and sharp edges stay (build/keep.h).
  *
  * drop_degenerate: a face that passes a vertex twice keeps the parts that have area. Corners in a
  * row at one vertex become one (1 2 3 3 is the triangle 1 2 3), and a spike, there and back, is
@@ -20,11 +20,12 @@
  * is kept.
  *
  * orient: faces are reversed until any two that share an edge run along it in opposite directions;
- * only edges of two faces connect. The larger part of a component keeps its direction; if both are
- * equal, the part of its first face. If a component cannot be oriented (a Moebius band) the soup is
- * refused, unless it is split as well: then it is oriented consistently along a tree of its faces,
- * or left if that would not reduce the clashes, and cut where faces clash. The attribute "normal"
- * of reversed faces, and of their corners, is reversed too.
+ * only edges of two faces connect. The faces of a component are in two parts, of which one is
+ * reversed: the smaller part, or, if both are equal, the part without the component's first face.
+ * If a component cannot be oriented (a Moebius band) the soup is refused, unless it is split as
+ * well: then it is oriented consistently along a tree of its faces, or left if that would not
+ * reduce the clashes, and cut where faces clash. The attribute "normal" of reversed faces, and of
+ * their corners, is reversed too.
  *
  * split: every fan of faces gets a vertex of its own. The fan of the first corner keeps the vertex,
  * the others get copies, numbered after all vertices in the order of their first corners. Faces are

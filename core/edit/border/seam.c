@@ -70,7 +70,7 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_swing_ccw(m, h);
-        /* If h is a cut edge, this part of the fan may lie on the side that gets a new edge; the
+        /* If the edge of h is cut, this part of the fan may lie on the side that gets a new edge; a
          * lock of the old edge does not matter then. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);

@@ -341,8 +341,8 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     if (!interior) {
         he_ring_settle(m, v, after);
     } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
-        /* v is an interior vertex, which may store any half-edge (I8), so no search for a boundary
-         * half-edge is needed, which may take long. */
+        /* v is an interior vertex, which may store any of its half-edges (invariant I8 of mesh.h),
+         * so the search for a boundary half-edge, which may take long, is not needed. */
         he_set_vertex_halfedge(m, v, after);
     }
 }

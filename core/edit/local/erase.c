@@ -106,8 +106,8 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Returns true if there is a hole, or a face of the set `faces`, to the left of h. The faces of the
- * set are deleted. */
+/* Returns true if there is a hole to the left of h, or a face of the set `faces`, which are the
+ * faces to be deleted. */
 static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);

@@ -40,8 +40,8 @@ typedef struct he_keeping {
     /* The number of values that would be lost: values of merged vertices that differ from the value
      * of the vertex they are merged into. */
     uint64_t count;
-    /* The bracket (edits undone together) that encloses the weld; begun only if `count` is above
-     * 0. */
+    /* The bracket (edits that succeed or fail together) that encloses the weld; begun only if
+     * `count` is above 0. */
     he_bracket bracket;
 } he_keeping;
 

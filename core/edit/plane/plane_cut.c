@@ -119,7 +119,7 @@ static he_status cap_loops(cutter *c, he_error *err)
         he_filled filled = {.vertex = {HE_NONE}};
         status = he_progress_at(c->m->progress, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
-            continue; /* the half-edge is on a loop that is capped already */
+            continue; /* the half-edge is on a loop that a face closes (caps) already */
         }
         status = check_loop(c, h, err);
         if (status == HE_OK) {

@@ -217,8 +217,8 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
             happens(p, first_root(area));
             continue;
         }
-        /* The corner b is reflex, so it is tested against every side of the face of which it is not
-         * an end. */
+        /* The corner b is reflex (its angle is above pi), so it is tested against every side of the
+         * face that does not end at b. */
         if (p->budget < n) {
             return he_fail(
                 err, HE_LIMIT, HE_FACE, f.i,

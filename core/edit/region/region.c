@@ -265,7 +265,7 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 }
 
 /* Computes the values of the new vertices from `first` to `last`, all mixed from corners of the
- * same face. Meanwhile the row of `last` has the mean of these corners. */
+ * same face. While it works, the row of vertex `last` holds the mean of these corners. */
 static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
                         size_t last, he_ids *corners)
 {

@@ -66,8 +66,8 @@ typedef struct he_region_mix {
 /* Callbacks of he_region_draw. `place` computes where the new vertices are: it fills `to` with one
  * position for each corner of the rim. If it sets *shifts, the vertices inside the region move by
  * the vector *shift. It may refuse the edit. `mix`, if not NULL, is called after `to` is filled and
- * says how the values of each new vertex are computed; otherwise each has the values of the old
- * vertex below it. */
+ * says how the values of each new vertex are computed; without `mix` each new vertex has the values
+ * of the old vertex below it. */
 typedef struct he_region_place {
     he_status (*place)(const he_mesh *m, const he_region *region, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err);

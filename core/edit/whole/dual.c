@@ -84,7 +84,8 @@ static he_status check_locks(const he_mesh *m, he_error *err)
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         uint32_t issued = he_mesh_issued(m, kinds[k]);
         for (uint32_t i = 0; i < issued; i++) {
-            /* A deleted element's row holds the default of the attribute, which may mean locked. */
+            /* Deleted elements are skipped: their rows hold the default of the attribute, which may
+             * mean locked. */
             if (he_is_locked(&marks, kinds[k], i) && he_mesh_is_live(m, kinds[k], i)) {
                 return he_require_unlocked(&marks, kinds[k], i, err);
             }

@@ -30,7 +30,8 @@ typedef struct he_normals {
 HE_NODISCARD he_status he_normals_init(he_normals *n, he_mesh *m, const double matrix[16],
                                        const uint32_t *vertices, size_t count, size_t *words,
                                        he_error *err);
-/* Writes the transformed normals. An edit must call it in its COMMIT part. */
+/* Writes the transformed normals. An edit must call it in its COMMIT part, which writes and cannot
+ * fail. */
 void he_normals_commit(const he_normals *n);
 void he_normals_clear(he_normals *n);
 
