@@ -366,8 +366,8 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
             he_mesh_set_progress(copy, m->progress);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
-        /* Each collapse deletes a vertex, so an equal number of vertices means that nothing has
-         * changed. */
+        /* Each collapse deletes a vertex: if the copy still has as many vertices as the mesh,
+         * nothing has changed. */
         if (status == HE_OK && he_mesh_vertices(copy) < he_mesh_vertices(m)) {
             status = finish(m, &copy, &merges, replace, err);
         }

@@ -69,7 +69,7 @@ typedef struct he_merges {
 typedef struct he_decimation {
     he_mesh *mesh;
     he_node *nodes;      /* a node for each vertex, which fills two cache lines */
-    void *memory;        /* the block that contains the nodes */
+    void *memory;        /* the allocated block of memory that contains `nodes` */
     uint8_t *flags;      /* the HE_NODE_... flags of each vertex */
     uint8_t *places;     /* whether each edge is in the queue, ASIDE or DEAR: an he_edge_place */
     he_edge_queue queue; /* contains no edge twice */

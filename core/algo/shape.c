@@ -29,7 +29,7 @@ static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
         *x = -c;
         *y = -s;
         break;
-    default: /* The remainder is 0 to 3, so only 3 is left here. */
+    default: /* The number of quarter turns, modulo 4, is 3 here. */
         *x = s;
         *y = -c;
         break;

@@ -279,8 +279,8 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* Adds up, for every vertex, the sum that its rule needs. One thread does this alone, because a
- * floating-point sum depends on the order of its terms. */
+/* Adds up, for every vertex, the sum over its neighbours that the rule for the vertex needs. One
+ * thread does this alone, because a floating-point sum depends on the order of its terms. */
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;

@@ -14,7 +14,7 @@ typedef struct he_gather {
     he_ids *ids;
     /* Where the next offset (index in `ids`) goes; NULL: no offsets are wanted. */
     uint32_t *offsets;
-    uint64_t budget; /* half-edges that may still be visited */
+    uint64_t budget; /* number of half-edges that may still be visited */
     bool capped;     /* true if `budget` follows from the size of the mesh */
     unsigned flags;
 } he_gather;

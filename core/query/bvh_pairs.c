@@ -199,7 +199,8 @@ static bool is_needless(void *context, uint32_t a, uint32_t b)
     const he_bvh *tree = w->search.tree;
     common shared = both(&w->commons[a], &w->commons[b]);
     if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
-        /* he_pairs_at_hub tries the pairs at a hub; triangles of one face are never tried. */
+        /* Pairs that meet at one hub are left to he_pairs_at_hub; triangles of one face are never
+         * tried with one another. */
         return true;
     }
     return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||

@@ -39,7 +39,7 @@ typedef struct mending {
     /* The loops to be cut into triangles, as faces with a vertex of its own for every corner. */
     he_soup flat;
     he_mesh *mesh;  /* mesh made from `flat` */
-    he_ids list;    /* vertices of a loop, or of triangles */
+    he_ids list;    /* the vertices of the loop being tested, or of its triangles */
     uint64_t *runs; /* the edges of `list`, sorted by their ends */
     size_t run_capacity;
 

@@ -133,8 +133,9 @@ static void make_rows(he_mesh *m, rows *r)
     }
 }
 
-/* Returns the dual half-edge of h: it runs from the face right of h to the face left of it, along
- * the new face that stands for the origin of h. */
+/* Returns the dual half-edge of h, which belongs to the new edge that stands for the edge of h: it
+ * runs from the face right of h to the face left of it, along the new face that stands for the
+ * origin of h. */
 static he_halfedge star(const rows *r, he_halfedge h)
 {
     return (he_halfedge){2 * r->edge[h.i >> 1] + (h.i & 1)};
