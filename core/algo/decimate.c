@@ -65,8 +65,8 @@ static void count_feature(const he_decimation *d, he_edge e, uint32_t vertex)
     }
 }
 
-/* Adds a plane to the quadrics of the ends of h: the plane through the edge of h that is
- * perpendicular to the face on its left, whose normal is given. */
+/* Adds a plane to the quadrics of both ends of half-edge h: the plane that contains the edge of h
+ * and is perpendicular to the face left of h, whose normal is given. */
 static void add_wall(const he_decimation *d, he_halfedge h, he_vec3 normal)
 {
     he_node *a = &d->nodes[he_origin(d->mesh, h).i], *b = &d->nodes[he_target(d->mesh, h).i];
@@ -136,8 +136,8 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* Vertices without an edge are skipped, because the first write to a fresh page of memory takes
-     * long. */
+    /* Vertices without an edge are skipped: writing their nodes would touch fresh pages of memory,
+     * which takes long. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_progress_at(m->progress, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
@@ -175,7 +175,8 @@ static he_status fill_queue(he_decimation *d, he_error *err)
     return status;
 }
 
-/* Tries to collapse edge e, which was first in the queue, in the bucket `bucket`. */
+/* Tries to collapse edge e, which was taken from `bucket`, the first bucket of the queue with
+ * edges. */
 static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_error *err)
 {
     he_candidate what;
@@ -365,8 +366,8 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
             he_mesh_set_progress(copy, m->progress);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
-        /* Each collapse deletes a vertex, so an equal number of vertices means that nothing has
-         * changed. */
+        /* Each collapse deletes a vertex: if the copy still has as many vertices as the mesh,
+         * nothing has changed. */
         if (status == HE_OK && he_mesh_vertices(copy) < he_mesh_vertices(m)) {
             status = finish(m, &copy, &merges, replace, err);
         }

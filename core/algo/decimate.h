@@ -23,11 +23,11 @@
  *
  * An edge is not collapsed
  *
- *     if edge_collapse refuses it: the link condition, locked elements, F1 to F4 of features;
- *     if a face would turn by more than 60 degrees in this one step, or would have no area but for
- *     rounding (less than 1e-6 of the square of its longest side) where it had one;
- *     if the vertex that would be deleted or move has more than HE_DECIMATE_DEGREE edges;
- *     if its error would be more than `max_error`.
+ *     if edge_collapse refuses it: the link condition, locked elements, rules F1 to F4 for
+ * features; if a face would turn by more than 60 degrees in this one step, or would have no area
+ * but for rounding (less than 1e-6 of the square of its longest side) where it had one; if the
+ * vertex that would be deleted or move has more than HE_DECIMATE_DEGREE edges; if its error would
+ * be more than `max_error`.
  *
  * A refused edge is tried again when the faces around it have changed, or, if its error was too
  * large, when another vertex has been merged into an end, unless that end has more than
@@ -55,15 +55,15 @@ enum { HE_DECIMATE_DEGREE = 256 };
 #define HE_BOUNDARY_WEIGHT_MAX 1e9
 
 typedef struct he_decimate_options {
-    uint32_t faces;   /* stop when there are at most this many */
-    double max_error; /* at least 0; may be infinite */
+    uint32_t faces;   /* the decimation stops when the mesh has at most this many faces */
+    double max_error; /* no collapse has a larger error; at least 0; may be infinite */
     /* Weight of boundary and feature edges, from 0 to HE_BOUNDARY_WEIGHT_MAX. */
     double boundary_weight;
 } he_decimate_options;
 
 typedef enum he_decimate_stop {
     HE_STOP_FACES,     /* the requested number of faces is reached */
-    HE_STOP_ERROR,     /* the next edge would exceed the error */
+    HE_STOP_ERROR,     /* every collapse left would have an error above `max_error` */
     HE_STOP_EXHAUSTED, /* no edge can be collapsed */
     HE_STOP_COUNT
 } he_decimate_stop;

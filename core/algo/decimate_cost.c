@@ -9,17 +9,17 @@ static const double PULL = 1e-6;
 /* An end of the edge is preferred to another point if it costs less by more than this, which allows
  * for rounding. */
 static const double ROUNDING = 1e-14;
-/* Makes the shortest of the edges whose collapse costs nothing come first: a small multiple of the
- * length is added to the cost. */
+/* This multiple of an edge's length is added to the cost of its collapse, so that among edges whose
+ * collapse costs nothing the shortest comes first. */
 static const double LENGTH = 1e-9;
-/* Bounds the priorities, so that small meshes inside large ones have priorities that fit a
- * float. */
+/* Bounds the priorities of edges: where a small part of a large mesh has tiny costs, the priorities
+ * must still fit a float. */
 static const double WITHIN = 0x1p40;
 /* Errors below this, relative to the size of the mesh, are rounding noise and count as zero. */
 static const double NOTHING = 1e-12;
 
-/* Returns true if decimation may move the vertex along an edge. `along` says that the edge is a
- * feature. */
+/* Returns true if the collapse of an edge may move the vertex, an end of the edge. `along` says
+ * that the edge is a feature. */
 static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 {
     const he_node *node = &d->nodes[vertex];
@@ -30,7 +30,7 @@ static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 typedef struct ends {
     he_halfedge h; /* runs from a to b */
     const he_node *a, *b;
-    he_quadric sum; /* sum of the quadrics of a and b, relative to the place of a */
+    he_quadric sum; /* sum of the quadrics of a and b, relative to the position of a */
     he_vec3 across; /* vector from a to b */
     bool a_goes, b_goes, a_moves, b_moves;
 } ends;

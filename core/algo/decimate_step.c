@@ -126,8 +126,8 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* Returns true if the refused edges of the vertex need not return to the queue yet. The vertex is
- * then in the list of late vertices. */
+/* Returns true if the refused edges of the vertex need not return to the queue yet, because it has
+ * very many edges (HE_DECIMATE_PATIENT). The vertex is then in the list `late`. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];
@@ -167,7 +167,7 @@ bool he_decimation_catch_up(he_decimation *d)
     return any;
 }
 
-/* Returns where `place` lies between the ends `from` and `to`: from 0 to 1. */
+/* Returns where `place` lies on the way from one point to another: 0 at `from`, 1 at `to`. */
 static double between(he_vec3 from, he_vec3 to, he_vec3 place)
 {
     he_vec3 across = he_vec3_sub(to, from);
@@ -185,7 +185,7 @@ static he_vec3 outside(const he_decimation *d, he_vec3 place)
                      d->middle.z + ldexp(place.z, d->exponent)};
 }
 
-/* Makes room in the log for one more split and the faces around one vertex. */
+/* Makes room in the log for one more vertex split and the faces around one vertex. */
 static he_status make_room(he_progressive *log)
 {
     if (log->count == log->capacity) {
@@ -200,8 +200,8 @@ static he_status make_room(he_progressive *log)
     return he_ids_reserve(&log->moved, HE_DECIMATE_DEGREE, NULL);
 }
 
-/* Records in the log how to undo the collapse of the first edge of `about`. Must be called before
- * the collapse. */
+/* Records in the log how to undo the collapse of the first edge of `about`. It must be called
+ * before the collapse. */
 static void remember(const he_decimation *d, const he_spokes *about)
 {
     const he_mesh *m = d->mesh;

@@ -162,8 +162,8 @@ he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *
 {
     he_reservation need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
     count_words(m, made, &need);
-    /* The words of attributes are counted as links, because need.attributes would reserve memory
-     * for the rows of every column. */
+    /* Memory for the changed words of attributes is reserved as if they were links, because
+     * need.attributes would reserve memory for whole rows of every column. */
     need.links += each_column(m, made, NULL);
     he_status status = he_reserve(m, need, err);
     if (status != HE_OK) {

@@ -29,17 +29,20 @@
 /* Flags of a vertex. HE_NODE_LOCKED and HE_NODE_HELD never change: edge_collapse would refuse to
  * move or to delete such a vertex. */
 enum {
-    HE_NODE_LOCKED = 1, /* it may neither be deleted nor move */
-    HE_NODE_HELD = 2,   /* an edge or face at it is locked: it may move, but not be deleted */
-    HE_NODE_ASIDE = 4,  /* some of its edges may be ASIDE */
-    HE_NODE_DEAR = 8,   /* some of its edges may be DEAR */
-    HE_NODE_LATE = 16,  /* its edges return to the queue later, see HE_DECIMATE_PATIENT */
-    HE_NODE_GREW = 32   /* a vertex was merged into it while it was HE_NODE_LATE */
+    HE_NODE_LOCKED = 1, /* the vertex may neither be deleted nor move */
+    /* An edge or face at the vertex is locked: the vertex may move, but not be deleted. */
+    HE_NODE_HELD = 2,
+    HE_NODE_ASIDE = 4, /* some edges of the vertex may be ASIDE (refused, in no queue) */
+    HE_NODE_DEAR = 8,  /* some edges of the vertex may be DEAR (too expensive, in no queue) */
+    /* Refused edges of the vertex return to the queue later, see HE_DECIMATE_PATIENT. */
+    HE_NODE_LATE = 16,
+    HE_NODE_GREW = 32 /* another vertex was merged into this one while it was HE_NODE_LATE */
 };
 
 /* At a vertex of more edges than HE_DECIMATE_PATIENT, refused edges are not tried again after every
  * change nearby, but only after a number of changes that is 1 / HE_DECIMATE_PART of its degree, and
- * when the queue is empty. A change concerns few of its edges, but all would be tried again. */
+ * when the queue is empty. A single change concerns few of the vertex's edges, but all its refused
+ * edges would be tried again. */
 enum { HE_DECIMATE_PATIENT = 32, HE_DECIMATE_PART = 2 };
 
 /* Where an edge is stored. */
@@ -52,44 +55,52 @@ typedef struct he_node {
     alignas(HE_CACHE_LINE) he_quadric quadric;
     he_vec3 place;
     uint32_t degree;
-    uint32_t features; /* number of feature edges at it; 3 stands for 3 and more */
-    uint32_t changes;  /* changes since its edges returned to the queue, if HE_NODE_LATE */
+    uint32_t features; /* number of feature edges at the vertex; 3 stands for 3 or more */
+    /* If HE_NODE_LATE: changes nearby since the vertex's edges returned to the queue. */
+    uint32_t changes;
 } he_node;
 
-/* The elements that were merged, as pairs of a deleted element and the one that stays. */
+/* The elements that collapses merged, as pairs: the deleted element, then the element that
+ * stays. */
 typedef struct he_merges {
     he_ids vertices, edges;
 } he_merges;
 
 typedef struct he_decimation {
     he_mesh *mesh;
-    he_node *nodes;      /* one for each vertex, in two cache lines */
-    void *memory;        /* the block that contains the nodes */
+    he_node *nodes;      /* a node for each vertex, which fills two cache lines */
+    void *memory;        /* the allocated block of memory that contains `nodes` */
     uint8_t *flags;      /* the HE_NODE_... flags of each vertex */
-    uint8_t *places;     /* where each edge is: an he_edge_place */
+    uint8_t *places;     /* whether each edge is in the queue, ASIDE or DEAR: an he_edge_place */
     he_edge_queue queue; /* contains no edge twice */
     he_merges *merges;   /* where merges are noted, or NULL */
     he_progressive *log; /* where collapses are recorded, or NULL */
     const he_column *feature;
-    double boundary_weight, most; /* `most` is the largest allowed error, in inside coordinates */
+    /* `most` is the largest allowed error, in the coordinates inside the decimation (see
+     * `exponent`) */
+    double boundary_weight, most;
     he_vec3 middle;
-    int exponent;  /* inside = (outside - middle) / 2^exponent */
+    /* Coordinates inside the decimation are (coordinates of the mesh - middle) / 2^exponent. */
+    int exponent;
     double inward; /* 2^-exponent */
-    double error;  /* largest error of a collapse so far, in inside coordinates */
+    /* Largest error of a collapse so far, in the coordinates inside the decimation. */
+    double error;
     /* The work done so far: the number of edges judged, plus an eighth of the number of half-edges
-     * visited around their ends. Both take about the same time, and there may be 256 of them for
-     * each collapse at a vertex of large degree. */
+     * visited around their ends. A unit of either kind takes about the same time, and one collapse
+     * at a vertex of large degree may take 256 units. */
     uint64_t work;
-    he_ids late; /* vertices that were HE_NODE_LATE, and perhaps still are */
+    he_ids late; /* vertices that got the flag HE_NODE_LATE, and perhaps still have it */
 } he_decimation;
 
 /* A possible collapse of an edge. */
 typedef struct he_candidate {
-    he_halfedge h;  /* the half-edge to collapse; its origin would be deleted */
-    bool moves;     /* the target moves to `place`, else it stays where it is */
-    he_vec3 place;  /* where the target moves, in inside coordinates */
-    double cost;    /* value of the quadrics of both ends at the new place */
-    double error;   /* error of the collapse as in decimate.h, in inside coordinates */
+    he_halfedge h; /* the half-edge to collapse; its origin would be deleted */
+    /* True: the target of h moves to `place`; false: the target stays where it is. */
+    bool moves;
+    he_vec3 place; /* where the target of h moves, in the coordinates inside the decimation */
+    double cost;   /* value of the sum of both ends' quadrics at `place` */
+    /* Error of the collapse (see decimate.h), in the coordinates inside the decimation. */
+    double error;
     float priority; /* priority of the edge in the queue */
 } he_candidate;
 
@@ -110,8 +121,8 @@ static inline bool he_node_is_hub(const he_node *node)
 HE_NODISCARD he_status he_decimation_run(he_mesh *m, const he_decimate_options *options,
                                          he_progressive *log, he_decimated *out, he_error *err);
 
-/* The steps of he_decimation_run. `d` must have its mesh and options; the caller calls
- * he_decimation_end in any case. */
+/* The steps of he_decimation_run. Before the first step `d` must have its mesh and options; the
+ * caller calls he_decimation_end in any case. */
 HE_NODISCARD he_status he_decimation_begin(he_decimation *d, const he_decimate_options *options,
                                            he_error *err);
 HE_NODISCARD he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err);
@@ -125,7 +136,7 @@ bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
 HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                                            he_error *err);
 /* Decides whether an edge belongs in the queue, ASIDE or DEAR (see the head of decimation.h), and
- * computes its collapse unless it is ASIDE. */
+ * computes the cheapest collapse of the edge unless it is ASIDE. */
 he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);
 /* Records that an edge is in the queue, ASIDE or DEAR, as `place` says. It must not be in the queue
  * already. */

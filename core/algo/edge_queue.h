@@ -27,11 +27,13 @@ typedef struct he_queue_chunk {
 
 typedef struct he_edge_queue {
     he_queue_chunk *chunks;
-    uint32_t *first;     /* the first chunk of each bucket; all after it are full */
-    uint32_t free, used; /* the first free chunk; chunks from `used` on were never used */
+    /* The first chunk of each bucket; all later chunks of the bucket are full. */
+    uint32_t *first;
+    /* `free` is the first chunk to use again; chunks from `used` on were never used */
+    uint32_t free, used;
     /* One bit for each bucket: set if the bucket has edges. */
     uint64_t filled[HE_QUEUE_WORDS];
-    size_t word; /* no word of `filled` before this one has a bit set */
+    size_t word; /* index of a word of `filled`; no word before that has a bit set */
 } he_edge_queue;
 
 /* Makes a queue with room for `edges` edges. The caller must clear it, even after a failure.

@@ -24,13 +24,16 @@
 /* The data needed to undo one collapse. If a side of the collapsed edge has no face, the fields of
  * that side are HE_NONE. */
 typedef struct he_progressive_split {
-    uint32_t vertex, from;   /* u, which is made, and v, beside which it is */
-    uint32_t left, right;    /* third corners of the two faces: c and d */
+    /* `vertex` is u, which the split makes; `from` is v, which stays and from which u is split
+     * off */
+    uint32_t vertex, from;
+    /* `left` and `right` are c and d, the third corners of the two faces beside the edge u-v */
+    uint32_t left, right;
     uint32_t halfedge;       /* half-edge from u to v */
     uint32_t left_halfedge;  /* half-edge from u to c */
     uint32_t right_halfedge; /* half-edge from u to d */
     uint32_t left_face, right_face;
-    uint32_t moved;      /* number of faces that move to u */
+    uint32_t moved;      /* number of faces that get the corner u in place of v */
     size_t first_moved;  /* index of the first of these faces in he_progressive.moved */
     he_vec3 at, from_at; /* positions of u and v after the split */
 } he_progressive_split;
@@ -39,7 +42,8 @@ typedef struct he_progressive_split {
  * empty. */
 typedef struct he_progressive {
     he_mesh *base;
-    he_progressive_split *splits; /* the first one is the last to be applied */
+    /* In the order of the collapses: the first split is applied last. */
+    he_progressive_split *splits;
     size_t count, capacity;
     he_ids moved;
 } he_progressive;

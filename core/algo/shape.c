@@ -29,7 +29,7 @@ static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
         *x = -c;
         *y = -s;
         break;
-    default: /* the remainder can only be 3 */
+    default: /* The number of quarter turns, modulo 4, is 3 here. */
         *x = s;
         *y = -c;
         break;
@@ -46,7 +46,8 @@ static void circle(he_soup *soup, uint32_t n, double radius, double z)
     }
 }
 
-/* Adds one polygon over n consecutive vertices, facing up, or down if they are taken backwards. */
+/* Adds one polygon with n consecutive vertices as corners. It faces up, or, if the vertices are
+ * taken in reverse order, down. */
 static void cap(he_soup *soup, uint32_t first, uint32_t n, bool up)
 {
     assert(soup->face_count < soup->face_capacity);
@@ -289,8 +290,8 @@ static void polygon_fill(const double *args, he_soup *soup)
 /* The largest length a shape may have. Larger lengths have no use, and their squares would
  * overflow. */
 #define LONGEST 1e100
-/* The largest number of segments along a side. It is more than fits into a mesh; products that are
- * too large are refused by the limits. */
+/* The largest number of segments along one side of a shape. A shape with so many segments along two
+ * sides fits into no mesh and is refused by the limits of its sizes. */
 #define MOST 16777216
 
 #define LENGTH(name, fallback, doc)                            \
@@ -420,7 +421,7 @@ void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS])
     }
 }
 
-/* A number as text for a message. It has the same form in every locale. */
+/* A number as text for a message, with a point for fractions in every locale. */
 typedef struct shown {
     char text[HE_NUMBER_TEXT + 1];
 } shown;
@@ -467,8 +468,8 @@ he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAM
 static he_status within(const he_shape *shape, uint64_t count, uint64_t limit, const char *what,
                         he_error *err)
 {
-    /* There is at most one edge for each corner, so this limit also leaves enough ids for the
-     * edges. */
+    /* A mesh has at most as many edges as corners, so the limit of corners also leaves enough ids
+     * for the edges. */
     if (limit == 0 || limit > HE_MAX_ROWS) {
         limit = HE_MAX_ROWS;
     }

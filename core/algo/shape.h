@@ -21,7 +21,7 @@ typedef enum he_shape_type {
 typedef struct he_shape_param {
     const char *name;
     he_shape_type type;
-    bool exclusive; /* `min` is excluded; `max` is always included */
+    bool exclusive; /* `min` itself is not allowed; `max` always is */
     double fallback, min, max;
     const char *doc;
 } he_shape_param;
@@ -35,7 +35,8 @@ typedef struct he_shape_size {
 typedef struct he_shape {
     const char *name;
     const char *doc;
-    he_shape_param params[HE_SHAPE_PARAMS]; /* ends at the first one without a name */
+    /* The list ends at the first parameter without a name. */
+    he_shape_param params[HE_SHAPE_PARAMS];
     /* Computes how many vertices, faces and corners the shape has. Only the functions declared
      * below call it, with each argument at the index of its parameter. */
     he_shape_size (*size)(const double *args);

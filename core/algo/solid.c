@@ -88,7 +88,7 @@ void he_solid_octahedron(he_soup *soup, double radius)
 typedef struct icosahedron {
     he_vec3 vertex[12];
     uint32_t face[20][3];
-    uint32_t edge[12][12]; /* numbers of the 30 edges by their ends */
+    uint32_t edge[12][12]; /* edge[a][b] is the number (0 to 29) of the edge from vertex a to b */
 } icosahedron;
 
 static icosahedron icosahedron_make(void)
@@ -138,8 +138,8 @@ void he_solid_icosahedron(he_soup *soup, double radius)
     he_solid_icosphere(soup, 0, radius);
 }
 
-/* Finds the face of the icosahedron in which corner `b` follows corner `at`. Returns it; `*after`
- * is set to the corner that follows `b`. */
+/* Returns the face of the icosahedron in which corner `b` follows corner `at`; `*after` is set to
+ * the corner that follows `b` in that face. */
 static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint32_t *after)
 {
     for (uint32_t f = 0; f < 20; f++) {

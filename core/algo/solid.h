@@ -13,7 +13,7 @@ void he_solid_vertex(he_soup *soup, double x, double y, double z);
 void he_solid_face(he_soup *soup, const uint32_t *corners, size_t count);
 
 void he_solid_tetrahedron(he_soup *soup, double radius);
-void he_solid_cube(he_soup *soup, double size); /* `size` is the length of an edge */
+void he_solid_cube(he_soup *soup, double size); /* `size` is the length of each edge of the cube */
 void he_solid_octahedron(he_soup *soup, double radius);
 void he_solid_icosahedron(he_soup *soup, double radius);
 void he_solid_dodecahedron(he_soup *soup, double radius);

@@ -11,7 +11,7 @@
 /* Facts about the coarse mesh that all steps need. */
 typedef struct start {
     he_sizes sizes;
-    uint64_t *feature; /* one bit for each edge, NULL if there are no features */
+    uint64_t *feature; /* one bit for each edge: set if the edge is a feature; NULL: no features */
     uint64_t *fixed;
 } start;
 
@@ -249,9 +249,9 @@ static void clear_step(he_subdivide_step *s)
     he_mem_free(s->corner_from);
 }
 
-/* Returns for each live row its index among the live rows; NULL if all rows are live. *failed is
- * set if memory is out. `link` has `stride` entries for each row; the first of them is HE_DEAD in a
- * deleted row. */
+/* Returns an array with the index of each live row among the live rows; NULL if all rows are live.
+ * *failed is set if memory is out. `link` has `stride` entries for each row; the first of them is
+ * HE_DEAD in a deleted row. */
 static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride, bool *failed)
 {
     if (rows->live == rows->issued) {
@@ -340,9 +340,10 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 /* What one step of a subdivision does. */
 typedef struct refinement {
     he_scheme scheme;
-    bool thirds;           /* sqrt3: it cuts sharp edges in three */
+    bool thirds;           /* the scheme is sqrt3, and this step cuts sharp edges in three */
     const he_sizes *sizes; /* sizes of the finer mesh */
-    /* Share of the whole progress that is done before the step, and after it. */
+    /* The part of the whole progress that is reached before the step (`done`) and after it
+     * (`to`). */
     double done, to;
 } refinement;
 
@@ -376,7 +377,7 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement
     return status == HE_OK ? he_subdivide_attributes(s, err) : status;
 }
 
-/* Makes the finer mesh of content `c`, and finds which of its edges are features. */
+/* Makes the finer mesh of content `c`, and finds which edges of the finer mesh are features. */
 static he_status step(const he_mesh *m, const he_content *c, const refinement *r, start *at,
                       he_mesh **out, he_error *err)
 {

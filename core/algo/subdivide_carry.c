@@ -17,7 +17,7 @@ static bool has_columns(const he_content *c, he_kind domain)
 }
 
 /* Makes an array of `count` ids that are all HE_NONE, if the mesh has attribute columns of this
- * domain. */
+ * domain (kind of element). */
 static bool reserve(const he_content *c, he_kind domain, uint32_t count, uint32_t **out)
 {
     if (!has_columns(c, domain)) {
@@ -128,7 +128,7 @@ static he_status smooth_column(const he_subdivide_step *s, const he_column *from
         }
         status = he_subdivide_place(s, before, after, err);
         for (uint32_t v = 0; v < fine && status == HE_OK; v++) {
-            /* The rows of deleted elements keep the default. */
+            /* In the rows of deleted elements the column keeps the attribute's default. */
             if (s->to->vertex_halfedge[v] == HE_DEAD) {
                 continue;
             }

@@ -24,8 +24,8 @@ static inline void gather(he_vec3 *to, he_vec3 what)
     *to = he_vec3_add(*to, what);
 }
 
-/* A subdivision rule: the weight of a smooth vertex itself, and that of the sum over its
- * neighbours. */
+/* A subdivision rule: where a smooth vertex moves is the weighted sum of its old position (first
+ * weight) and of the sum over its neighbours (second weight). */
 typedef struct weights {
     double own, sum;
 } weights;
@@ -157,8 +157,8 @@ static he_vec3 third_from(const he_subdivide_step *s, uint32_t a, uint32_t b, co
     if (sharpness(s, a) != CURVE) {
         return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
     }
-    /* The sum of the neighbours of a contains b once already, so b has the weight 9/27, not
-     * 10/27. */
+    /* The sum over the neighbours of a contains b once already, so here b gets the weight 9/27
+     * instead of 10/27. */
     return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), he_vec3_scale(to[a], 1.0 / 27));
 }
 
@@ -279,8 +279,8 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* Adds up, for every vertex, the sum that its rule needs. One thread does this alone, because a
- * floating-point sum depends on the order of its terms. */
+/* Adds up, for every vertex, the sum over its neighbours that the rule for the vertex needs. One
+ * thread does this alone, because a floating-point sum depends on the order of its terms. */
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;

@@ -190,7 +190,8 @@ static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, 
 {
     cutting *c = context;
     const he_subdivide_step *s = c->s;
-    fresh at = c->at[lane]; /* a copy, because lanes would write to one cache line */
+    /* A copy of this lane's ids, because lanes would write to one cache line. */
+    fresh at = c->at[lane];
     he_status status = HE_OK;
     for (size_t f = from; f < to && status == HE_OK; f++) {
         if (!he_subdivide_is_live(s->from->face_halfedge, (uint32_t)f)) {

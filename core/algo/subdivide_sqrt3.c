@@ -46,8 +46,8 @@ static unsigned place_of(const triangle *t, uint32_t h)
     return h == t->h[0] ? 0 : h == t->h[1] ? 1 : 2;
 }
 
-/* Returns the j-th of the three half-edges that h is cut into, and the vertex where that one ends
- * (j < 2). */
+/* Each half-edge h of a sharp edge is cut into three. Returns the j-th of these half-edges, and the
+ * vertex where it ends (for j < 2). */
 static uint32_t segment(const he_subdivide_step *s, uint32_t h, unsigned j)
 {
     uint32_t e = h >> 1, side = h & 1, more = s->from->edges.issued + 2 * s->third[e];
@@ -240,7 +240,7 @@ static void put_vertex(const he_subdivide_step *s, uint32_t v)
     s->to->vertex_halfedge[v] = h;
 }
 
-/* Numbers the new elements in the order of subdivide.h. */
+/* Numbers the new elements in the order that the head of subdivide.h states. */
 static he_status find_places(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;

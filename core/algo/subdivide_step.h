@@ -19,9 +19,11 @@
 typedef struct he_sizes {
     uint64_t vertices, edges, faces; /* numbers of rows, deleted ones included */
     uint64_t live_vertices, live_edges, live_faces;
-    uint64_t boundary;           /* number of boundary half-edges */
-    uint64_t sharp, sharp_sides; /* numbers of sharp edges, and of faces at them */
-    uint64_t polygons, corners;  /* numbers of faces that are no triangles, and of their corners */
+    uint64_t boundary; /* number of boundary half-edges */
+    /* `sharp`: number of sharp edges; `sharp_sides`: number of faces beside them */
+    uint64_t sharp, sharp_sides;
+    /* `polygons`: number of faces that are no triangles; `corners`: that of their corners */
+    uint64_t polygons, corners;
 } he_sizes;
 
 /* How a corner's values are computed. */
@@ -44,25 +46,29 @@ typedef struct he_subdivide_step {
     he_content *to;
     he_progress *progress;
     he_scheme scheme;
-    bool thirds;    /* sqrt3: sharp edges are cut in three */
-    bool polygonal; /* there are faces that are no triangles */
-    /* Each live row's index among the live rows; NULL if all rows are live. */
+    bool thirds;    /* the scheme is sqrt3, and this step cuts sharp edges in three */
+    bool polygonal; /* the coarser mesh has faces that are no triangles */
+    /* The index of each live edge (face) among the live edges (faces); NULL if all rows are
+     * live. */
     uint32_t *edge_rank, *face_rank;
-    uint64_t *feature;      /* one bit for each edge, NULL if there are no features */
+    uint64_t *feature;      /* one bit for each edge: set if it is a feature; NULL: no features */
     uint64_t *feature_next; /* features of the finer content */
-    uint64_t *fixed; /* a bit for each of the first `fixed_count` vertices, NULL if none is fixed */
+    /* A bit for each of the first `fixed_count` vertices: set if the vertex must stay in place;
+     * NULL if none must. */
+    uint64_t *fixed;
     uint32_t fixed_count;
-    /* Number of sharp edges at each vertex; 3 stands for more, and for fixed vertices; NULL if all
-     * vertices are smooth. */
+    /* Number of sharp edges at each vertex; 3 stands for 3 or more, and for a vertex that must stay
+     * in place; NULL if all vertices are smooth. */
     uint8_t *sharp;
     uint32_t *degree;
-    /* Only for the scheme sqrt3: for each face the vertex in it (HE_NONE if it is cut at a sharp
-     * edge) and the first edge inside; for each edge that is cut in three its index among those
-     * edges, else HE_NONE. */
+    /* Only for the scheme sqrt3. `centre`: the new vertex in each face, HE_NONE if the face is cut
+     * at a sharp edge; `spoke`: the first new edge inside each face; `third`: for each edge the
+     * index among the edges that are cut in three, HE_NONE if it is not. */
     uint32_t *centre, *spoke, *third;
-    /* The parents of new rows, starting with the first new row. They are made only if the mesh has
-     * attribute columns. */
-    uint32_t *vertex_from, *edge_from, *face_from; /* an edge inside a face has HE_NONE */
+    /* The parent (old element) of each new element, in arrays that start with the first new id.
+     * They are made only if the mesh has attribute columns of this kind of element. A new edge
+     * inside a face has no parent: HE_NONE. */
+    uint32_t *vertex_from, *edge_from, *face_from;
     /* How the values of each corner of `to` are computed. */
     he_corner_source *corner_from;
 } he_subdivide_step;
@@ -86,8 +92,8 @@ static inline bool he_subdivide_is_sharp(const he_subdivide_step *s, uint32_t e)
            (s->feature != NULL && he_bits_get(s->feature, e));
 }
 
-/* Returns true if the face of h has the same three vertices as the face of twin(h). Both are
- * triangles; `after` is the half-edge after twin(h). */
+/* Returns true if the face of h has the same three vertices as the face of twin(h). Both faces must
+ * be triangles; `after` must be the half-edge after twin(h). */
 static inline bool he_subdivide_is_doubled(const he_content *from, uint32_t h, uint32_t after)
 {
     uint32_t f = from->face[h];

@@ -5,7 +5,7 @@
  * declares is produced and no other, V, E and F change as declared, the checker passes, and a
  * refusal leaves the mesh bit-identical.
  *
- * A row's name is also the C function's (edge_split is he_edge_split) and the tests'. */
+ * A row's name is also that of its C function (he_edge_split for edge_split) and of its tests. */
 #ifndef HE_OP_OP_H
 #define HE_OP_OP_H
 
@@ -13,8 +13,8 @@
 
 /* The type of a parameter. */
 typedef enum he_param_type {
-    HE_PARAM_ELEMENT,  /* one id of the row's kind */
-    HE_PARAM_ELEMENTS, /* one id under `name`, or a list under `plural` */
+    HE_PARAM_ELEMENT,  /* the id of one element, of the kind that the parameter's row names */
+    HE_PARAM_ELEMENTS, /* one id under the key `name`, or a list of ids under the key `plural` */
     HE_PARAM_NUMBER,   /* a finite double, within min and max where the row has a range */
     HE_PARAM_POINT,    /* a point [x, y, z] */
     HE_PARAM_POINTS,   /* [x, y, z], or a list of those, one for each element */
@@ -23,21 +23,22 @@ typedef enum he_param_type {
     HE_PARAM_MATRIX,   /* 16 numbers, row-major, last row 0 0 0 1 */
     HE_PARAM_CYCLE, /* a list of element ids whose order matters and where repeats are refusals */
     HE_PARAM_TEXT,  /* a string */
-    HE_PARAM_COLOR, /* red, green and blue, from 0 on; with HE_OPACITY also four */
-    HE_PARAM_MESH   /* another mesh, which must not change meanwhile */
+    /* Red, green and blue, none below 0; with HE_OPACITY perhaps also the opacity. */
+    HE_PARAM_COLOR,
+    HE_PARAM_MESH /* another mesh, which must not change meanwhile */
 } he_param_type;
 
 /* Flags of a parameter. */
 enum {
     HE_REQUIRED = 1,
-    HE_NULLABLE = 2,  /* an element that may be null, which is HE_NONE */
+    HE_NULLABLE = 2,  /* an element that may be null in a request; HE_NONE then */
     HE_EXCLUSIVE = 4, /* the ends of the range are excluded */
     HE_RANGE = 8,     /* min and max apply */
     HE_DERIVED = 16,  /* a number or flag whose default is computed from the mesh, as `doc` says */
     /* If a request gives the parameter, a local operation costs as much as one of the whole mesh.
      */
     HE_COSTS_MESH = 32,
-    HE_WHOLE = 128, /* a number with a range, without a fraction */
+    HE_WHOLE = 128, /* a number with a range, which must be whole */
     /* The operation also visits neighbours of the elements: all corners of the faces around a
      * vertex, all edges at the corners of a face or along a loop, both loops of an edge. */
     HE_REACHES = 64,
@@ -56,8 +57,8 @@ typedef struct he_param {
     he_param_type type;
     he_kind kind; /* kind of the elements */
     unsigned flags;
-    /* Parameters with one letter are alternatives: at most one is given, and exactly one if any of
-     * them is required. 0 means no alternatives. */
+    /* Parameters that have the same letter here are alternatives: at most one of them is given, and
+     * exactly one if any of them is required. 0: the parameter has no alternatives. */
     char group;
     double min, max;
     double fallback;            /* default of a number; 0 or 1 for a flag; index of a choice */
@@ -78,9 +79,10 @@ typedef struct he_arg {
     bool flag;
     int choice;
     double matrix[16];
-    const char *text;    /* value of an HE_PARAM_TEXT; borrowed */
-    double color[4];     /* `count` of the numbers are given */
-    const he_mesh *mesh; /* borrowed; never the mesh that is edited */
+    const char *text; /* value of an HE_PARAM_TEXT; borrowed */
+    /* Value of an HE_PARAM_COLOR, of which the first `count` numbers are given. */
+    double color[4];
+    const he_mesh *mesh; /* value of an HE_PARAM_MESH; borrowed; never the mesh that is edited */
 } he_arg;
 
 /* The type of a result. An operation gives results in addition to the sets that follow from its
@@ -89,8 +91,8 @@ typedef enum he_result_type {
     HE_RESULT_ELEMENT,  /* one id, or null */
     HE_RESULT_ELEMENTS, /* a list of ids */
     HE_RESULT_NUMBER,
-    HE_RESULT_MAP,    /* old id -> new id, null if dead */
-    HE_RESULT_COUNTS, /* numbers of elements, one for each step */
+    HE_RESULT_MAP,    /* the new id of each old id, null if the element was deleted */
+    HE_RESULT_COUNTS, /* the number of elements of one kind after each step of subdivision */
     HE_RESULT_CHOICE  /* one of the strings in `choices` */
 } he_result_type;
 
@@ -108,13 +110,14 @@ enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
  * the end the caller clears them. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
-    uint32_t id[HE_OP_RESULTS]; /* the element; for a choice, its index */
+    /* Value of an HE_RESULT_ELEMENT, or the index of an HE_RESULT_CHOICE. */
+    uint32_t id[HE_OP_RESULTS];
     he_ids list[HE_OP_RESULTS];
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* How long an operation takes: the time of HE_OP_LOCAL depends on the elements it touches, that of
- * HE_OP_WHOLE on the whole mesh, so it may run long. */
+/* How long an operation takes: the time of an HE_OP_LOCAL depends on the elements that the
+ * operation touches; that of an HE_OP_WHOLE on the whole mesh, so this may take long. */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
 /* Marks a change of V, E or F that depends on the mesh. */
@@ -124,12 +127,12 @@ typedef struct he_op {
     const char *name;
     const char *doc; /* one sentence */
     he_op_size size;
-    he_param params[HE_OP_PARAMS]; /* ends at the first one without a name */
+    he_param params[HE_OP_PARAMS]; /* the list ends at the first parameter without a name */
     he_result_row results[HE_OP_RESULTS];
     /* Every refusal that the operation can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and,
-     * if the work can be cancelled, HE_CANCELLED; ends in HE_OK. */
+     * if the work can be cancelled, HE_CANCELLED; the list ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
-    int change[3]; /* change of the numbers of vertices, edges and faces */
+    int change[3]; /* change of the numbers of vertices, edges and faces, in this order */
     /* The time of the operation relative to `transform`: for each element of the mesh if it takes
      * the whole mesh, else for each element of its lists. It was measured, and rounded up; 0 means
      * 1. */
@@ -146,7 +149,8 @@ typedef struct he_op {
 size_t he_op_count(void);
 const he_op *he_op_at(size_t i);
 size_t he_op_number(const he_op *op); /* the number of the operation for he_op_at */
-const he_op *he_op_find(const char *name, size_t length); /* NULL if there is none of that name */
+/* The operation of this name; NULL if there is none. */
+const he_op *he_op_find(const char *name, size_t length);
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
 /* Returns true if the operation, with these arguments, takes time linear in the whole mesh. */
@@ -163,7 +167,7 @@ HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,
  * report. */
 bool he_op_declares(const he_op *op, he_status status);
 
-/* Fills in an argument for every parameter with its default and `given` false. */
+/* Fills in an argument for every parameter: the parameter's default, with `given` false. */
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
 /* Applies one operation. Arguments are those of he_op_defaults, some of them given. The decoder has
  * checked ranges, groups and finiteness (asserted here). A refusal changes nothing. Neither does a

@@ -27,8 +27,8 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Returns the factor by which subdivision makes the mesh grow: each step makes four faces of one,
- * or three. */
+/* Returns the factor by which subdivision makes the mesh grow: each step makes three faces of each
+ * face in the scheme sqrt3, else four. */
 static double subdivide_growth(const he_arg *args)
 {
     return pow(args[SUBDIVIDE_SCHEME].choice == HE_SQRT3 ? 3 : 4, args[SUBDIVIDE_STEPS].number);

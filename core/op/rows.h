@@ -19,7 +19,7 @@ extern const he_op he_refine_rows[];
 extern const he_op he_decimate_rows[];
 extern const he_op he_material_rows[];
 
-/* Returns the rows in the order of the table; NULL past the last. */
+/* Returns the row with this number, in the order of the table; NULL past the last row. */
 const he_op *he_table_row(size_t i);
 /* Returns the number of a row of the table. */
 size_t he_table_number(const he_op *op);
@@ -30,9 +30,9 @@ size_t he_table_number(const he_op *op);
  *     enum { EDGE_BISECT_OUT_VERTEX, EDGE_BISECT_OUT_EDGE };       indices of results
  *
  * The row places each parameter and result with its slot, `[EDGE_BISECT_T] = {.name = "t", ...}`,
- * so that an adapter and its row cannot mean different ones. A slot is named after the operation
- * and the parameter (its plural if there is one) or, behind OUT, the result: .ci/lint-slots
- * compares the names. */
+ * so that an adapter and its row cannot mean different parameters. A slot is named after the
+ * operation and the parameter (its plural if there is one) or, behind OUT, the result:
+ * .ci/lint-slots compares the names. */
 
 /* Sets the result in a slot to one element, which may be HE_NONE, or to one choice. */
 void he_results_set(he_results *out, size_t slot, uint32_t id);

@@ -8,12 +8,14 @@
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 typedef struct he_gather {
-    const uint32_t *of; /* elements whose neighbours are wanted; NULL: every live element */
-    size_t count;       /* number of entries of `of`; of issued rows if that is NULL */
+    /* Ids of the elements whose neighbours are wanted; NULL: every live element. */
+    const uint32_t *of;
+    size_t count; /* number of entries of `of`; if `of` is NULL, number of ids ever issued */
     he_ids *ids;
-    uint32_t *offsets; /* where the next offset will be written; NULL if offsets are not wanted */
-    uint64_t budget;   /* half-edges that may still be visited */
-    bool capped;       /* was the budget set by the mesh's size? */
+    /* Where the next offset (index in `ids`) goes; NULL: no offsets are wanted. */
+    uint32_t *offsets;
+    uint64_t budget; /* number of half-edges that may still be visited */
+    bool capped;     /* true if `budget` follows from the size of the mesh */
     unsigned flags;
 } he_gather;
 
@@ -76,9 +78,10 @@ static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t 
     return kind == HE_FACE ? m->c.face_halfedge[id] : id;
 }
 
-/* The loop that all relations use. It is inlined into each of them with `kind`, `path` and `what`
- * known, so that a query for a million vertices runs without a branch on them. Dead and absent
- * links point past the end of a table, which is tested before a row is read. */
+/* The walk that all relations share. It is inlined into the function of each relation with constant
+ * `kind`, `path` and `what`, so a query for a million vertices never branches on these three. A
+ * link that is dead or absent is an id past the end of the tables, which is tested before a row is
+ * read. */
 static ALWAYS_INLINE he_status walk(const he_mesh *m, he_gather *g, he_kind kind, way path,
                                     reading what, he_error *err)
 {
@@ -261,8 +264,8 @@ static he_status face_faces(const he_mesh *m, he_gather *g, he_error *err)
     return HE_OK;
 }
 
-/* Appends what the two half-edges of each edge contribute. The order of two elements is equal
- * clockwise and counter-clockwise. */
+/* Appends what the two half-edges of each edge contribute. Two elements have one cyclic order, so
+ * nothing needs to be done to list them clockwise. */
 static ALWAYS_INLINE he_status sides(const he_mesh *m, he_gather *g, reading what, he_error *err)
 {
     for (size_t i = 0; i < g->count; i++) {
@@ -364,9 +367,9 @@ he_status he_relation_append(const he_mesh *m, const he_relation *relation, uint
     return status;
 }
 
-/* Returns an upper bound of the number of neighbours of all elements, which is exact for most
- * relations; 0 if the mesh's size gives no bound (each half-edge of a large face lists the whole
- * loop). */
+/* Returns an upper bound of the number of neighbours that a relation gives for all elements
+ * together; the bound is exact for most relations. Returns 0 if the mesh's size gives no bound: in
+ * the relation `loop` each half-edge of a large face lists the whole loop. */
 static uint64_t bound(const he_mesh *m, const he_relation *relation)
 {
     return relation->of == HE_HALFEDGE ? 0 : 2u * (uint64_t)m->c.edges.live;

@@ -32,7 +32,9 @@
 /* Flags of the functions below. */
 enum { HE_CLOCKWISE = 1 };
 
-struct he_gather; /* where a relation's function puts its ids; private to adjacency.c */
+/* Where the function of a relation puts the ids of neighbours; its members are private to
+ * adjacency.c. */
+struct he_gather;
 
 typedef struct he_relation {
     he_kind of, gives;
@@ -69,9 +71,9 @@ typedef struct he_neighbours {
 } he_neighbours;
 
 /* Finds the neighbours of many elements. `limit` is the most half-edges to visit, since a list may
- * name one vertex of a thousand neighbours a thousand times; with 0 only the size of 32-bit offsets
- * is a limit. The caller clears `out`. Returns the errors of he_relation_append, too. Returns
- * HE_LIMIT if more half-edges would be visited. */
+ * name one vertex of a thousand neighbours a thousand times; if `limit` is 0, only what fits into
+ * 32-bit offsets is a limit. The caller clears `out`. Returns the errors of he_relation_append,
+ * too. Returns HE_LIMIT if more half-edges would be visited. */
 HE_NODISCARD he_status he_relation_dense(const he_mesh *m, const he_neighbours *asked,
                                          uint64_t limit, he_dense *out, he_error *err);
 void he_dense_clear(he_dense *dense);

@@ -9,14 +9,14 @@
 
 enum {
     BINS = 16,
-    /* The size of the stack of pairs of nodes: each level on the way down leaves at most two pairs
-     * on it, and a pair may be split on either side. */
+    /* The size of the stack of pairs of nodes. Each step down the tree leaves at most two pairs on
+     * the stack, and in a pair either node may be replaced by its children. */
     PAIRS = 6 * HE_BOXES_STACK
 };
 
 typedef struct builder {
     he_boxes tree;
-    const he_bounds *boxes; /* boxes of things, by their numbers */
+    const he_bounds *boxes; /* the box of each thing */
     const uint32_t *group;  /* the group of each thing; NULL if there are no groups */
     he_bounds *group_boxes;
     size_t capacity; /* number of nodes for which there is memory */
@@ -54,12 +54,12 @@ static double middle(const he_bounds *b, int axis)
 /* A run of entries of `order`, the list of all things, that will become a node of the tree. */
 typedef struct run {
     uint32_t node, first, count, depth;
-    uint32_t least, most; /* lowest and highest group of its things */
+    uint32_t least, most; /* lowest and highest group number of the things in the run */
 } run;
 
 typedef struct cut {
     int axis; /* axis of the cut; -1 if none was found */
-    int bin;  /* things in the bins below this one go left */
+    int bin;  /* things in bins with lower numbers than this go to the left part */
     double low, factor;
 } cut;
 
@@ -68,8 +68,8 @@ static uint32_t group_of(const builder *b, uint32_t thing)
     return b->group == NULL ? 0 : b->group[thing];
 }
 
-/* Returns the box by which a thing is placed while its run is divided: its own box, or that of its
- * group. */
+/* Returns the box that decides to which side a thing goes when its run is divided: the thing's own
+ * box, or the box of its group. */
 static const he_bounds *place_of(const builder *b, const run *r, uint32_t i)
 {
     uint32_t thing = b->tree.order[r->first + i];
@@ -83,8 +83,8 @@ static int bin_of(const cut *c, const he_bounds *b)
     return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* Finds the cheapest cut of a run along one axis. Returns its cost; DBL_MAX if all things would be
- * on one side. */
+/* Finds the cheapest cut of a run in two along one axis. Returns the cost of the cut; DBL_MAX if
+ * every cut would leave all things on one side. */
 static double cut_along(const builder *b, const run *r, cut *c)
 {
     uint32_t counts[BINS] = {0};
@@ -157,7 +157,8 @@ static bool goes_left(const builder *b, const run *r, const cut *c, uint32_t i)
     return bin_of(c, place_of(b, r, i)) < c->bin;
 }
 
-/* Divides the run in two by the cheapest cut; returns how many things are on the left. */
+/* Divides a run of things in two by the cheapest cut; returns how many things are in the left
+ * part. */
 static uint32_t divide(builder *b, const run *r)
 {
     cut c = {.axis = -1};
@@ -206,7 +207,7 @@ static float upward(double x)
     return -downward(-x);
 }
 
-/* Finds the box of a run, and whether it contains things of several groups. */
+/* Finds the box around all things of a run, and whether they belong to several groups. */
 static he_bounds look(const builder *b, run *r)
 {
     he_bounds bounds = he_bounds_none();
@@ -285,8 +286,8 @@ he_status he_boxes_make(const he_boxed *things, he_budget *budget, he_boxes *out
 {
     const uint32_t count = things->count, *group = things->group;
     builder b = {.boxes = things->boxes, .group = group, .budget = budget};
-    /* The first capacity is about the number of nodes of the tree if most leaves are full, and a
-     * few more. */
+    /* Memory is first allocated for slightly more nodes than a tree has whose leaves are mostly
+     * full. */
     b.capacity = count / 2 + 4;
     b.tree.nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree.nodes);
     b.tree.order = he_mem_array(NULL, count, sizeof *b.tree.order);
@@ -339,8 +340,8 @@ static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
         out[2] = (node_pair){a->first, a->first + 1};
         return 3;
     }
-    /* If one node of the pair is a leaf, the other one is split. If none is, the node higher up in
-     * the tree is split, which has the lower number. */
+    /* If one node of the pair is a leaf, the other node is split. If neither is a leaf, the node
+     * with the lower number is split, which is higher up in the tree. */
     bool first = b->count > 0 || (a->count == 0 && p.a < p.b);
     for (uint32_t side = 0; side < 2; side++) {
         out[side] = first ? (node_pair){a->first + side, p.b} : (node_pair){p.a, b->first + side};

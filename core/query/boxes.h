@@ -20,8 +20,10 @@
 
 enum {
     HE_BOXES_LEAF = 4,
-    HE_BOXES_DEEP = 48, /* nodes from this depth on are halved without a search for the best cut */
-    HE_BOXES_STACK = 96 /* size of the stack of a walk; no path from the root is as long */
+    /* Nodes at this depth or deeper are halved without a search for the best cut. */
+    HE_BOXES_DEEP = 48,
+    /* Size of the stack of a walk down the tree; no path from the root is as long. */
+    HE_BOXES_STACK = 96
 };
 
 typedef struct he_bounds {
@@ -65,11 +67,12 @@ void he_boxes_clear(he_boxes *tree);
 
 /* The functions that visit pairs of things whose boxes intersect. */
 typedef struct he_boxes_visit {
-    /* Returns true if no thing below one node needs to be tried with any thing below the other. May
-     * be NULL. Nodes whose boxes do not intersect are skipped in any case. */
+    /* Returns true if no thing below one node needs to be tried with any thing below the other
+     * node. This callback may be NULL. Nodes whose boxes do not intersect are skipped in any
+     * case. */
     bool (*is_needless)(void *context, uint32_t a, uint32_t b);
-    /* Tries the things of two leaves, or of one leaf with one another if both are one node. An
-     * error ends the visit. */
+    /* Tries each thing of leaf a with each of leaf b; if a and b are the same leaf, tries its
+     * things with one another. An error ends the visit. */
     he_status (*try_leaves)(void *context, const he_box_node *a, const he_box_node *b,
                             he_error *err);
 } he_boxes_visit;

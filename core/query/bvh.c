@@ -75,8 +75,8 @@ static uint32_t end_of_face(const he_bvh *tree, uint32_t i)
     return i;
 }
 
-/* Numbers the groups of triangles that belong to a face with many of them. Triangles are listed
- * face by face. Returns the number of groups, including group 0. */
+/* Makes a group of the triangles of each face that has many triangles, and numbers these groups.
+ * Triangles are listed face by face. Returns the number of groups, including group 0. */
 static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
 {
     uint32_t groups = 1;
@@ -91,8 +91,9 @@ static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
     return groups;
 }
 
-/* Numbers the groups of triangles that meet at hubs (hubs.h). A triangle at several hubs belongs to
- * the hub with the most triangles. */
+/* Makes a group of the triangles that meet at each hub, a position of very many triangles (hubs.h),
+ * and numbers these groups. A triangle at several hubs belongs to the group of the hub with the
+ * most triangles. */
 static uint32_t group_spokes(const he_bvh *tree, uint32_t groups, uint32_t *group)
 {
     const he_hubs *hubs = &tree->hubs;

@@ -29,7 +29,8 @@
 enum { HE_BVH_LOOK = 8, HE_BVH_PAIR = 64 };
 
 typedef struct he_bvh_disc {
-    float center[3], normal[3], thick, radius; /* `thick` is the thickness to either side */
+    /* `thick` is the thickness to either side of the disc's middle plane */
+    float center[3], normal[3], thick, radius;
 } he_bvh_disc;
 
 typedef struct he_bvh_triangle {
@@ -63,10 +64,11 @@ void he_bvh_free(he_bvh *tree);
 /* The point where a ray hits a face, or the nearest point on a face. */
 typedef struct he_hit {
     uint32_t face;      /* HE_NONE: nothing was hit, and the other fields are not set */
-    uint32_t vertex[3]; /* corners of one of its triangles */
+    uint32_t vertex[3]; /* the corners of a triangle of the face; the point lies in that triangle */
     double weight[3];   /* barycentric coordinates of the point: not negative, sum 1 */
     he_vec3 point;
-    double distance; /* distance of the point; at most DBL_MAX */
+    /* Distance of the point from the ray's origin or the given point; at most DBL_MAX. */
+    double distance;
 } he_hit;
 
 /* A ray; `max` is the greatest distance from its origin at which it hits, in the mesh's unit. */

@@ -7,12 +7,12 @@ static double square(he_vec3 a)
     return he_vec3_dot(a, a);
 }
 
-/* Returns where on the way from a to b the point nearest to p is: from 0 at a to 1 at b. */
+/* Returns where on the segment from a to b the point nearest to p is: 0 at a, 1 at b. */
 static double along(he_vec3 p, he_vec3 a, he_vec3 b)
 {
     he_vec3 ab = he_vec3_sub(b, a);
     double t = he_vec3_dot(he_vec3_sub(p, a), ab) / square(ab);
-    return t > 0 ? (t < 1 ? t : 1) : 0; /* NaN if the ends are equal: then 0 */
+    return t > 0 ? (t < 1 ? t : 1) : 0; /* if a and b are equal, t is NaN, and the result is 0 */
 }
 
 /* Finds the point inside a triangle nearest to p, the foot of the perpendicular. Returns false if
@@ -104,8 +104,8 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
     }
 }
 
-/* Returns a lower bound of the squared distance from p to the triangles below a node. Once the
- * bound exceeds `far`, it need not be the best one. */
+/* Returns a lower bound of the squared distance from p to the triangles below a node. Once it
+ * exceeds `far`, the bound is returned as it is, without being improved. */
 static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
 {
     const he_box_node *node = &tree->nodes[at];

@@ -6,7 +6,7 @@
  * computed from the discs of their children, which makes them looser with each level. */
 enum { PATCH = 256 };
 
-/* Twice the rounding error of a normal in floats. */
+/* Twice the rounding error of a disc's normal, which is stored in floats. */
 static const double ROUNDING = 4e-7;
 
 static he_vec3 of_floats(const float v[3])
@@ -135,7 +135,8 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
         double high, wide;
         he_vec3 from = he_vec3_sub(of_floats(children[i].center), of_floats(disc->center));
         double same = fmin(fabs(he_vec3_dot(of_floats(children[i].normal), normal)), 1);
-        /* The margin covers a small angle between the discs that was lost by rounding. */
+        /* ROUNDING is added because a small angle between the two discs may have been lost by
+         * rounding. */
         double askew = sqrt(1 - same * same) + 1e-3;
         reach(from, normal, &high, &wide);
         thick = fmax(thick, high + children[i].thick + children[i].radius * askew);

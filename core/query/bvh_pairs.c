@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-/* A triangle of a leaf, and its box. */
+/* A triangle in a leaf of the tree: its corners, and the box around it. */
 typedef struct prism {
     he_vec3 corner[3];
     double min[3], max[3];
@@ -21,9 +21,10 @@ typedef struct common {
 
 typedef struct walk {
     he_pair_search search;
-    common *commons; /* one for each node; NULL if there are no hubs or large faces */
-    uint32_t done;   /* number of triangles that were tried with all following ones */
-    uint32_t leaves; /* number of leaves that were tried with themselves */
+    /* What the triangles below each node have in common; NULL: no hubs or large faces. */
+    common *commons;
+    uint32_t done;   /* number of triangles that were tried with all triangles after them */
+    uint32_t leaves; /* number of leaves whose triangles were tried with one another */
 } walk;
 
 /* Progress is reported after each TOLD leaves. */
@@ -198,7 +199,8 @@ static bool is_needless(void *context, uint32_t a, uint32_t b)
     const he_bvh *tree = w->search.tree;
     common shared = both(&w->commons[a], &w->commons[b]);
     if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
-        /* he_pairs_at_hub tries the pairs at a hub; triangles of one face are never tried. */
+        /* Pairs that meet at one hub are left to he_pairs_at_hub; triangles of one face are never
+         * tried with one another. */
         return true;
     }
     return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||

@@ -15,7 +15,7 @@ typedef struct he_pair_search {
     const he_bvh *tree;
     const he_mesh *m;
     he_budget *budget;
-    size_t most; /* most ids that `pairs` may hold */
+    size_t most; /* the most face ids that `pairs` may hold */
     he_ids *pairs;
     uint32_t *hubs_of; /* HE_HUBS_OF numbers for each triangle (hubs.h); NULL without hubs */
 } he_pair_search;
@@ -30,8 +30,8 @@ uint32_t he_pair_hub(const he_pair_search *s, uint32_t i, uint32_t k);
 HE_NODISCARD he_status he_pair_try(he_pair_search *s, uint32_t i, uint32_t k, const he_vec3 a[3],
                                    const he_vec3 b[3], he_error *err);
 
-/* Tries the triangles at a hub (its spokes) with one another, except pairs that also have a common
- * hub of a lower number. Returns the errors of he_pair_try. */
+/* Tries the triangles at a hub (its spokes) with one another, except pairs of spokes that meet at a
+ * second hub with a lower number, too. Returns the errors of he_pair_try. */
 HE_NODISCARD he_status he_pairs_at_hub(he_pair_search *s, uint32_t hub, he_error *err);
 
 #endif

@@ -3,7 +3,8 @@
 /* A ray, prepared for tests of boxes and triangles, in the tree's coordinates. */
 typedef struct ray {
     double origin[3], direction[3], inverse[3];
-    int x, y, z; /* the axes, permuted so that the direction is mostly along z */
+    /* Numbers of the axes (0 to 2), exchanged so that the ray runs mostly along axis z. */
+    int x, y, z;
     double shear_x, shear_y, shear_z;
 } ray;
 
@@ -38,7 +39,8 @@ static ray prepare(he_vec3 origin, he_vec3 direction)
 static const double SLACK = 32 * DBL_EPSILON;
 
 /* Returns where the ray enters the box, at least 0; HUGE_VAL if it misses the box or enters beyond
- * `far`. A ray in the plane of a side gives NaN for it, which counts as inside. */
+ * `far`. For a ray that lies in the plane of a side of the box, the distance to that plane is NaN,
+ * which counts as inside. */
 static double enter(const ray *r, const he_box_node *node, double far)
 {
     double near = 0, out = far;
@@ -135,8 +137,9 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
 }
 
 /* Moves the origin of a ray that starts far away to where the ray enters the box of all faces.
- * Returns the distance; HUGE_VAL if the ray misses the box. On the axis by which it enters, the new
- * origin is exactly on the side of the box, however coarse numbers are so far away. */
+ * Returns the distance; HUGE_VAL if the ray misses the box. The coordinate of the new origin across
+ * the side by which the ray enters is exactly that of the side, although doubles so far away are
+ * coarse. */
 static double approach(ray *r, const he_box_node *root)
 {
     double near = enter(r, root, HUGE_VAL), latest = -HUGE_VAL;

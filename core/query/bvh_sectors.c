@@ -16,17 +16,18 @@
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
 
-/* The rounding error of the coordinates of a direction, and of values computed from them here, is
- * below this. */
+/* The rounding error of the coordinates of a direction, and of values computed from these
+ * coordinates here, is below ROUNDING. */
 static const double ROUNDING = 1e-14;
 
 typedef struct sectors {
     he_pair_search *search;
     uint32_t hub;
     uint32_t *spokes; /* triangles that have area */
-    he_bounds *arcs;  /* box around the arc of each spoke */
+    he_bounds *arcs;  /* box around the arc of directions of each spoke */
     uint32_t count;
-    const uint32_t *order; /* the spokes in the order of the tree over their arcs */
+    /* Indices of the spokes, in the order of the leaves of the tree over their arcs. */
+    const uint32_t *order;
 } sectors;
 
 static void include(he_bounds *b, he_vec3 p, double pad)

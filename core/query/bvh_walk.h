@@ -20,12 +20,13 @@ static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t
     }
 }
 
-/* The best result of a walk so far: a triangle, and a point in it. */
+/* The best result of a walk (search down the tree) so far: a triangle, and a point in it. */
 typedef struct he_bvh_found {
     uint32_t triangle; /* HE_NONE if nothing was found yet */
     double weight[3];
-    double far; /* a length in the tree's coordinates, or its square: nothing farther needs to be
-                   visited */
+    /* The length (or, in searches for the nearest point, the squared length) in the tree's
+     * coordinates beyond which nothing needs to be visited. */
+    double far;
 } he_bvh_found;
 
 /* Converts the best result of a walk into a hit in coordinates of the mesh. Its distance is left to

@@ -7,8 +7,9 @@
 
 /* --- chosen elements --- */
 
-/* The elements whose curvature is computed. Each has one row of sums: by its id if all elements are
- * chosen, else by its rank among the chosen ones. */
+/* The elements whose curvature is computed. Each element has one row in the array of sums: the
+ * row's index is the id of the element if all are chosen, else its rank among the chosen
+ * elements. */
 typedef struct chosen {
     bool all;
     he_ids ids;   /* sorted, each once; empty if all elements are chosen */
@@ -128,8 +129,9 @@ static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_R
     }
 }
 
-/* Returns a coordinate frame for cutting one face into triangles. It depends on this face alone, so
- * an element has one value, whether it is computed alone or with all others. */
+/* Returns a coordinate frame for cutting one face into triangles. The frame depends on this face
+ * alone, so the curvature of an element does not depend on whether it is computed alone or together
+ * with all other elements. */
 static he_frame frame_of(const he_mesh *m, uint32_t first)
 {
     he_vec3 base = m->c.position[m->c.origin[first]];
@@ -197,7 +199,7 @@ static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_p
  * exponent is that of the longest side so far. */
 typedef struct sums {
     double angle, area;
-    he_vec3 bend;   /* sum of cotangents times sides towards the vertex */
+    he_vec3 bend;   /* sum of cotangents times the side vectors that point towards the vertex */
     he_vec3 normal; /* sum of the triangles' normals, weighted by angle */
     int exponent;
     bool any;
@@ -222,9 +224,9 @@ static void rescale(sums *s, int exponent)
     }
 }
 
-/* Returns the share of corner i in the triangle's mixed area: the part that is nearest to the
- * corner if no angle is obtuse, else half of the area at the obtuse angle and a quarter
- * elsewhere. */
+/* Returns the share that corner i gets of the triangle's area (the mixed area of curvature.h): the
+ * part of the triangle nearer to this corner than to the others if no angle is obtuse; else half of
+ * the area at the obtuse angle, and a quarter at each other corner. */
 static double share(const triangle *t, int i, double ahead, double behind)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;

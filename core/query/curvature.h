@@ -25,7 +25,8 @@ typedef struct he_curvature {
      * isolated vertices the sum is 2 pi times its Euler number (Gauss and Bonnet). NaN if the
      * vertex is isolated. */
     double angle_defect;
-    double area; /* the mixed area; over a mesh the sum is the area of its triangles */
+    /* The mixed area, the vertex's share of the surface; over a mesh the sum is the whole area. */
+    double area;
     /* The mean curvature. It is positive where the surface bends away from its normals; on a sphere
      * seen from outside it is 1 / radius. NaN if the vertex is on the boundary or isolated, or if
      * there is no area around it. */
@@ -35,8 +36,8 @@ typedef struct he_curvature {
 
 /* Computes the curvature of each of `count` live vertices, or, if `of` is NULL, of all of them in
  * the order of ids. `progress` may be NULL. On failure `out` may be half written.
- * Returns HE_LIMIT if the sum of the squared degrees of neighbouring faces of more than four
- * corners, which cutting those may cost, is above `most`.
+ * Returns HE_LIMIT if the sum of the squared degrees of the neighbouring faces of more than four
+ * corners is above `most`: cutting such faces into triangles may take that many steps.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face is too large for the arrays of a drawing
  * (draw_arrays.h).
@@ -46,8 +47,8 @@ HE_NODISCARD he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_
                                      he_error *err);
 
 /* Computes half the sum of the cotangents of the angles opposite to each edge; on the boundary
- * there is only one such angle. NaN beside a degenerate triangle. Parameters and errors are those
- * of he_curvatures. */
+ * there is only one such angle. The result is NaN for an edge beside a degenerate triangle.
+ * Parameters and errors are those of he_curvatures. */
 HE_NODISCARD he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
                                           uint64_t most, he_progress *progress, double *out,
                                           he_error *err);

@@ -9,10 +9,12 @@
 #include <float.h>
 
 typedef struct shell {
-    uint32_t face; /* the face with the lowest id */
+    uint32_t face; /* the component's face with the lowest id */
     bool open;
-    double min[3], max[3]; /* in coordinates times the scale, like the fields below */
-    double volume, reach;  /* six times the volume; the most that the sum of its terms could be */
+    /* Corner of the box of the component; like all fields below, in coordinates times the scale. */
+    double min[3], max[3];
+    /* `volume` is six times the volume; `reach` bounds the sum of its absolute terms */
+    double volume, reach;
 } shell;
 
 typedef struct survey {
@@ -23,7 +25,8 @@ typedef struct survey {
     shell *shells;
 } survey;
 
-/* A volume below this share of `reach`, the sum of the absolute terms, may be rounding noise. */
+/* A volume smaller than this part of `reach` (a bound of the sum of the absolute terms) may be
+ * rounding noise. */
 static const double NOISE = 1e-10;
 
 static he_vec3 corner(const survey *s, uint32_t h)

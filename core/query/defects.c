@@ -58,7 +58,8 @@ static he_status of_vertices(const he_mesh *m, he_progress *progress, he_defects
         if (h == HE_NONE) {
             he_defects_add(out, HE_DEFECT_ISOLATED, v, HE_NONE, 0);
         } else if (h != HE_DEAD && m->c.face[h] == HE_NONE) {
-            /* Only vertices on the boundary can have several fans, so others are skipped. */
+            /* Only vertices on the boundary can have several fans (runs of connected faces), so
+             * other vertices are skipped. */
             uint32_t fans = he_vertex_fans(m, (he_vertex){v});
             if (fans > 1) {
                 he_defects_add(out, HE_DEFECT_BOWTIE, v, HE_NONE, fans);
@@ -133,7 +134,7 @@ static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 
 static void of_face(const measure *s, uint32_t f, he_defects *out)
 {
     uint32_t first = s->m->c.face_halfedge[f], budget = he_ring_budget(s->m);
-    int exponent; /* true lengths are those of `r` times 2^exponent */
+    int exponent; /* lengths in the mesh are lengths computed with `r` times 2^exponent */
     he_ring r = he_ring_measure(s->m, first, &budget, &exponent);
     he_vec3 normal;
     bool degenerate = !he_ring_normal(&r, &normal);

@@ -54,13 +54,16 @@ typedef struct he_thresholds {
  * that have edges, or around all vertices if none has an edge. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
-/* The most defects of each code that are listed, the first ones by rising id. All are counted. */
+/* The most defects of each code (kind of defect) that are listed: those with the lowest ids. All
+ * are counted. */
 enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
     uint32_t id;
-    uint32_t other; /* the other element concerned; HE_NONE if there is none */
-    double value;   /* what was measured, see above; 0 if there is nothing */
+    /* The second element concerned, such as the vertex at the same position; HE_NONE: there is
+     * none. */
+    uint32_t other;
+    double value; /* what was measured, as the head of defects.h says; 0 if that names no value */
 } he_defect_found;
 
 typedef struct he_defect_list {
@@ -73,7 +76,8 @@ typedef struct he_defects {
     he_defect_list of[HE_DEFECTS];
 } he_defects;
 
-/* Counts a defect, and lists it unless HE_DEFECTS_LISTED of its code are listed already. */
+/* Counts a defect, and lists it unless HE_DEFECTS_LISTED defects of its code (kind of defect) are
+ * listed already. */
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
                     double value);
 

@@ -18,7 +18,8 @@ typedef struct search {
     const uint32_t *triangles;
     size_t stride;
     uint32_t count;
-    uint32_t *corners; /* number of corners, by vertex; then the number of the vertex's hub */
+    /* The number of triangle corners at each vertex; later the number of the vertex's hub. */
+    uint32_t *corners;
     he_budget *budget;
 } search;
 
@@ -60,10 +61,10 @@ static he_status count_corners(const search *s, he_error *err)
     return status;
 }
 
-/* Lists the vertices at which hubs may be. All vertices are counted by the hash of their position
- * in a small table, where positions may collide. A slot with few corners contains no hub; the
- * vertices in other slots, which are few unless a file was made to fill them, are compared
- * exactly. */
+/* Lists the vertices at which hubs may be. A small table, with one slot for each hash of a
+ * position, counts the corners of triangles at all vertices; several positions may share a slot. A
+ * slot with few corners contains no hub. Vertices in the other slots are listed to be compared
+ * exactly; they are few unless a file was made to fill these slots. */
 static he_status list_candidates(const search *s, candidate **out, size_t *count, he_error *err)
 {
     uint32_t vertices = s->m->c.vertices.issued;
@@ -185,8 +186,8 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u vertices",
                              hubs->count);
     }
-    /* Each count first becomes the end of its hub's run of entries; filling the run from its last
-     * entry lowers it to the beginning. */
+    /* first[h] counts the spokes of hub h. It first becomes the end of this hub's run of entries in
+     * `spokes`; as the run is filled from its last entry, first[h] falls to the run's beginning. */
     uint32_t sum = 0;
     for (uint32_t h = 0; h < hubs->count; h++) {
         sum += hubs->first[h];

@@ -16,8 +16,8 @@ enum { HE_HUB_SPOKES = 32 };
 
 typedef struct he_hubs {
     uint32_t count;
-    uint32_t *first;  /* count + 1 numbers: where the spokes of each hub begin */
-    uint32_t *spokes; /* triangles, in rising order for each hub */
+    uint32_t *first;  /* count + 1 indices: where in `spokes` the spokes of each hub begin */
+    uint32_t *spokes; /* the triangles at each hub, hub after hub, each hub's in rising order */
     he_vec3 *places;  /* positions of the hubs */
 } he_hubs;
 

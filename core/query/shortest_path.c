@@ -14,18 +14,20 @@ static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
                    he_kind_name(kind), id);
 }
 
-/* A vertex that the search has reached; its index is the one that the idmap gave it. */
+/* A vertex that the search has reached; its index in `nodes` is the index that the idmap gave to
+ * its id. */
 typedef struct node {
     double distance;
-    uint32_t via;   /* the half-edge by which the best path arrives; HE_NONE at the start */
-    uint32_t place; /* index in the heap, HE_NONE once settled */
+    uint32_t via; /* the half-edge by which the best path arrives; HE_NONE at the start */
+    /* Index of the vertex in the heap; HE_NONE once its shortest path is known (it is settled). */
+    uint32_t place;
 } node;
 
 typedef struct search {
     he_idmap met;
     node *nodes;
     size_t capacity;
-    uint32_t *heap; /* nodes, the nearest first; it has room for all of `nodes` */
+    uint32_t *heap; /* indices of nodes, the nearest node first; there is room for all of `nodes` */
     uint32_t count; /* number of entries of the heap */
     uint32_t steps; /* number of half-edges visited */
 } search;
@@ -192,7 +194,8 @@ static he_status trace_back(const he_mesh *m, const search *s, uint32_t goal, he
             break;
         }
         n = he_idmap_find(&s->met, m->c.origin[via]);
-        /* A path that has more edges than vertices were settled comes from broken links. */
+        /* No path has more edges than vertices were settled (their shortest paths found), unless
+         * links of the mesh are broken. */
         if (n == HE_NONE || out->edges.count >= s->met.ids.count) {
             return corrupt(HE_HALFEDGE, via, err);
         }

@@ -117,7 +117,8 @@ static uint32_t tree_of(const he_mesh *m, he_connection by, uint32_t *parent, ui
     return root_of(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
 }
 
-/* Numbers the trees of the forest by their lowest face in `label`, and counts their faces. */
+/* Numbers the trees of the union-find forest, which are the components, in the order of their
+ * lowest faces; label[f] of that lowest face f gets the number. Counts the faces of each tree. */
 static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t *label,
                              he_components *list, he_error *err)
 {
@@ -142,10 +143,10 @@ static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *paren
     return HE_OK;
 }
 
-/* Counts each vertex once in every component that has a face at it. With HE_JOINED_BY_VERTEX, and
- * at a single closed fan, the vertex has one component; otherwise `last`, which holds for each
- * component the vertex that it counted last, prevents a component from counting a vertex twice for
- * two fans. */
+/* Counts each vertex once in every component that has a face at this vertex. If faces are joined by
+ * vertices, a vertex has one component; otherwise each fan of faces at it may be in another.
+ * last[c] is the vertex that was counted last in component c, so that a component with two fans at
+ * one vertex counts the vertex once. */
 static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *parent,
                                 const uint32_t *label, uint32_t *last, he_components *list,
                                 he_error *err)

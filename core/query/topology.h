@@ -29,9 +29,11 @@ typedef struct he_topology {
     uint32_t components, components_by_edge;
     int64_t euler, genus;
     bool has_genus;
-    bool closed;              /* no boundary half-edge; false of a mesh without faces */
-    bool manifold;            /* no bow-tie; false of a mesh without faces */
-    he_degree_count *degrees; /* by rising degree; degrees without faces are left out */
+    /* There is no boundary half-edge; a mesh without faces is not closed. */
+    bool closed;
+    bool manifold; /* there is no bow-tie; a mesh without faces is not manifold */
+    /* How many faces have each degree, by rising degree; degrees of no face are left out. */
+    he_degree_count *degrees;
     size_t degree_count;
 } he_topology;
 
@@ -42,12 +44,13 @@ void he_topology_clear(he_topology *topology);
 
 /* BOUNDARY LOOPS. Each boundary half-edge belongs to exactly one loop. */
 typedef struct he_boundary {
-    uint32_t halfedge; /* the lowest id of the loop; he_traverse_loop gives the others */
+    /* The half-edge of the loop with the lowest id; he_traverse_loop gives the other half-edges. */
+    uint32_t halfedge;
     uint32_t length;
 } he_boundary;
 
 typedef struct he_boundaries {
-    he_boundary *loops; /* in the order of rising half-edges */
+    he_boundary *loops; /* in rising order of their half-edges */
     size_t count, capacity;
 } he_boundaries;
 
@@ -59,10 +62,10 @@ typedef enum he_connection { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_connect
 
 typedef struct he_component {
     uint32_t faces;
-    /* Number of vertices of the component's faces. A bow-tie that components share counts in
-     * each. */
+    /* Number of vertices of the component's faces. A bow-tie vertex that several components share
+     * counts in each of them. */
     uint32_t vertices;
-    uint32_t face; /* the face with the lowest id */
+    uint32_t face; /* the component's face with the lowest id */
 } he_component;
 
 typedef struct he_components {

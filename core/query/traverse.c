@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-/* Returns the end of the valid ids of half-edges. A link at or past it is absent, or leads to a
- * dead row or to a row that was never issued. */
+/* Returns the end of the valid ids of half-edges. A link with this value or a higher one is absent,
+ * or leads to a dead row or to a row that was never issued. */
 static uint32_t halfedge_end(const he_mesh *m)
 {
     return 2u * m->c.edges.issued;

@@ -13,8 +13,8 @@
 /* A PATH follows a list of steps from a half-edge; the whole list is taken `repeat` times. */
 typedef enum he_step { HE_STEP_NEXT, HE_STEP_PREV, HE_STEP_TWIN } he_step;
 typedef enum he_until {
-    HE_UNTIL_COUNT, /* the path ends only after `repeat` rounds */
-    HE_UNTIL_START, /* the path also ends at the first return to `from` */
+    HE_UNTIL_COUNT, /* the path ends only when its list of steps was taken `repeat` times */
+    HE_UNTIL_START, /* the path also ends when it first returns to the half-edge `from` */
     /* The path also ends at the first half-edge without a face, or when the whole list of steps was
      * taken and led back to `from`. */
     HE_UNTIL_BOUNDARY
@@ -23,15 +23,16 @@ typedef enum he_until {
 typedef struct he_path_steps {
     const he_step *list;
     size_t count;
-    uint64_t repeat; /* 0 takes no step; UINT64_MAX is for paths that end by `until` */
-    he_until until;  /* tested after each step, not before the first */
-    uint64_t limit;  /* the most steps that may be taken; 0: no bound */
+    /* How often the list of steps is taken, may be 0; UINT64_MAX is for paths that end by
+     * `until`. */
+    uint64_t repeat;
+    he_until until; /* tested after each step, not before the first */
+    uint64_t limit; /* the most steps that may be taken; 0: no bound */
 } he_path_steps;
 
-/* Appends the half-edges of the path, `from` first and the last one at the end: one more than the
- * steps taken. A path that ends by `until` always ends: a list of steps maps half-edges one to one,
- * so after as many rounds as there are half-edges the path has come back (else HE_CORRUPT).
- * `progress` may be NULL.
+/* Appends the half-edges of the path, beginning with `from`: one more than the steps taken. A path
+ * that ends by `until` always ends: a list of steps maps half-edges one to one, so after as many
+ * rounds as there are half-edges the path has come back (else HE_CORRUPT). `progress` may be NULL.
  * Returns HE_LIMIT if the path would take more steps than `limit`.
  * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_BAD_VALUE if the list of steps is empty. */
@@ -67,7 +68,7 @@ typedef enum he_measure {
 typedef struct he_path {
     bool found;       /* false: no path joins the two vertices, which is no error */
     he_ids vertices;  /* from, ..., to; only `from` if they are one vertex */
-    he_ids edges;     /* edges between successive vertices, one fewer */
+    he_ids edges;     /* the edges between successive vertices: one fewer than vertices */
     double length;    /* in the measure asked for; DBL_MAX if a double cannot hold it */
     uint64_t visited; /* half-edges visited, also if no path was found: the cost of the search */
 } he_path;

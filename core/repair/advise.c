@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Copies the faces of a soup; the positions are borrowed. */
+/* Copies the faces of a soup; the copy shares the array of positions with the soup. */
 static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
 {
     *out = (he_soup){.limits = soup->limits,
@@ -26,7 +26,8 @@ static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
     return HE_OK;
 }
 
-/* How many faces run along an edge in each direction. */
+/* The numbers of faces that run along an edge from its lower vertex to its higher one (`up`) and in
+ * the opposite direction (`down`). */
 typedef struct runs {
     uint32_t up, down;
 } runs;
@@ -44,8 +45,8 @@ static void count_runs(const he_soup *soup, const uint64_t *gone, const uint32_t
     }
 }
 
-/* Returns true if face f has an edge that is invalid now, and valid after the duplicates are
- * dropped. */
+/* Returns true if face f has an edge that is invalid (too many faces run along it) now, and valid
+ * after the duplicates are dropped. */
 static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, const runs *before,
                        const runs *after)
 {
@@ -57,8 +58,9 @@ static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, c
     return mends;
 }
 
-/* Decides whether dropping each of the duplicates makes an invalid edge valid. Dropping the wall
- * between two solids does not: both solids need it, and the soup must be split instead. */
+/* Decides whether dropping each of the duplicate faces makes an invalid edge valid. Dropping the
+ * wall between two solids does not make one valid: both solids need the wall, and the soup must be
+ * split instead. */
 static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *out, he_error *err)
 {
     size_t edges = 0;
@@ -97,14 +99,14 @@ static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *ou
     return status;
 }
 
-/* Whether there are duplicates (`some`), and whether dropping each of them makes an invalid edge
- * valid (`mend`). */
+/* `some`: whether the soup has duplicate faces; `mend`: whether dropping each of these faces makes
+ * an invalid edge valid. */
 typedef struct duplicates {
     bool some, mend;
 } duplicates;
 
-/* Finds which repairs a soup of valid faces needs. If `dropped` is not NULL the duplicates are
- * dropped first; if there are none it says so, and nothing else is tested. */
+/* Finds which repairs a soup of valid faces needs. If `dropped` is not NULL, duplicate faces are
+ * dropped first; if there are none, dropped->some is false, and nothing else is tested. */
 static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *out, he_error *err)
 {
     he_soup copy;
@@ -144,7 +146,7 @@ static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *
     return status;
 }
 
-/* Advises to drop duplicates if that makes a split, or the orienting, unnecessary, or if each
+/* Advises to drop duplicate faces if the repair split or orient is then unnecessary, or if each
  * duplicate makes an edge invalid. */
 static he_status advise_proper(const he_soup *soup, unsigned *out, he_error *err)
 {

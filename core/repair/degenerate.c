@@ -29,16 +29,18 @@ typedef struct mending {
     const he_mend *m;
     uint64_t *bad;   /* one bit for each face: set if the face is degenerate */
     uint32_t *stamp; /* a mark for each vertex, used by he_soup_find_repeat */
-    he_ids loops;    /* corners that are kept, face by face */
-    he_ids ends;     /* end of each loop in `loops` */
-    he_ids cut;      /* for each loop its number in `flat`, or HE_NONE */
-    he_ids done;     /* for each degenerate face the end of its loops in `ends` */
+    he_ids loops;    /* numbers of the corners that are kept, loop after loop, face by face */
+    he_ids ends;     /* where in `loops` each loop ends */
+    /* The number of the face of `flat` that each loop became; HE_NONE if the loop is not cut. */
+    he_ids cut;
+    he_ids done;     /* for each degenerate face, where in `ends` its loops end */
     he_ids stack;    /* corners of the loop that is being divided */
-    uint32_t *place; /* index of each vertex in `stack` */
-    he_soup flat;    /* loops to be cut into triangles: every corner is a vertex */
-    he_mesh *mesh;   /* mesh made from `flat` */
-    he_ids list;     /* vertices of a loop, or of triangles */
-    uint64_t *runs;  /* the edges of `list`, sorted by their ends */
+    uint32_t *place; /* where in `stack` each vertex is */
+    /* The loops to be cut into triangles, as faces with a vertex of its own for every corner. */
+    he_soup flat;
+    he_mesh *mesh;  /* mesh made from `flat` */
+    he_ids list;    /* the vertices of the loop being tested, or of its triangles */
+    uint64_t *runs; /* the edges of `list`, sorted by their ends */
     size_t run_capacity;
 
     he_soup made; /* the faces after the repair */
@@ -51,7 +53,8 @@ static uint32_t vertex(const mending *g, size_t i)
     return g->m->soup->corners[g->loops.ids[i]];
 }
 
-/* Removes repeated corners and spikes at the end of the corners [from, loops.count). */
+/* Removes repeated corners and spikes (there and back along an edge) at the end of the loop that
+ * consists of corners `from` to loops.count - 1 of `loops`. */
 static void shorten_end(mending *g, size_t from)
 {
     he_ids *loops = &g->loops;
@@ -87,7 +90,8 @@ static size_t shorten_both(mending *g, size_t from)
     }
 }
 
-/* Adds the loop of a face without repeated corners in a row and without spikes. */
+/* Adds the loop of a face to `loops`, leaving out corners that repeat the vertex of the corner
+ * before, and spikes (there and back along an edge). */
 static he_status add_loop(mending *g, uint32_t f, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -110,7 +114,8 @@ static he_status add_loop(mending *g, uint32_t f, he_error *err)
     return HE_OK;
 }
 
-/* Ends a loop, which consists of the corners of `loops` after the loop before. */
+/* Ends a loop: it consists of all corners that were added to `loops` after the previous loop
+ * ended. */
 static he_status end_loop(mending *g, uint32_t cut, he_error *err)
 {
     he_status status = he_ids_add(&g->ends, (uint32_t)g->loops.count, err);
@@ -154,7 +159,7 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
     return HE_OK;
 }
 
-/* Returns twice the vector area of corners [from, end) of `loops`. */
+/* Returns twice the vector area of the loop of corners `from` to `end` - 1 of `loops`. */
 static he_vec3 area_of(const mending *g, size_t from, size_t end)
 {
     const he_vec3 *p = g->m->soup->positions;
@@ -167,7 +172,8 @@ static he_vec3 area_of(const mending *g, size_t from, size_t end)
     return sum;
 }
 
-/* Returns true if all loops from `first` on have the orientation of the whole. */
+/* Returns true if all loops from number `first` on have the orientation of the loop that was
+ * divided into them. */
 static bool agree(const mending *g, size_t from, size_t first)
 {
     he_vec3 sum = {0, 0, 0};
@@ -226,7 +232,7 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
         return status;
     }
     *apart = agree(g, end, first);
-    if (*apart) { /* the parts, which are after the whole, replace it */
+    if (*apart) { /* the parts, which were added after the whole loop, take its place */
         memmove(g->loops.ids + from, g->loops.ids + end, count * sizeof *g->loops.ids);
         for (size_t i = first; i < g->ends.count; i++) {
             g->ends.ids[i] -= (uint32_t)count;
@@ -335,7 +341,8 @@ static he_status add_triangles(mending *g, uint32_t face, uint32_t cut, size_t f
         return status;
     }
     size_t count = 3 * ((size_t)triangles.flat.n - 2), kept = 0;
-    uint32_t *corners = triangles.corners; /* overwritten with corners of the soup */
+    /* Vertices of `flat` first; later overwritten with corners of the soup. */
+    uint32_t *corners = triangles.corners;
     bool twice = true;
     g->list.count = 0;
     status = he_ids_reserve(&g->list, count, err);
@@ -454,8 +461,8 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
         status = find(&g, err);
     }
     if (status == HE_OK && g.done.count > 0) {
-        /* The list is allocated even if no face is left, because a list that is not NULL says that
-         * the soup was repaired. */
+        /* The list of the faces' old numbers is allocated even if no face is left, because a list
+         * that is not NULL says that the soup was repaired. */
         status = he_ids_reserve(&g.face_from, 1, err);
         if (status == HE_OK && m->has_corner_values) {
             status = he_ids_reserve(&g.corner_from, 1, err);

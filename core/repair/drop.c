@@ -29,7 +29,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
         if (he_bits_get(gone, f)) {
             continue;
         }
-        /* The write position never passes the read position: faces <= f and corners <= begin. */
+        /* Faces are moved up in place; what is written never passes what is read next: faces <= f
+         * and corners <= begin. */
         soup->starts[faces] = corners;
         out->face_from[faces++] = out->face_from[f];
         for (uint32_t c = begin; c < end; c++, corners++) {
@@ -44,8 +45,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
     return HE_OK;
 }
 
-/* The canonical order of a face's corners, which is equal for all its duplicates: from its lowest
- * vertex towards that vertex's lower neighbour. */
+/* The order in which a face's corners are compared, equal for all duplicates of the face: from its
+ * lowest vertex towards the lower of that vertex's two neighbours. */
 typedef struct way {
     const uint32_t *corners;
     uint32_t count, first;
@@ -96,7 +97,9 @@ static bool same(const way *a, const way *b)
 }
 
 typedef struct slot {
-    uint32_t hash, face; /* hash, and number of a face + 1; 0 in a free slot */
+    /* `hash` is the hash of a face's corners, `face` the face's number + 1; both are 0 in a free
+     * slot */
+    uint32_t hash, face;
 } slot;
 
 /* Returns the earlier face that face f repeats. If there is none, adds f to the table and returns

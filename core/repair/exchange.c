@@ -19,26 +19,26 @@
 
 #include <assert.h>
 
-/* A settled corner of the edge that is being handled, with the fans at its ends when it was
- * settled, which may have changed since. */
+/* A settled corner (tested, and given another mate if needed) of the edge being handled, with the
+ * numbers of the fans at both ends when the corner was settled; these may have changed since. */
 typedef struct slot {
-    uint32_t epoch; /* number of that edge + 1; anything else in a free slot */
+    uint32_t epoch; /* number of the edge being handled + 1; a slot with another value is free */
     uint32_t corner, from, to;
 } slot;
 
 typedef struct exchanging {
     he_splitting *s;
     uint32_t *edge_of; /* edge of each corner */
-    /* Where the corners of each edge begin in `list`, which only has edges with more than two
-     * corners. */
+    /* Where the corners of each edge begin in `list`, which has only corners of edges with more
+     * than two corners. */
     uint32_t *begin;
     uint32_t *list;
     size_t edges;
-    uint32_t fans; /* number of fans so far */
+    uint32_t fans; /* number of fans so far, with those that resulted from exchanges */
     bool any;
     /* The edge being handled, and the vertex that most of its corners leave. */
     uint32_t edge, origin;
-    uint64_t *settled; /* corners that are settled */
+    uint64_t *settled; /* one bit for each corner: set if the corner is settled */
     slot *slots;
     size_t mask, used;
 } exchanging;
@@ -144,8 +144,8 @@ static bool is_settled(const exchanging *x, uint32_t c)
     return x->edge_of[c] == x->edge && he_bits_get(x->settled, c);
 }
 
-/* Numbers the two parts of a fan that fell in two. Corners a and b left one vertex in that fan; the
- * smaller part gets a new number. */
+/* Numbers the two parts of a fan that fell in two. Corners a and b left one vertex in that fan; now
+ * each is in one of the parts, and the smaller part gets a new number. */
 static he_status number(exchanging *x, uint32_t a, uint32_t b, he_error *err)
 {
     const he_splitting *s = x->s;

@@ -8,7 +8,8 @@ typedef struct he_mend {
     he_soup *soup;
     he_repaired *out;
     bool has_corner_values; /* there are attributes of corners */
-    /* Number in the input of each corner; NULL if all corners kept their numbers. */
+    /* The number that each corner of the soup had in the input; NULL if all corners kept their
+     * numbers. */
     uint32_t *corner_from;
     uint64_t *turned; /* one bit for each face, set if orient reversed it; NULL if none was */
 } he_mend;
@@ -23,11 +24,11 @@ static inline uint32_t he_mend_input(const uint32_t *from, uint32_t i)
 {
     return from == NULL ? i : from[i];
 }
-/* Returns a list of the `count` numbers from 0 on, with room for `room`; NULL if memory is out. */
+/* Returns the list 0, 1, ..., `count` - 1, with room for `room` numbers; NULL if memory is out. */
 uint32_t *he_mend_same(size_t count, size_t room);
 bool he_mend_has_corner_values(const he_soup *soup);
-/* Makes the list m->corner_from, which says from which corner of the input each corner comes, if it
- * is needed. */
+/* Makes the list m->corner_from, which says from which corner of the input each corner comes, if
+ * the soup has attributes of corners. */
 HE_NODISCARD he_status he_mend_corners(he_mend *m, he_error *err);
 /* Returns true if a corner names a vertex that does not exist. */
 bool he_mend_has_bad_index(const he_soup *soup);

@@ -8,7 +8,9 @@ typedef enum state { UNSEEN, KEPT, TURNED } state;
 typedef struct orienting {
     he_soup *soup;
     he_repaired *out;
-    uint32_t *mate;    /* the corner on the other side, HE_NONE unless there is exactly one */
+    /* The corner of the second face on the edge of each corner; HE_NONE unless the edge has exactly
+     * two faces. */
+    uint32_t *mate;
     uint32_t *face_of; /* face of each corner */
     uint32_t *queue;   /* a queue of faces, component after component */
     unsigned char *state;
@@ -21,13 +23,15 @@ static he_status find_mates(orienting *o, he_error *err)
 {
     const he_soup *soup = o->soup;
     size_t edges = 0;
-    uint32_t *edge_of = o->face_of; /* used as a buffer until the faces are needed */
+    /* The array `face_of` serves as a buffer until the faces are needed. */
+    uint32_t *edge_of = o->face_of;
     he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
     if (status != HE_OK) {
         return status;
     }
     uint32_t *met = he_mem_zero(
-        /* Number of corners of each edge; later the first corner of an edge of two. */
+        /* `met` has the number of corners of each edge; later, for an edge of two corners, the
+         * first corner. */
         edges + 1, sizeof *met);
     if (met == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to orient %zu faces", soup->face_count);
@@ -52,8 +56,8 @@ static he_status find_mates(orienting *o, he_error *err)
     return HE_OK;
 }
 
-/* Records that a component cannot be oriented: face f, at its corner c, and the face beside it
- * clash. */
+/* Records that a component cannot be oriented: along the edge at corner c, face f and the face
+ * beside it would run in one direction. */
 static void note_clash(orienting *o, uint32_t f, uint32_t c)
 {
     const he_soup *soup = o->soup;
@@ -66,7 +70,8 @@ static void note_clash(orienting *o, uint32_t f, uint32_t c)
     account->left++;
 }
 
-/* Adds all faces connected with `seed` to the queue; *fits is false if they clash. */
+/* Adds the face `seed` and all faces connected with it to the queue; *fits is set to false if the
+ * faces cannot be oriented consistently. */
 static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he_error *err)
 {
     const he_soup *soup = o->soup;
@@ -98,8 +103,9 @@ static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he
     return status;
 }
 
-/* Counts the edges of queue[begin..end) that clash after the faces are reversed as `state` says, or
- * before if `turned` is false. Each edge is counted from both sides. */
+/* Counts the edges of the faces queue[begin] to queue[end - 1] along which two faces run in one
+ * direction (clash): with faces reversed as `state` says, or as they are if `turned` is false. Each
+ * edge is counted from both sides. */
 static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, bool turned)
 {
     const he_soup *soup = o->soup;
@@ -131,7 +137,8 @@ static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
     }
 }
 
-/* Chooses the smaller part of queue[begin..end) as the one that is reversed. */
+/* Faces of one component, queue[begin] to queue[end - 1], are in two parts, of which one must be
+ * reversed: chooses the smaller part. */
 static void settle(orienting *o, uint32_t begin, uint32_t end)
 {
     uint32_t turned = 0;

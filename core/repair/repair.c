@@ -172,8 +172,8 @@ bool he_mend_has_bad_index(const he_soup *soup)
     return c < soup->corner_count;
 }
 
-/* Decides whether he_build would accept each face by itself. If not, the later repairs cannot
- * run. */
+/* Decides whether he_build would accept each face by itself. If it would not, the later repairs
+ * cannot run. */
 static he_status is_proper(const he_soup *soup, bool *out, he_error *err)
 {
     uint64_t total = 0;

@@ -4,12 +4,12 @@
  *
  * Repairs are applied in this order, whatever the order of the request.
  *
- * weld: vertices at most `tolerance` apart are merged. In the order of their numbers, each is
- * merged into the first one kept so far that is near enough, or is kept. So none moves farther than
- * the tolerance, kept ones are farther apart than that, and merging does not run along chains. With
- * tolerance 0 only equal positions are merged (-0 equals 0). An attribute of vertices whose values
- * differ between merged vertices becomes an attribute of corners, so that seams of texture and
- * sharp edges stay (build/keep.h).
+ * weld: vertices at most `tolerance` apart are merged. In the order of their numbers, each vertex
+ * is merged into the first vertex kept so far that is near enough, or is kept itself. So no vertex
+ * moves farther than the tolerance, kept vertices are farther apart than that, and merging does not
+ * run along chains. With tolerance 0 only equal positions are merged (-0 equals 0). An attribute of
+ * vertices whose values differ between merged vertices becomes an attribute of corners, so that
+ * seams of texture and sharp edges stay (build/keep.h).
  *
  * drop_degenerate: a face that passes a vertex twice keeps the parts that have area. Corners in a
  * row at one vertex become one (1 2 3 3 is the triangle 1 2 3), and a spike, there and back, is
@@ -20,11 +20,12 @@
  * is kept.
  *
  * orient: faces are reversed until any two that share an edge run along it in opposite directions;
- * only edges of two faces connect. The larger part of a component keeps its direction; if both are
- * equal, the part of its first face. If a component cannot be oriented (a Moebius band) the soup is
- * refused, unless it is split as well: then it is oriented consistently along a tree of its faces,
- * or left if that would not reduce the clashes, and cut where faces clash. The attribute "normal"
- * of reversed faces, and of their corners, is reversed too.
+ * only edges of two faces connect. The faces of a component are in two parts, of which one is
+ * reversed: the smaller part, or, if both are equal, the part without the component's first face.
+ * If a component cannot be oriented (a Moebius band) the soup is refused, unless it is split as
+ * well: then it is oriented consistently along a tree of its faces, or left if that would not
+ * reduce the clashes, and cut where faces clash. The attribute "normal" of reversed faces, and of
+ * their corners, is reversed too.
  *
  * split: every fan of faces gets a vertex of its own. The fan of the first corner keeps the vertex,
  * the others get copies, numbered after all vertices in the order of their first corners. Faces are
@@ -67,13 +68,13 @@ static inline unsigned he_repair_bit(he_repair repair)
 }
 
 typedef struct he_repair_plan {
-    unsigned which; /* a set of repairs; 0: none */
+    unsigned which; /* a set of bits (he_repair_bit) of the repairs to apply; 0: none */
     /* The largest distance between vertices that weld merges; finite, not negative. */
     double tolerance;
     size_t hole_edges; /* the most edges of a hole that fill closes */
 } he_repair_plan;
 
-/* The number of elements that are listed for each repair: the first ones. */
+/* The most elements, the first ones, that the account of a repair lists. */
 enum { HE_REPAIR_NAMED = 100 };
 
 typedef struct he_repair_pair {
@@ -89,8 +90,10 @@ typedef struct he_repair_account {
     /* A second number. drop_degenerate: faces that lost corners or were cut; orient: components
      * with reversed faces; split: vertices that had several fans. */
     uint64_t parts;
-    uint64_t moved; /* weld: values of vertices that differed and moved to corners */
-    uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
+    uint64_t moved; /* weld: number of vertex values that differed and were moved to corners */
+    /* The number of things left: components that orient could not orient, holes that fill left
+     * open. */
+    uint64_t left;
     /* The elements concerned, as pairs. weld: the merged vertex, the one it was merged into;
      * drop_degenerate: the face, and how many faces were made of it; drop_duplicates: the dropped
      * face, the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent;
@@ -99,24 +102,25 @@ typedef struct he_repair_account {
     size_t named;
 } he_repair_account;
 
-/* A face of a component that cannot be oriented, and the edge at which that was found. */
+/* A face of a component that cannot be oriented, and the edge, from `vertex` to `other`, along
+ * which this face and a neighbour run in one direction. */
 typedef struct he_repair_clash {
     uint32_t face, vertex, other;
 } he_repair_clash;
 
 typedef struct he_repaired {
-    /* The number in the input of each vertex and face of the soup; NULL if all kept their
-     * numbers. */
+    /* The number that each vertex (face) of the repaired soup had in the input; NULL if all kept
+     * their numbers. */
     uint32_t *vertex_from, *face_from;
     size_t vertices, faces; /* lengths of the two arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
-    /* The first places at which orient found that a component cannot be oriented;
-     * accounts[HE_REPAIR_ORIENT].left is their number. */
+    /* The first HE_REPAIR_NAMED places at which orient found that a component cannot be oriented;
+     * accounts[HE_REPAIR_ORIENT].left is the number of all. */
     he_repair_clash clashes[HE_REPAIR_NAMED];
 } he_repaired;
 
 void he_repaired_clear(he_repaired *repaired);
-/* Returns true if a repair changed anything that he_build reads. */
+/* Returns true if a repair changed the soup that he_build reads. */
 bool he_repaired_soup(const he_repaired *repaired);
 /* Renames the elements of a report about the repaired soup to their names in the input. */
 void he_repaired_report(const he_repaired *repaired, he_report *report);

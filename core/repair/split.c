@@ -16,7 +16,7 @@ static he_status pair(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     size_t edges = 0;
-    uint32_t *edge_of = s->to; /* used as a buffer until the fans are found */
+    uint32_t *edge_of = s->to; /* the array `to` serves as a buffer until the fans are found */
     uint32_t *head = NULL, *tail = NULL;
     he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
     if (status != HE_OK) {

@@ -20,11 +20,11 @@ typedef struct he_splitting {
      * none. */
     uint32_t *mate;
     uint32_t *face_of;
-    uint32_t *to;      /* vertex of each corner after the split, which stands for its fan */
+    uint32_t *to;      /* vertex of each corner after the split; one vertex for each fan */
     uint32_t *parents; /* for each copy of a vertex the vertex it is copied from */
     size_t copies, capacity;
-    bool is_crowded;  /* an edge has more than two corners, or two in one direction */
-    bool has_closed;  /* a vertex has a closed fan and another fan */
+    bool is_crowded;  /* some edge has more than two corners, or two that run in one direction */
+    bool has_closed;  /* some vertex has a closed fan beside another fan */
     uint64_t *done;   /* one bit for each corner: set if its fan was found */
     uint64_t *taken;  /* one bit for each vertex: set if it belongs to a fan already */
     uint64_t *closed; /* one bit for each vertex: set if its first fan is closed */

@@ -13,11 +13,14 @@ void he_bevel_clear(he_bevel *bevel)
 
 /* One end of the edge that is bevelled. */
 typedef struct bevel_end {
-    he_halfedge along; /* the half-edge of the bevelled edge that leaves this end */
-    /* The other half-edges of its fan that leave the end, counter-clockwise from `along`. */
+    he_halfedge along; /* the half-edge of the bevelled edge that begins at this end */
+    /* The other half-edges that leave this end in the fan of the bevelled edge, counter-clockwise
+     * from `along`. */
     he_ids ring;
-    size_t gap;     /* the hole is before this index of `ring`; 0 if the end is interior */
-    uint32_t first; /* the new vertex on the edge of ring[0]; those of the others follow */
+    /* The fan's hole is before this index of `ring`; 0: the end is interior, there is no hole. */
+    size_t gap;
+    /* The new vertex on the edge of ring[0]; new vertex `first` + i is on the edge of ring[i]. */
+    uint32_t first;
 } bevel_end;
 
 static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, he_error *err)
@@ -169,8 +172,8 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
     return (he_vertex){end->first + (uint32_t)i};
 }
 
-/* Returns where edge i at this end is cut, as a part of its length: 0 at this end, 1 at the
- * other. */
+/* Returns where edge i at this end of the bevelled edge is cut, as a part of the length of edge i:
+ * 0 at this end, 1 at its other end. */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
     return he_bevel_part(m, at(end, i), width);
@@ -265,7 +268,7 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
         }
         he_set_origin(m, h, cut_at(end, i));
         /* The vertex at the first cut after the hole must store a boundary half-edge: that of the
-         * stub. */
+         * stub, the new edge from the end to this cut. */
         bool stub = end->gap > 0 && i == end->gap;
         he_halfedge stored = stub ? he_next(m, he_twin(h)) : h;
         he_set_vertex_halfedge(m, cut_at(end, i), stored);

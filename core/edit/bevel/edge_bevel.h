@@ -6,7 +6,7 @@
 
 typedef struct he_bevel {
     he_face face;
-    he_ids vertices, edges; /* the new elements, in the order of the new face */
+    he_ids vertices, edges; /* the new vertices and edges, in the order along the new face */
 } he_bevel;
 
 /* edge_bevel replaces an edge, whose ends have d1 and d2 edges, by a face: V + d1 + d2 - 4,

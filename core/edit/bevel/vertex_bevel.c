@@ -78,8 +78,8 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
     he_vertex w = v;
     he_face f = he_new_face(m);
     do {
-        /* After the last edge comes the first again. Its end at v has not moved yet, because v
-         * moves last. */
+        /* After the last edge at v comes the first again. The end of the first edge at v has not
+         * moved yet, because v moves last. */
         he_halfedge following = he_swing_ccw(m, h);
         double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);

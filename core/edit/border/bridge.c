@@ -18,7 +18,8 @@ void he_bridge_clear(he_bridge *bridge)
 typedef struct plan {
     const he_mesh *m;
     he_ids a, b;
-    he_ids rungs;     /* pairs of a corner of the first loop and one of the second */
+    /* The edges between the loops, as pairs of a corner of the first loop and one of the second. */
+    he_ids rungs;
     he_idmap corners; /* the vertices of the first loop, then those of the second */
     bool repeats;     /* true if a loop passes a vertex twice */
     double scale;     /* a power of two that brings all coordinates within [-1, 1] */
@@ -134,10 +135,11 @@ static double twist(const plan *p, uint32_t s)
     return sum;
 }
 
-/* Returns true if the side of the strip with i of n edges done is less than half a loop ahead of
- * the other side, with j of m edges done. Each loop has at least three corners, so the side that is
- * behind can always advance. And no two rungs join the same two corners: for that, one side would
- * have to go around its whole loop while the other does not advance. */
+/* While triangles are made, i of the n edges of one loop and j of the m edges of the other are
+ * used. Returns true if neither of these two sides of the strip is half a loop or more ahead of the
+ * other. Each loop has at least three corners, so the side that is behind can always advance. And
+ * no two rungs join the same two corners: for that, one side would have to go around its whole loop
+ * while the other does not advance. */
 static bool is_abreast(uint64_t i, uint64_t n, uint64_t j, uint64_t m)
 {
     uint64_t x = i * m, y = j * n;
@@ -157,8 +159,8 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
            apart(p, (i + 1) % n, (s + j) % m) <= apart(p, i % n, (s + j + 1) % m);
 }
 
-/* Computes the rungs, the edges from one loop to the other, if corner 0 of the first loop is paired
- * with corner s of the second. The caller has reserved memory for them. */
+/* Computes the rungs, the edges from one loop to the other, for the pairing of corner 0 of the
+ * first loop with corner s of the second. The caller has reserved memory for them. */
 static void make_rungs(plan *p, uint32_t s)
 {
     uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
@@ -259,8 +261,9 @@ static void pass_over_joined(const plan *p, uint64_t *passed)
     }
 }
 
-/* Returns the pairing of corners with the smallest twist of those that are not marked in `passed`;
- * `count` if all are marked. `passed` may be NULL, if none is marked. */
+/* Returns the pairing of corners with the smallest twist (the sum of squared distances, see
+ * bridge.h) of those that are not marked in `passed`; `count` if all are marked. `passed` may be
+ * NULL, if none is marked. */
 static uint32_t least_twisted(const double *twists, uint32_t count, const uint64_t *passed)
 {
     uint32_t best = count;

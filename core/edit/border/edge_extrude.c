@@ -19,8 +19,8 @@ typedef struct joint {
 
 typedef struct plan {
     size_t count;
-    he_ids chain; /* the half-edges of the edges on the side without a face */
-    he_ids ends;  /* the ends of the edges, in rising order */
+    he_ids chain; /* the boundary half-edge of each given edge, in the order given */
+    he_ids ends;  /* the vertices at the ends of the given edges, in rising order */
     joint *joints;
 } plan;
 
@@ -171,13 +171,13 @@ typedef struct fresh {
     uint32_t vertex, side, far;
 } fresh;
 
-/* Returns half-edge 2e of the edge from vertex i to its copy. */
+/* Returns half-edge 2e of the new edge from vertex i of the plan to its copy. */
 static he_halfedge side_at(const fresh *new, size_t i)
 {
     return he_edge_halfedge((he_edge){new->side + (uint32_t)i}, 0);
 }
 
-/* Returns the half-edge of the copy of edge i that lies inside the new quad. Its twin runs along
+/* Returns the half-edge inside the new quad that belongs to the copy of edge i. Its twin runs along
  * the boundary, as the original edge did before. */
 static he_halfedge far_at(const fresh *new, uint32_t i)
 {

@@ -7,7 +7,7 @@
 /* The elements that edge_extrude made. */
 typedef struct he_walls {
     he_ids vertices; /* the new vertices, in the order of the vertices they descend from */
-    he_ids edges;    /* the far edges, in the order of the given edges */
+    he_ids edges;    /* the far edges (shifted copies), in the order of the given edges */
     he_ids faces;    /* the quads, in the order of the given edges */
 } he_walls;
 

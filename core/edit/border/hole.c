@@ -11,7 +11,7 @@ void he_filled_clear(he_filled *filled)
     he_ids_clear(&filled->faces);
 }
 
-/* Checks that the hole left of h can be filled, and lists its half-edges in `loop`. */
+/* Checks that the hole left of h can be filled, and lists the hole's half-edges in `loop`. */
 static he_status check(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *err)
 {
     he_ids vertices = {0};

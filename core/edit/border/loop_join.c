@@ -117,8 +117,9 @@ static he_status check_sides(const plan *p, he_error *err)
 
 /* --- faces and edges that would become one --- */
 
-/* Adds the faces at the origin of `first` to the set `seen`, except the face of `own`, which is the
- * half-edge of the loop there. With `again`, a face that is in the set already is refused. */
+/* Adds the faces at the origin of `first` to the set `seen`, except the face of `own`, the
+ * half-edge of the loop that leaves this vertex. With `again`, a face that is in the set already is
+ * refused. */
 static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first, bool again,
                               he_idmap *seen, he_error *err)
 {
@@ -244,14 +245,15 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
 {
     he_halfedge h = first;
     do {
-        /* Turning about a vertex reads links only, and this loop changes only origins. */
+        /* Turning about a vertex reads only links, and this loop changes only origins, so it may
+         * change them on the way. */
         he_set_origin(m, h, to);
         h = he_swing_ccw(m, h);
     } while (h.i != first.i);
 }
 
-/* Puts a[i] in the place of the twin of b[i]. If a neighbour of that twin in its loop is the twin
- * of b[i - 1] or b[i + 1], a[i] is linked to a[i - 1] or a[i + 1] in its place. */
+/* Puts a[i] in the place of the twin of b[i]. If the half-edge before or after that twin in its
+ * loop is the twin of b[i - 1] or b[i + 1], a[i] is linked to a[i - 1] or a[i + 1] instead. */
 static void sew_side(const plan *p, uint32_t i)
 {
     he_mesh *m = p->m;

@@ -9,7 +9,8 @@
 typedef struct he_loop_parts {
     he_vertex vertices[3];
     he_edge edges[3];
-    he_face faces[2]; /* the cap at the old vertices, then the cap at the new ones */
+    /* The cap (face that closes the cut) at the old vertices, then that at the new vertices. */
+    he_face faces[2];
 } he_loop_parts;
 
 /* loop_split cuts a mesh around a triangle of edges and caps both sides: V + 3, E + 3, F + 2. The

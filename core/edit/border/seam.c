@@ -12,10 +12,11 @@ void he_seam_clear(he_seam *seam)
 
 typedef struct plan {
     he_ids cuts;  /* the edges to cut, in rising order: new edge i comes from cuts[i] */
-    he_ids ends;  /* the ends of these edges, in rising order */
-    he_ids parts; /* half-edges with which the parts of fans begin that get a new vertex */
-    size_t moved; /* number of half-edges that leave the vertex in those parts, old and new */
-    /* A bit for each cut edge: at one of its ends the fan is closed and has no other cut edge. */
+    he_ids ends;  /* the vertices at the ends of these edges, in rising order */
+    he_ids parts; /* the first half-edge of each part of a fan that gets a new vertex */
+    size_t moved; /* number of half-edges, old and new, that will leave the new vertices */
+    /* A bit for each cut edge: set if at one of its ends the fan is closed and has no other cut
+     * edge. */
     uint64_t *once;
     bool marked;
     he_marks marks;
@@ -69,7 +70,7 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_swing_ccw(m, h);
-        /* If h is a cut edge, this part of the fan may lie on the side that gets a new edge; the
+        /* If the edge of h is cut, this part of the fan may lie on the side that gets a new edge; a
          * lock of the old edge does not matter then. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);
@@ -89,8 +90,8 @@ static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfe
     return status != HE_OK ? status : he_ids_add(&p->parts, first.i, err);
 }
 
-/* Counts the cut edges of the fan that begins at `first`; *lowest is set to the half-edge of the
- * cut edge with the lowest id. */
+/* Counts the cut edges of the fan that begins at `first`; *lowest is set to the fan's half-edge of
+ * the cut edge with the lowest id. */
 static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge *lowest)
 {
     uint32_t count = 0;

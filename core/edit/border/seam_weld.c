@@ -7,14 +7,14 @@
 #include "mesh/marks.h"
 
 /* An end of edge a (`stays`), and the end of edge b that is merged into it (`goes`); they are the
- * same vertex if the edges share this end. `in` is the boundary half-edge of a or b that arrives
- * there, `out` the one of the other edge that leaves. */
+ * same vertex if the edges share this end. `in` is the boundary half-edge of one of the two edges
+ * that arrives at this end, `out` the boundary half-edge of the other edge that leaves this end. */
 typedef struct pair {
     he_vertex stays, goes;
     he_halfedge in, out;
 } pair;
 
-/* Returns the half-edge of a boundary edge that has no face. */
+/* Returns the one half-edge of a boundary edge that has no face. */
 static he_halfedge outer(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);

@@ -47,7 +47,7 @@ he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t)
         he_attributes_between(m, HE_HALFEDGE, on.i, h.i, next.i, t);
     }
     if (right.i != HE_NONE) {
-        /* The half-edge `off` now leaves the corner at b, which `back` left before. */
+        /* Half-edge `off` now leaves the corner at vertex b, which half-edge `back` left before. */
         he_attributes_move(m, HE_HALFEDGE, off.i, back.i);
         he_attributes_between(m, HE_HALFEDGE, back.i, he_next(m, back).i, off.i, t);
     }
@@ -145,7 +145,7 @@ he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err)
         gone = swap;
     }
     /* `kept` runs from v to a, and `gone` from v to b. Afterwards `kept` runs from b to a: in its
-     * loop it takes the place of twin(gone) and of itself. */
+     * loop it stands for itself and for twin(gone), which was before it. */
     he_halfedge to_v = he_twin(gone), in = he_twin(kept);
     he_vertex b = he_target(m, gone);
     he_face right = he_face_of(m, gone), left = he_face_of(m, kept);

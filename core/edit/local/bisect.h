@@ -39,9 +39,10 @@ HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err);
 
-/* These functions are the COMMIT part of edge_bisect, for edits that do their own checks and
- * reserve their own memory. he_bisect_reservation adds what he_bisect_commit will write to `need`;
- * he_bisect_commit puts a vertex on edge e and returns half-edge 2e' of the new edge e'. */
+/* These functions are the COMMIT part of edge_bisect, which writes and cannot fail, for edits that
+ * do their own checks and reserve their own memory. he_bisect_reservation adds what
+ * he_bisect_commit will write to `need`; he_bisect_commit puts a vertex on edge e and returns
+ * half-edge 2e' of the new edge e'. */
 void he_bisect_reservation(he_reservation *need);
 he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t);
 

@@ -30,8 +30,8 @@ typedef struct ring {
  * directions. */
 typedef struct hands {
     he_halfedge up, down;
-    /* Number of entries that the two walks have written: from the front of the ring, and from its
-     * back. */
+    /* The number of entries of the ring that each walk has written: `ups` at the front of the
+     * array, `downs` at its back. */
     uint32_t ups, downs;
     bool open;
 } hands;
@@ -212,8 +212,8 @@ static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedg
     return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
 }
 
-/* Counts the feature edges at the origin of h. *which is set to one of these edges, if possible not
- * to that of h. */
+/* Counts the feature edges at the origin of h. *which is set to one of these feature edges, if
+ * possible to another one than the edge of h. */
 static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
                                he_edge *which)
 {
@@ -302,7 +302,7 @@ static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
     he_delete_face(m, f);
 }
 
-/* Takes h out of the loop of the face on its left. */
+/* Takes half-edge h out of the loop of the face left of h. */
 static void unlink_side(he_mesh *m, he_halfedge h)
 {
     he_face f = he_face_of(m, h);
@@ -341,8 +341,8 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     if (!interior) {
         he_ring_settle(m, v, after);
     } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
-        /* v is an interior vertex, which may store any half-edge (I8), so no search for a boundary
-         * half-edge is needed, which may take long. */
+        /* v is an interior vertex, which may store any of its half-edges (invariant I8 of mesh.h),
+         * so the search for a boundary half-edge, which may take long, is not needed. */
         he_set_vertex_halfedge(m, v, after);
     }
 }

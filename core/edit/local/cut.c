@@ -8,7 +8,8 @@ void he_cut_reservation(uint32_t corners, he_reservation *need)
     need->edges++;
     need->faces++;
     need->links +=
-        /* The corners that get another face, four links of neighbours, and one stored half-edge. */
+        /* These links are written: the face of each corner that gets another face, four links
+         * between neighbours, and one stored half-edge. */
         (size_t)corners + 5;
     need->lineage++;
 }

@@ -53,10 +53,10 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);
 
-/* These functions are the COMMIT part of face_split, for edits that do their own checks and reserve
- * their own memory. he_cut_reservation adds to `need` what cutting off a face of `corners` corners
- * will write. he_cut_commit returns half-edge 2e of the diagonal; the new face is on the side of
- * its twin. */
+/* These functions are the COMMIT part of face_split, which writes and cannot fail, for edits that
+ * do their own checks and reserve their own memory. he_cut_reservation adds to `need` what cutting
+ * off a face of `corners` corners will write. he_cut_commit returns half-edge 2e of the diagonal;
+ * the new face is on the side of its twin. */
 void he_cut_reservation(uint32_t corners, he_reservation *need);
 he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to);
 

@@ -77,7 +77,7 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
     if (stored.i == first.i || stored.i == he_prev(m, first).i) {
         he_set_face_halfedge(m, f, he_next(m, first));
     }
-    double taken = 0; /* number of faces merged into f */
+    double taken = 0; /* number of faces that are merged into the face f */
     /* The edges at v keep their links until they are deleted, so turning about v still works. */
     do {
         he_halfedge next = he_swing_ccw(m, k), back = he_twin(k), out = he_next(m, k);

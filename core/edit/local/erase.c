@@ -10,8 +10,8 @@ static bool edge_would_die(const he_mesh *m, he_halfedge h)
     return he_is_boundary_halfedge(m, he_twin(h));
 }
 
-/* Adds what erasing face f writes to `need`. If more faces are deleted (not `alone`), those beside
- * f may be deleted before it, so each edge of f may be deleted. */
+/* Adds what erasing face f writes to `need`. If other faces are deleted, too (`alone` is false),
+ * the faces beside f may be deleted before f, so each edge of f may be deleted with f. */
 static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *need)
 {
     he_halfedge first = he_face_halfedge(m, f), h = first;
@@ -29,8 +29,8 @@ static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *ne
     need->deleted_faces++;
 }
 
-/* Takes an edge without faces out of the rings of its ends. If an end keeps other half-edges, it
- * stores the one that followed the edge in the loop of the hole, which is a boundary half-edge. */
+/* Takes an edge without faces out of the rings of its ends. An end that keeps other half-edges then
+ * stores the boundary half-edge that followed the edge in the loop of the hole. */
 static void erase_edge(he_mesh *m, he_edge e)
 {
     for (unsigned side = 0; side < 2; side++) {
@@ -106,8 +106,8 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Returns true if there is a hole, or a face of the set `faces`, to the left of h. The faces of the
- * set are deleted. */
+/* Returns true if there is a hole to the left of h, or a face of the set `faces`, which are the
+ * faces to be deleted. */
 static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);
@@ -188,8 +188,8 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
     if (count == 1) {
         return erase_one(m, (he_face){faces[0]}, leftover, err);
     }
-    /* Which edges are deleted depends on the order of the faces, so memory is reserved for each
-     * face separately: a single reservation would have to count every edge twice. */
+    /* With which face an edge is deleted depends on the order of the faces, so memory is reserved
+     * for each face separately: a single reservation would have to count every edge twice. */
     he_bracket bracket;
     status = he_edit_begin(m, &bracket, err);
     if (status != HE_OK) {

@@ -108,7 +108,7 @@ static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_n
 static void commit(he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides, he_face *out,
                    he_ids *edges)
 {
-    /* Half-edges with ids from here on are sides that this call makes. */
+    /* Half-edges with this id or a higher one are sides that this call makes. */
     uint32_t old = 2 * m->c.edges.issued;
     for (size_t i = 0; i < n; i++) {
         if (sides[i] == HE_NONE) {

@@ -3,8 +3,8 @@
 #include "edit/local/collapse.h"
 #include "mesh/write.h"
 
-/* Returns the half-edge from the next corner of face f to corner `a`, outside the face. If f is
- * deleted already, returns the half-edge from `last` to `a`. */
+/* Returns the next half-edge to collapse: it runs from the corner after `a` in face f to `a`,
+ * outside f. If f is deleted already, it runs from `last` to `a`. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {
@@ -63,8 +63,8 @@ he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *e
         return status;
     }
     for (uint32_t k = 1; status == HE_OK && k < n; k++) {
-        /* The weight of the corner that is merged into a, which k corners have been merged into
-         * already. */
+        /* The weight of vertex a, which is the mean of k corners by now, against the next corner
+         * that is merged into it. */
         double t = (double)k / (k + 1);
         status = he_edge_collapse(m, next_side(m, f, a, last), t, NULL, NULL, err);
     }

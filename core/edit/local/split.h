@@ -6,7 +6,8 @@
 
 typedef struct he_split {
     he_vertex vertex;
-    he_edge edges[3]; /* the new part of the edge, then the diagonals */
+    /* The new part of the split edge, then the diagonals of the faces beside it. */
+    he_edge edges[3];
     he_face faces[2];
     /* Number of faces beside the edge: 2, or 1 on the boundary; `edges` has one entry more. */
     unsigned sides;

@@ -6,8 +6,9 @@
 
 typedef struct he_vertex_parts {
     he_vertex vertex; /* u, the new vertex */
-    he_edge edges[3]; /* the edge u-v, then those from u to `left` and to `right`, if they exist */
-    he_face faces[2]; /* the triangles left and right of u -> v */
+    /* The edge u-v, then the edges from u to `left` and to `right`, if these are not null. */
+    he_edge edges[3];
+    he_face faces[2]; /* the new triangles left and right of the edge from u to v */
     /* Number of new faces: 2, or 1 if `left` or `right` was null; `edges` has one entry more. */
     unsigned sides;
 } he_vertex_parts;

@@ -23,7 +23,8 @@ static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
 
-/* Returns the half-edge that he_swing_ccw(h) will be after the merge, when h must have a face. */
+/* Returns the half-edge that he_swing_ccw(h) will return after the merge; h must have a face
+ * then. */
 static he_halfedge swing(const he_merge_plan *p, he_halfedge h)
 {
     return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
@@ -380,8 +381,8 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         if (is_boundary(p, h) || !is_boundary(p, he_twin(h))) {
             continue;
         }
-        /* A new fan begins here, so the boundary half-edge that arrives at the vertex is linked to
-         * the one that ends the fan before. */
+        /* A new fan begins here: its boundary half-edge that arrives at the vertex is linked to the
+         * boundary half-edge that ends the previous fan. */
         if (out.i != HE_NONE) {
             status = he_ids_add(&p->holes, he_twin(h).i, err);
             if (status == HE_OK) {

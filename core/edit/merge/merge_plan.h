@@ -8,30 +8,33 @@
 
 /* What a merge does to an edge if one of its ends is merged, or if a face beside it is deleted. */
 typedef struct he_merge_fate {
-    /* The edge into which this one is merged; itself if it stays; HE_NONE if its ends become one
-     * vertex. */
+    /* The edge into which the edge is merged; its own id if it stays; HE_NONE if its ends become
+     * one vertex, so that it is deleted. */
     uint32_t into;
-    /* 1 if half-edge 2e takes the place of half-edge 2 * into + 1, so that the direction
-     * changes. */
+    /* 1 if the edge e is merged into an edge of the opposite direction: half-edge 2e becomes
+     * half-edge 2 * into + 1. */
     uint32_t turned;
-    /* The old half-edges whose faces will be on the two sides of an edge that stays. */
+    /* If the edge stays: the old half-edges whose faces will be left of half-edges 2e and 2e +
+     * 1. */
     uint32_t occupant[2];
-    uint32_t uses[2]; /* for each side, how many faces would be there */
+    uint32_t uses[2]; /* the number of faces that would be left of half-edges 2e and 2e + 1 */
 } he_merge_fate;
 
 /* What a merge will do to each element concerned. Lists of ids are sorted, unless their comment
- * says otherwise; each array has one entry for each id of the list before it. */
+ * says otherwise; each array has an entry for each id of the nearest list declared before the
+ * array. */
 typedef struct he_merge_plan {
     he_mesh *m;
     const he_merge *how;
     he_ids group;  /* the vertices to be merged */
-    uint32_t *rep; /* for each vertex of `group`, the vertex it becomes */
-    /* The next vertex that becomes the same vertex as this one of `group`; such a list begins with
-     * the vertex in `rep` and ends with HE_NONE. */
+    uint32_t *rep; /* the vertex that each vertex of `group` becomes */
+    /* Links the vertices of `group` that become one vertex into a list: the next vertex of the list
+     * for each vertex of `group`. A list begins with the vertex in `rep` and ends with HE_NONE. */
     uint32_t *next;
     he_ids edges;
     he_merge_fate *fates;
-    /* A hash table of the edges that stay, by their ends; it has the index in `edges`, plus 1. */
+    /* A hash table of the edges that stay, by their ends; an entry is the index of an edge in
+     * `edges`, plus 1, or 0. */
     uint32_t *slots;
     size_t slot_count;
     he_ids faces;
@@ -42,7 +45,7 @@ typedef struct he_merge_plan {
     /* The half-edge that each vertex of `rim` will store; HE_DEAD if the vertex is deleted. */
     uint32_t *stored;
     he_ids holes;   /* pairs of boundary half-edges that will follow each other; unsorted */
-    size_t corners; /* number of corners of the faces */
+    size_t corners; /* number of corners of all faces in `faces` */
 } he_merge_plan;
 
 /* Returns the index of an id in a sorted list, or HE_NONE if the list does not have it. */

@@ -40,7 +40,9 @@ typedef struct he_keeping {
     /* The number of values that would be lost: values of merged vertices that differ from the value
      * of the vertex they are merged into. */
     uint64_t count;
-    he_bracket bracket; /* encloses the weld; begun only if `count` is above 0 */
+    /* The bracket (edits that succeed or fail together) that encloses the weld; begun only if
+     * `count` is above 0. */
+    he_bracket bracket;
 } he_keeping;
 
 /* Moves the values of vertices that the weld would lose to corners. An edit must call it after its

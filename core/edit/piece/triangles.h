@@ -7,7 +7,8 @@
 
 typedef struct he_triangles {
     he_triangulation of;
-    /* Used by COMMIT: for each corner, the half-edge that leaves it in the part not filled yet. */
+    /* Used while the triangles are made (COMMIT): the half-edge that leaves each corner in the part
+     * of the loop that is not filled yet. */
     uint32_t *side;
 } he_triangles;
 

@@ -6,8 +6,8 @@
 
 /* A corner in the plane. */
 typedef struct he_line_crossing {
-    double along; /* position along the line in which the face meets the plane */
-    uint32_t at;  /* index of the corner in the loop of the face */
+    double along; /* position of a corner along the line in which the face meets the plane */
+    uint32_t at;  /* index of that corner in the loop of the face */
 } he_line_crossing;
 
 /* Bits for the sides of the plane on which a part of the face has corners. A bit multiplied with

@@ -32,7 +32,7 @@
  * the next face; {0} at first. */
 typedef struct he_chords {
     uint32_t n;
-    he_ids corner; /* n half-edges of the face, the stored one last */
+    he_ids corner; /* the n half-edges of the face, the face's stored half-edge last */
     /* The two corners of each chord, by their indices, the lower one first. A chord comes after all
      * chords between its corners. */
     he_ids pairs;

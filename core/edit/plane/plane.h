@@ -10,9 +10,10 @@
 
 /* A plane, and how near to it a vertex counts as in it. */
 typedef struct he_plane {
-    he_vec3 point;           /* any point of the plane */
-    he_vec3 normal;          /* of any length; it points to the side above */
-    const double *tolerance; /* a distance; NULL for the default of he_sides_find */
+    he_vec3 point;  /* any point of the plane */
+    he_vec3 normal; /* the normal, of any length; it points to the side above */
+    /* The distance up to which a vertex is in the plane; NULL: the default of he_sides_find. */
+    const double *tolerance;
 } he_plane;
 
 typedef struct he_sides {

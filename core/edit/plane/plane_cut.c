@@ -19,9 +19,9 @@ typedef struct cutter {
     he_sides sides;
     const he_plane *plane;
     int away;        /* the side that is cut off: 1 above, -1 below */
-    uint64_t *going; /* a bit for each face: it will be deleted */
+    uint64_t *going; /* a bit for each face: set if the face will be deleted */
     he_ids faces;    /* list of these faces */
-    he_ids rim;      /* half-edges of these faces whose twins belong to faces that stay */
+    he_ids rim;      /* half-edges of the deleted faces whose twins belong to faces that stay */
     he_cut_parts made;
 } cutter;
 
@@ -119,7 +119,7 @@ static he_status cap_loops(cutter *c, he_error *err)
         he_filled filled = {.vertex = {HE_NONE}};
         status = he_progress_at(c->m->progress, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
-            continue; /* the half-edge is on a loop that is capped already */
+            continue; /* the half-edge is on a loop that a face closes (caps) already */
         }
         status = check_loop(c, h, err);
         if (status == HE_OK) {
@@ -157,7 +157,7 @@ static he_status cut(cutter *c, bool cap, he_error *err)
      * whole edit. */
     const struct {
         he_status (*run)(cutter *c, he_error *err);
-        /* Name of the step for progress reports; NULL: the step names its parts itself. */
+        /* Name of the step for progress reports; NULL if the step reports names of its own. */
         const char *phase;
         double to;
         bool wanted;

@@ -8,9 +8,10 @@
 typedef enum he_cut_side { HE_CUT_ABOVE, HE_CUT_BELOW } he_cut_side;
 
 typedef struct he_cut_parts {
-    uint32_t edges_split, faces_split; /* numbers of edges and faces that were split */
+    uint32_t edges_split, faces_split; /* how many edges, and how many faces, were split */
     uint32_t faces_deleted;            /* number of deleted faces, parts of split faces included */
-    /* The faces that close the cut, in the order of the half-edges with which their loops begin. */
+    /* The faces that close the cut, in rising order of the half-edges with which their loops
+     * begin. */
     he_ids caps;
 } he_cut_parts;
 

@@ -17,7 +17,7 @@ void he_plane_parts_clear(he_plane_parts *parts)
 typedef struct splitter {
     he_mesh *m;
     he_sides sides;
-    uint64_t *chosen; /* a bit for each face: it is to be split; NULL: all are */
+    uint64_t *chosen; /* a bit for each face: set if the face is to be split; NULL: all faces are */
     he_chords chords;
     he_plane_parts made;
 } splitter;
@@ -181,7 +181,7 @@ he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *face
         goto out;
     }
     /* Faces are split after edges, so that their sides have the new vertices, and one after
-     * another, so that each split finds the diagonals of the earlier ones. */
+     * another, so that each split sees the diagonals of the faces split before. */
     status = he_progress_phase(m->progress, "splitting edges", 0.5, err);
     if (status == HE_OK) {
         status = split_edges(&s, err);

@@ -7,7 +7,7 @@
 typedef struct he_plane_parts {
     he_ids vertices;      /* the new vertices, one for each edge that was split */
     he_ids edges;         /* the new diagonals */
-    he_ids faces;         /* the new faces, one for each diagonal */
+    he_ids faces;         /* the new faces: one for each new diagonal */
     uint32_t faces_split; /* number of old faces that were split */
 } he_plane_parts;
 

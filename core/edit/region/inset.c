@@ -6,11 +6,14 @@
 /* How the corners on the rim of a region move, and buffers for the corners of one face. Time runs
  * from 0 to 1 during the motion. */
 typedef struct motion {
-    he_vec3 *path;   /* displacement of each corner on the rim at time 1 */
-    he_vec3 *at;     /* positions of the corners of one face */
-    he_vec3 *moves;  /* displacements of the corners of that face */
-    he_vec3 *of;     /* for each face of the region, the mean of its corners or its normal */
-    double end;      /* the first time at which a corner or side hits another */
+    he_vec3 *path;  /* displacement of each corner on the rim at time 1 */
+    he_vec3 *at;    /* positions of the corners of one face */
+    he_vec3 *moves; /* displacements at time 1 of the corners of that face */
+    /* The mean of the corners of each face of the region or, if sides move in parallel, its
+     * normal. */
+    he_vec3 *of;
+    /* The first time at which a corner hits a side, a side has no length or a corner flips. */
+    double end;
     uint64_t budget; /* steps of work that may still be done */
 } motion;
 
@@ -214,8 +217,8 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
             happens(p, first_root(area));
             continue;
         }
-        /* The corner b is reflex, so it is tested against every side of the face of which it is not
-         * an end. */
+        /* The corner b is reflex (its angle is above pi), so it is tested against every side of the
+         * face that does not end at b. */
         if (p->budget < n) {
             return he_fail(
                 err, HE_LIMIT, HE_FACE, f.i,

@@ -180,7 +180,8 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
 
 /* --- COMMIT: writing --- */
 
-/* The first new ids of each kind; those for half-edge i of the rim are counted from them. */
+/* The first new id of each kind of element; half-edge i of the rim gets vertex `vertex` + i, edges
+ * `edge` + 2i and `edge` + 2i + 1, and face `face` + i. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -264,7 +265,7 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 }
 
 /* Computes the values of the new vertices from `first` to `last`, all mixed from corners of the
- * same face. Meanwhile the row of `last` has the mean of these corners. */
+ * same face. While it works, the row of vertex `last` holds the mean of these corners. */
 static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
                         size_t last, he_ids *corners)
 {

@@ -48,7 +48,8 @@ typedef struct he_region {
     /* Vertices of the rim; each has the index of the rim half-edge that leaves it. */
     he_idmap corners;
     he_ids rim;
-    /* Other half-edges inside the region that leave a rim vertex, and the index of that vertex. */
+    /* `inner`: half-edges inside the region, other than those of the rim, that leave a rim vertex;
+     * `inner_at`: the index of that vertex in `corners`. */
     he_ids inner, inner_at;
 } he_region;
 
@@ -59,14 +60,14 @@ typedef struct he_region {
 typedef struct he_region_mix {
     he_halfedge in;
     he_vertex beside;
-    double mean, side; /* both are at least 0, and their sum is at most 1 */
+    double mean, side; /* the two weights: each at least 0, their sum at most 1 */
 } he_region_mix;
 
 /* Callbacks of he_region_draw. `place` computes where the new vertices are: it fills `to` with one
  * position for each corner of the rim. If it sets *shifts, the vertices inside the region move by
  * the vector *shift. It may refuse the edit. `mix`, if not NULL, is called after `to` is filled and
- * says how the values of each new vertex are computed; otherwise each has the values of the old
- * vertex below it. */
+ * says how the values of each new vertex are computed; without `mix` each new vertex has the values
+ * of the old vertex below it. */
 typedef struct he_region_place {
     he_status (*place)(const he_mesh *m, const he_region *region, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err);

@@ -3,12 +3,12 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* The column of this mesh to which a column of the other mesh is appended, and how its values are
- * mapped. */
+/* The column of this mesh to which a column of the other mesh is appended, and how that other
+ * column's values are mapped. */
 typedef struct target {
     size_t slot;
-    /* The index in this mesh of each label of the other column; NULL: indices stay as they
-     * are. */
+    /* The index in this mesh's column of each label (name of a value) of the other mesh's column;
+     * NULL: indices of labels stay as they are. */
     uint32_t *label;
 } target;
 
@@ -60,8 +60,9 @@ static he_status no_memory(const he_column *column, he_error *err)
 /* Materials of the other mesh that get another name in this mesh, and the slots that they have in
  * this mesh. */
 typedef struct renames {
-    he_labels *from; /* their names in the other mesh; NULL if there are none */
-    he_ids slots;    /* for each of these names, the slot of the material in this mesh's table */
+    /* The names of these materials in the other mesh; NULL: no material is renamed. */
+    he_labels *from;
+    he_ids slots; /* for each of these names, the slot of the material in this mesh's table */
 } renames;
 
 static void renames_clear(renames *r)

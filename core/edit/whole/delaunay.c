@@ -11,18 +11,19 @@ static const double PI = 3.14159265358979323846;
 /* The state of one he_delaunay. */
 typedef struct flipper {
     he_mesh *m;
-    bool marked; /* true if the mesh has marks */
+    bool marked; /* true if the mesh has marks (locked or feature elements) */
     he_marks marks;
     uint32_t *queue; /* the edges to test: a ring buffer of `room` entries */
     size_t room, head, waiting;
-    uint64_t *queued; /* a bit for each edge: it is in the queue */
+    uint64_t *queued; /* a bit for each edge: set if the edge is in the queue */
     he_ids stuck;     /* edges that he_edge_flip has refused */
     size_t stuck_at;  /* number of flips when the edges in `stuck` were last tried */
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
     uint64_t work; /* work since progress was last reported */
-    /* Number of records in the delta before this edit, and number at which they are folded next. */
+    /* `from`: number of records in the delta before this edit; `fold_at`: number of records at
+     * which those of one word are next folded into one. */
     size_t from, fold_at;
 } flipper;
 
@@ -30,8 +31,8 @@ typedef struct flipper {
  * become one. */
 enum { RECORDS_OF_EDGE = 4 };
 
-/* The amount of work after which progress is reported. Testing an edge takes as long as
- * WORK_OF_EDGE steps around a vertex, and as long as a few elements in the loops of other edits. */
+/* The amount of work after which progress is reported. Testing an edge counts as WORK_OF_EDGE
+ * units, because it takes as long as so many steps around a vertex. */
 enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_PROGRESS_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)

@@ -4,8 +4,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The new element that stands for each live element: vertex[f] of face f, edge[e] of edge e,
- * face[v] of vertex v. */
+/* The new element that stands for each live element: vertex[f] for face f, edge[e] for edge e,
+ * face[v] for vertex v. */
 typedef struct rows {
     uint32_t *vertex, *edge, *face;
     /* Number of ids of each kind that were issued before the edit. */
@@ -84,7 +84,8 @@ static he_status check_locks(const he_mesh *m, he_error *err)
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         uint32_t issued = he_mesh_issued(m, kinds[k]);
         for (uint32_t i = 0; i < issued; i++) {
-            /* A deleted element's row holds the default of the attribute, which may mean locked. */
+            /* Deleted elements are skipped: their rows hold the default of the attribute, which may
+             * mean locked. */
             if (he_is_locked(&marks, kinds[k], i) && he_mesh_is_live(m, kinds[k], i)) {
                 return he_require_unlocked(&marks, kinds[k], i, err);
             }
@@ -132,8 +133,9 @@ static void make_rows(he_mesh *m, rows *r)
     }
 }
 
-/* Returns the dual half-edge of h: it runs from the face right of h to the face left of it, along
- * the new face that stands for the origin of h. */
+/* Returns the dual half-edge of h, which belongs to the new edge that stands for the edge of h: it
+ * runs from the face right of h to the face left of it, along the new face that stands for the
+ * origin of h. */
 static he_halfedge star(const rows *r, he_halfedge h)
 {
     return (he_halfedge){2 * r->edge[h.i >> 1] + (h.i & 1)};

@@ -12,9 +12,9 @@
  * the value of he_plain_look. */
 typedef struct he_material_change {
     const char *rename;
-    bool replace; /* values that are not given become those of he_plain_look */
+    bool replace; /* true: values that are not given become those of he_plain_look */
     const double *base_color;
-    /* base_color has four numbers, the fourth for the opacity; otherwise the opacity stays. */
+    /* True if base_color has a fourth number, the opacity; otherwise the opacity stays. */
     bool opaque_too;
     const double *metallic, *roughness;
     const double *emission;

@@ -15,9 +15,10 @@
  * normals if the map is a translation. */
 typedef struct he_normals {
     he_mesh *m;
-    const uint32_t *vertices; /* the vertices that are mapped; NULL: all */
+    const uint32_t *vertices; /* the vertices that the map moves; NULL: all vertices */
     size_t count;
-    /* A bit for each vertex: whether it is in the list; made only if normals of faces need it. */
+    /* A bit for each vertex: set if it is in the list of mapped vertices; made only if normals of
+     * faces depend on it. */
     uint64_t *chosen;
     double k[9];
     bool turns;
@@ -29,7 +30,8 @@ typedef struct he_normals {
 HE_NODISCARD he_status he_normals_init(he_normals *n, he_mesh *m, const double matrix[16],
                                        const uint32_t *vertices, size_t count, size_t *words,
                                        he_error *err);
-/* Writes the transformed normals. An edit must call it in its COMMIT part. */
+/* Writes the transformed normals. An edit must call it in its COMMIT part, which writes and cannot
+ * fail. */
 void he_normals_commit(const he_normals *n);
 void he_normals_clear(he_normals *n);
 

@@ -15,8 +15,8 @@ static void part_clear(part *p)
     he_ids_clear(&p->faces);
 }
 
-/* Puts all live elements that have a face into the lists; isolated vertices have nothing to
- * reverse. */
+/* Puts all faces and edges, and all vertices with a face, into the lists of what is reversed;
+ * isolated vertices have nothing to reverse. */
 static he_status take_all(const he_mesh *m, part *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -39,7 +39,8 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
     return status;
 }
 
-/* Puts the listed faces into the lists, with their corners and edges, each only once. */
+/* Puts the faces that the caller listed into the lists of what is reversed, with the vertices and
+ * edges of these faces, each only once. */
 static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
                              he_error *err)
 {

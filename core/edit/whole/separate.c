@@ -27,8 +27,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_halfedge stored = he_vertex_halfedge(m, v), h = he_swing_ccw(m, stored);
-    /* The last fan, which ends with the half-edge that v stores, keeps the vertex, so its locks do
-     * not matter. */
+    /* The last fan, which ends with the half-edge that v stores, keeps the vertex, so locks in this
+     * fan do not matter. */
     for (uint32_t fans = he_vertex_fans(m, v); status == HE_OK && fans > 1; fans--) {
         status = check_fan(m, &marks, &h, err);
         h = he_swing_ccw(m, h);
@@ -36,7 +36,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
     return status;
 }
 
-/* If v is a bow-tie, adds v to `ties`, and to `need` what separating its fans will write. */
+/* If v is a bow-tie, adds v to `ties`, and adds to `need` what separating the fans of v will
+ * write. */
 static he_status plan(const he_mesh *m, he_vertex v, he_reservation *need, he_ids *ties,
                       he_error *err)
 {
