@@ -89,11 +89,11 @@ plant_slot() {
 plant_slot 'a bare number for an argument is found' 'a bare number, 0, stands for an argument' \
     's/args\[EDGE_FLIP_EDGE\]/args[0]/'
 plant_slot 'a bare number for a result is found' 'a bare number, 0, stands for a result' \
-    's/he_give(out, EDGE_FLIP_OUT_EDGE,/he_give(out, 0,/'
+    's/he_results_set(out, EDGE_FLIP_OUT_EDGE,/he_results_set(out, 0,/'
 plant_slot 'a bare number for a list of results is found' 'a bare number, 2, stands for a result' \
-    's/he_give_add(out, EDGE_SPLIT_OUT_FACES,/he_give_add(out, 2,/'
+    's/he_results_add(out, EDGE_SPLIT_OUT_FACES,/he_results_add(out, 2,/'
 plant_slot "another operation's slot is found" 'EDGE_JOIN_OUT_EDGE is not a slot of the results of run_edge_flip' \
-    's/he_give(out, EDGE_FLIP_OUT_EDGE,/he_give(out, EDGE_JOIN_OUT_EDGE,/'
+    's/he_results_set(out, EDGE_FLIP_OUT_EDGE,/he_results_set(out, EDGE_JOIN_OUT_EDGE,/'
 plant_slot 'a slot of results among the arguments is found' 'EDGE_FLIP_OUT_EDGE is not a slot of the arguments' \
     's/args\[EDGE_FLIP_EDGE\]/args[EDGE_FLIP_OUT_EDGE]/'
 plant_slot 'a parameter in the slot of another is found' '"to" is placed in EDGE_COLLAPSE_T,' \
