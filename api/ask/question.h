@@ -38,8 +38,8 @@ typedef struct api_asker {
     uint64_t revision;
     api_out *out;
     api_arena *arena;
-    he_budget
-        budget; /* steps that are left; charging steps also polls the progress of the exchange */
+    /* steps that are left; charging steps also polls the progress of the exchange */
+    he_budget budget;
     const char *asked; /* name of the current question, for the message of a refusal */
     /* The request runs on a worker: its budget is small, and a request that needs more moves to the
      * job pool. */

@@ -34,8 +34,8 @@ typedef struct he_glb_groups {
     size_t count;
     uint32_t *order; /* live faces in the order in which they are written, NULL if that is the order
                         of ids */
-    size_t
-        *cut; /* index in he_export_triangles.corners at which the triangles of each face begin */
+    /* index in he_export_triangles.corners at which the triangles of each face begin */
+    size_t *cut;
     he_ids only_names; /* labels of materials that have no row in the mesh's table of materials */
 } he_glb_groups;
 

@@ -139,11 +139,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span
             (unsigned long long)length);
     }
     if ((part.start + offset) % alignment != 0 || stride % alignment != 0) {
-        he_warnings_add(&asset->into->warnings,
-                        &(he_occurrence){.code = "misaligned",
-                                         .text = "read although they are misaligned: numbers",
-                                         .place = HE_PLACE_BYTE,
-                                         .at = he_json_place(json, object)});
+        he_gltf_note(asset, "misaligned", "read although they are misaligned: numbers", HE_NONE,
+                     object);
     }
     *out = (span){part.bytes + offset, (size_t)stride,
                   part.place == HE_GLTF_NOWHERE ? part.place : part.place + offset};

@@ -17,6 +17,25 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
                                      .at = he_json_place(&asset->json, place)});
 }
 
+void he_gltf_note_text(he_gltf *asset, const char *code, const char *text, const char *subject,
+                       uint32_t place)
+{
+    he_warnings_add(&asset->into->warnings,
+                    &(he_occurrence){.code = code,
+                                     .text = text,
+                                     .subject = subject,
+                                     .length = strlen(subject),
+                                     .place = HE_PLACE_BYTE,
+                                     .at = he_json_place(&asset->json, place)});
+}
+
+void he_gltf_note_stale(he_gltf *asset, uint32_t place)
+{
+    he_gltf_note(asset, "stale_extras",
+                 "ignored, because they do not fit the geometry: hedge's own data in extras",
+                 HE_NONE, place);
+}
+
 /* Reports progress. The number of steps that reading will take is not known, so the fraction
  * that is reported only approaches 1: it is one half when a step was made for each 16 bytes of
  * the file. Few files take fewer steps than that. */

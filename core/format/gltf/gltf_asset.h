@@ -94,6 +94,11 @@ HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *li
  * `subject`, unless `subject` is HE_NONE. */
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
+/* Adds a warning about the JSON value `place`, with a subject that is text. */
+void he_gltf_note_text(he_gltf *asset, const char *code, const char *text, const char *subject,
+                       uint32_t place);
+/* Adds the warning that hedge's own data at the JSON value `place` does not fit the geometry. */
+void he_gltf_note_stale(he_gltf *asset, uint32_t place);
 
 /* Reports progress.
  * Returns HE_CANCELLED if the work was cancelled. */

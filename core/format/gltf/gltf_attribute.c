@@ -183,18 +183,6 @@ static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const 
     return status;
 }
 
-static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
-                         const char *semantic, uint32_t value)
-{
-    he_warnings_add(&s->asset->into->warnings,
-                    &(he_occurrence){.code = code,
-                                     .text = text,
-                                     .subject = semantic,
-                                     .length = strlen(semantic),
-                                     .place = HE_PLACE_BYTE,
-                                     .at = he_json_place(&s->asset->json, value)});
-}
-
 static bool is_direction(const he_gltf_semantic *known)
 {
     return role_of(known) == HE_GLTF_NORMAL || role_of(known) == HE_GLTF_TANGENT;
@@ -237,7 +225,7 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     if (!name_attribute(semantic, name, &out->known) || (a->matrix && a->type != HE_GLTF_FLOAT) ||
         (out->known != NULL &&
          (a->components < out->known->least || a->components > out->known->most || a->matrix))) {
-        note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
+        he_gltf_note_text(s->asset, "ignored_attribute", "ignored: attribute", semantic, value);
         return HE_OK;
     }
     he_status status = check_type(s->asset, a, out->known, err);
@@ -252,13 +240,13 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     }
     if (column != NULL && column->rows > p->first_vertex) {
         if (!p->exact) {
-            note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
+            he_gltf_note_text(s->asset, "ignored_attribute", "ignored: attribute", semantic, value);
         }
         return HE_OK;
     }
     if (column != NULL && (column->type != type || column->components != a->components)) {
-        note_ignored(
-            s, "attribute_types",
+        he_gltf_note_text(
+            s->asset, "attribute_types",
             "ignored, because an earlier part of the file has it with another type: attribute",
             semantic, value);
         return HE_OK;

@@ -3,18 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static void note(he_gltf *asset, uint32_t value, const char *code, const char *text,
-                 const char *name)
-{
-    he_warnings_add(&asset->into->warnings,
-                    &(he_occurrence){.code = code,
-                                     .text = text,
-                                     .subject = name,
-                                     .length = strlen(name),
-                                     .place = HE_PLACE_BYTE,
-                                     .at = he_json_place(&asset->json, value)});
-}
-
 /* --- names --- */
 
 /* Adds the name of material i to `names`, with a number if an earlier material has the same name.
@@ -33,8 +21,9 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
     memcpy(name, own, strlen(own) + 1);
     for (unsigned number = 2; he_labels_find(names, name, strlen(name), &index); number++) {
         if (number == 2) {
-            note(asset, value, "material_renamed",
-                 "renamed with a number, because another has the same name: material", own);
+            he_gltf_note_text(asset, "material_renamed",
+                              "renamed with a number, because another has the same name: material",
+                              own, value);
         }
         number = number > FEW && number <= i ? (unsigned)i + 1
                                              : number; /* after some tries, a number above that of
@@ -95,12 +84,14 @@ static void read_opacity(reading *r, uint32_t value, he_look *look)
     he_json_string(json, he_json_find(json, value, "name"), name, sizeof name);
     if (mode == HE_NONE || he_json_is(json, mode, "OPAQUE")) {
         if (look->base_color[3] < 1) {
-            note(r->asset, value, "opaque",
-                 "set to 1, because alphaMode is OPAQUE: the opacity of material", name);
+            he_gltf_note_text(r->asset, "opaque",
+                              "set to 1, because alphaMode is OPAQUE: the opacity of material",
+                              name, value);
         }
         look->base_color[3] = 1;
     } else if (he_json_is(json, mode, "MASK")) {
-        note(r->asset, value, "ignored_mask", "ignored: the alphaCutoff of material", name);
+        he_gltf_note_text(r->asset, "ignored_mask", "ignored: the alphaCutoff of material", name,
+                          value);
     }
 }
 
@@ -146,20 +137,24 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
         return HE_OK; /* hedge wrote this material for its name alone: the table gets no row */
     }
     if (table->count == HE_MATERIALS) {
-        note(asset, value, "material_limit",
-             "left out, because a mesh has at most 4096 materials: further materials", "");
+        he_gltf_note_text(asset, "material_limit",
+                          "left out, because a mesh has at most 4096 materials: further materials",
+                          "", value);
         return HE_OK;
     }
     he_look look = read_look(&r, value);
     r.odd |= he_look_clamp(&look);
     if (r.odd) {
-        note(asset, value, "material_range",
-             "replaced by the default or the nearest allowed value: a number of material", name);
+        he_gltf_note_text(
+            asset, "material_range",
+            "replaced by the default or the nearest allowed value: a number of material", name,
+            value);
     }
     he_status status = he_material_new(name, strlen(name), &look, &row, err);
     if (status == HE_BAD_VALUE) { /* the name has a control character */
-        note(asset, value, "material_name",
-             "left out, because its name has a control character: material", name);
+        he_gltf_note_text(asset, "material_name",
+                          "left out, because its name has a control character: material", name,
+                          value);
         return HE_OK;
     }
     if (status == HE_OK) {

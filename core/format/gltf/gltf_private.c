@@ -14,17 +14,6 @@ bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive)
     return he_json_type(&asset->json, find_private(asset, primitive)) == '{';
 }
 
-static void note_stale(he_gltf_surface *s, uint32_t value)
-{
-    he_warnings_add(
-        &s->asset->into->warnings,
-        &(he_occurrence){
-            .code = "stale_extras",
-            .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
-            .place = HE_PLACE_BYTE,
-            .at = he_json_place(&s->asset->json, value)});
-}
-
 /* Returns true if a failure is about memory, limits or cancellation and must be reported. Any
  * other failure only means that the extras are not valid; the reader then ignores them. */
 static bool is_serious(he_status status)
@@ -159,7 +148,7 @@ static he_status read_polygons(he_gltf_surface *s, he_gltf_primitive *p, uint32_
         return status;
     }
     if (!fits) {
-        note_stale(s, object);
+        he_gltf_note_stale(s->asset, object);
         return HE_OK;
     }
     p->polygons = true;
@@ -440,7 +429,7 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     if (status == HE_OK && fits) {
         status = take_column(s, object, &d, &labels, err);
     } else if (status == HE_OK) {
-        note_stale(s, object);
+        he_gltf_note_stale(s->asset, object);
     }
     he_labels_release(labels);
     return status;
@@ -494,7 +483,7 @@ he_status he_gltf_open_private(he_gltf_surface *s, he_gltf_primitive *p, he_erro
     }
     p->private = fits;
     if (status == HE_OK && !fits) {
-        note_stale(s, private);
+        he_gltf_note_stale(s->asset, private);
     }
     return status;
 }

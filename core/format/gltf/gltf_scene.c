@@ -84,12 +84,8 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     }
     double length = sqrt(sum) * largest;
     if (fabs(length - 1) > UNIT) {
-        he_warnings_add(
-            &asset->into->warnings,
-            &(he_occurrence){.code = "rotation_made_unit",
-                             .text = "normalized to length 1: the quaternion of a rotation",
-                             .place = HE_PLACE_BYTE,
-                             .at = he_json_place(json, node)});
+        he_gltf_note(asset, "rotation_made_unit",
+                     "normalized to length 1: the quaternion of a rotation", HE_NONE, node);
     }
     for (int i = 0; i < 4; i++) {
         q[i] = q[i] / largest / sqrt(sum);
@@ -139,12 +135,8 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
         return HE_OK;
     }
     if (composed) {
-        he_warnings_add(
-            &asset->into->warnings,
-            &(he_occurrence){.code = "matrix_and_more",
-                             .text = "ignored: a translation, rotation or scale beside a matrix",
-                             .place = HE_PLACE_BYTE,
-                             .at = he_json_place(json, node)});
+        he_gltf_note(asset, "matrix_and_more",
+                     "ignored: a translation, rotation or scale beside a matrix", HE_NONE, node);
     }
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
         return he_json_fail(json, he_json_find(json, node, "matrix"), err, HE_BAD_VALUE,
@@ -287,11 +279,7 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
         *out = scenes.ids[0];
     }
     if (status == HE_OK && scenes.count > 1) {
-        he_warnings_add(&asset->into->warnings,
-                        &(he_occurrence){.code = "other_scenes",
-                                         .text = "ignored: all scenes but one",
-                                         .place = HE_PLACE_BYTE,
-                                         .at = he_json_place(json, list)});
+        he_gltf_note(asset, "other_scenes", "ignored: all scenes but one", HE_NONE, list);
     }
     he_ids_clear(&scenes);
     return status;

@@ -17,15 +17,6 @@ void he_gltf_surface_clear(he_gltf_surface *surface)
     he_ids_clear(&surface->own_materials);
 }
 
-static void note(he_gltf *asset, uint32_t value, const char *code, const char *text)
-{
-    he_warnings_add(&asset->into->warnings,
-                    &(he_occurrence){.code = code,
-                                     .text = text,
-                                     .place = HE_PLACE_BYTE,
-                                     .at = he_json_place(&asset->json, value)});
-}
-
 /* --- reading a primitive --- */
 
 static he_status get_mode(const he_gltf *asset, uint32_t primitive, uint64_t *mode, he_error *err)
@@ -322,7 +313,8 @@ he_status he_gltf_add_primitive(he_gltf_surface *s, uint32_t value, uint32_t nam
     uint32_t positions = he_json_find(json, p.attributes, "POSITION");
     uint32_t indices = he_json_find(json, value, "indices");
     if (status == HE_OK && positions == HE_NONE) {
-        note(asset, value, "no_positions", "skipped: a primitive without positions");
+        he_gltf_note(asset, "no_positions", "skipped: a primitive without positions", HE_NONE,
+                     value);
         return HE_OK;
     }
     if (status == HE_OK) {
@@ -338,12 +330,15 @@ he_status he_gltf_add_primitive(he_gltf_surface *s, uint32_t value, uint32_t nam
         return status;
     }
     if (p.mode < TRIANGLES && !(p.mode == POINTS && he_gltf_has_private(asset, value))) {
-        note(asset, value, p.mode == POINTS ? "skipped_points" : "skipped_lines",
-             p.mode == POINTS ? "skipped: a primitive of points" : "skipped: a primitive of lines");
+        he_gltf_note(asset, p.mode == POINTS ? "skipped_points" : "skipped_lines",
+                     p.mode == POINTS ? "skipped: a primitive of points"
+                                      : "skipped: a primitive of lines",
+                     HE_NONE, value);
         return HE_OK;
     }
     if (he_json_first(json, he_json_find(json, value, "targets")) != HE_NONE) {
-        note(asset, value, "ignored_targets", "ignored: morph targets of a primitive");
+        he_gltf_note(asset, "ignored_targets", "ignored: morph targets of a primitive", HE_NONE,
+                     value);
     }
     p.vertices = p.positions.count;
     status = he_gltf_has_private(asset, value) ? he_gltf_open_private(s, &p, err) : HE_OK;

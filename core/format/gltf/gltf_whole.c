@@ -11,17 +11,6 @@ static uint32_t find_private(const he_gltf *asset)
     return he_json_find(json, he_json_find(json, 0, "extras"), "hedge");
 }
 
-static void note_stale(he_gltf *asset, uint32_t value)
-{
-    he_warnings_add(
-        &asset->into->warnings,
-        &(he_occurrence){
-            .code = "stale_extras",
-            .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
-            .place = HE_PLACE_BYTE,
-            .at = he_json_place(&asset->json, value)});
-}
-
 /* --- checking whether the scene is as hedge wrote it --- */
 
 /* Returns the JSON object of the accessor whose index is the number at `value`, HE_NONE if there is
@@ -189,7 +178,7 @@ he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scene, bool *whol
         return status;
     }
     if (!fits) {
-        note_stale(surface->asset, private);
+        he_gltf_note_stale(surface->asset, private);
         return HE_OK;
     }
     *whole = true;
@@ -262,7 +251,7 @@ he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err)
                 a.components == 1 && a.type == HE_GLTF_UINT32 && a.bytes != NULL &&
                 a.count == count;
     if (!fits) {
-        note_stale(asset, find_private(asset));
+        he_gltf_note_stale(asset, find_private(asset));
         return HE_OK;
     }
     he_status status =
@@ -275,7 +264,7 @@ he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err)
         status = read_order(asset, &a, order, &fits, err);
     }
     if (status == HE_OK && !fits) {
-        note_stale(asset, value);
+        he_gltf_note_stale(asset, value);
     } else if (status == HE_OK) {
         status = he_soup_order_faces(&into->soup, order, err);
         if (status == HE_OK) {

@@ -25,11 +25,11 @@ typedef struct obj {
 } obj;
 
 /* Adds a warning about a line. */
-static void note(obj *o, const he_line *line, he_occurrence warning)
+static void note(obj *o, const he_line *line, he_occurrence seen)
 {
-    warning.place = HE_PLACE_LINE;
-    warning.at = line->number;
-    he_warnings_add(&o->into->warnings, &warning);
+    seen.place = HE_PLACE_LINE;
+    seen.at = line->number;
+    he_warnings_add(&o->into->warnings, &seen);
 }
 
 /* The numbers of a line, however many there are. */

@@ -42,8 +42,8 @@ typedef struct he_warnings {
     he_warning items[HE_WARNINGS];
     size_t count;
     uint64_t more;
-    he_warning_spot
-        spots[HE_WARNING_SPOTS]; /* places of the first occurrences of all warnings together */
+    /* places of the first occurrences of all warnings together */
+    he_warning_spot spots[HE_WARNING_SPOTS];
     size_t spot_count;
 } he_warnings;
 
