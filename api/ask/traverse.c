@@ -16,22 +16,17 @@
  * the walk visits fewer. */
 enum { FLOOD_COST = 8 };
 
-/* An element at which a walk begins or ends. */
-typedef struct end {
-    he_kind kind;
-    uint32_t id;
-} end;
-
 /* Reads the member `name` of a walk, which must be a live element of one of the kinds in the bit
  * set `kinds`. */
-static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds, end *out)
+static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds,
+                     he_element *out)
 {
     api_in in;
     return api_in_need(walk, name, &in) && api_asker_element(a, &in, kinds, &out->kind, &out->id);
 }
 
 /* Writes the members with which the answer to each kind of walk begins. */
-static void begin_answer(api_asker *a, const char *walk, end from)
+static void begin_answer(api_asker *a, const char *walk, he_element from)
 {
     api_out_object_begin(a->out);
     api_out_key_u64(a->out, "revision", a->revision);
@@ -54,7 +49,7 @@ static const char *const until_names[] = {"start", "boundary", NULL};
 static const he_until untils[] = {HE_UNTIL_START, HE_UNTIL_BOUNDARY};
 
 typedef struct path {
-    end from;
+    he_element from;
     he_path_steps steps;
     bool has_repeat;
     /* Value of the member "until"; NULL: the path ends after a number of steps. */
@@ -154,7 +149,7 @@ static bool ask_path(api_asker *a, const api_in *walk)
 static bool ask_loop(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", NULL};
-    end from;
+    he_element from;
     he_error err = {0};
     if (!api_in_only(walk, members) ||
         !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &from)) {
@@ -219,7 +214,7 @@ static bool ask_rings(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", "depth", NULL};
     api_in in;
-    end from;
+    he_element from;
     uint64_t depth;
     if (!api_in_only(walk, members) || !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &from) ||
         !api_in_need(walk, "depth", &in) || !api_in_u64(&in, 0, API_MAX_WALK, &depth)) {
@@ -250,7 +245,7 @@ static bool ask_breadth_first(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", "depth", "limit", NULL};
     api_in in;
-    end from;
+    he_element from;
     uint64_t depth = HE_NONE, limit = 0;
     if (!api_in_only(walk, members) ||
         !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX) | API_KIND_BIT(HE_FACE), &from)) {
@@ -303,7 +298,7 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", "to", "by", NULL};
     api_in in;
-    end from, to;
+    he_element from, to;
     int by = HE_BY_LENGTH;
     if (!api_in_only(walk, members) || !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &from) ||
         !read_end(a, walk, "to", API_KIND_BIT(HE_VERTEX), &to)) {
@@ -347,7 +342,7 @@ static bool ask_edges(api_asker *a, const api_in *walk, const char *name,
                       he_status (*find)(const he_mesh *, he_edge, he_ids *, bool *, he_error *))
 {
     static const char *const members[] = {"walk", "from", NULL};
-    end from;
+    he_element from;
     bool closed;
     he_error err = {0};
     if (!api_in_only(walk, members) || !read_end(a, walk, "from", API_KIND_BIT(HE_EDGE), &from)) {

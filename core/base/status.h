@@ -96,6 +96,12 @@ typedef enum he_kind {
     HE_KIND_COUNT
 } he_kind;
 
+/* One element of a mesh. */
+typedef struct he_element {
+    he_kind kind;
+    uint32_t id;
+} he_element;
+
 /* The unit in which a position in an input is given: lines or bytes. */
 typedef enum he_place { HE_PLACE_NONE, HE_PLACE_LINE, HE_PLACE_BYTE } he_place;
 

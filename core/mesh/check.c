@@ -18,16 +18,10 @@ typedef struct checker {
     uint32_t *stamp;
 } checker;
 
-/* The element at which an invariant is broken. */
-typedef struct element {
-    he_kind kind;
-    uint32_t id;
-} element;
-
-static void broken(checker *c, int rule, element at, const char *format, ...)
+static void broken(checker *c, int rule, he_element at, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-static void broken(checker *c, int rule, element at, const char *format, ...)
+static void broken(checker *c, int rule, he_element at, const char *format, ...)
 {
     if (c->total < c->capacity) {
         he_problem *p = &c->problems[c->total];
@@ -59,24 +53,24 @@ static void check_edge_links(checker *c, uint32_t e)
         if (dead) {
             if (k->next[h] != HE_DEAD || k->prev[h] != HE_DEAD || k->origin[h] != HE_DEAD ||
                 k->face[h] != HE_DEAD) {
-                broken(c, 12, (element){HE_EDGE, e}, "deleted edge %u still has links", e);
+                broken(c, 12, (he_element){HE_EDGE, e}, "deleted edge %u still has links", e);
             }
             continue;
         }
         if (!halfedge_lives(c->m, k->next[h])) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "next %u of halfedge %u does not exist",
+            broken(c, 1, (he_element){HE_HALFEDGE, h}, "next %u of halfedge %u does not exist",
                    k->next[h], h);
         }
         if (!halfedge_lives(c->m, k->prev[h])) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "prev %u of halfedge %u does not exist",
+            broken(c, 1, (he_element){HE_HALFEDGE, h}, "prev %u of halfedge %u does not exist",
                    k->prev[h], h);
         }
         if (!he_vertex_is_live(c->m, (he_vertex){k->origin[h]})) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "origin %u of halfedge %u does not exist",
+            broken(c, 1, (he_element){HE_HALFEDGE, h}, "origin %u of halfedge %u does not exist",
                    k->origin[h], h);
         }
         if (k->face[h] != HE_NONE && !he_face_is_live(c->m, (he_face){k->face[h]})) {
-            broken(c, 1, (element){HE_HALFEDGE, h}, "face %u of halfedge %u does not exist",
+            broken(c, 1, (he_element){HE_HALFEDGE, h}, "face %u of halfedge %u does not exist",
                    k->face[h], h);
         }
     }
@@ -93,13 +87,14 @@ static void check_links(checker *c)
     for (uint32_t v = 0; v < k->vertices.issued && !enough(c); v++) {
         uint32_t h = k->vertex_halfedge[v];
         if (h != HE_DEAD && h != HE_NONE && !halfedge_lives(c->m, h)) {
-            broken(c, 8, (element){HE_VERTEX, v}, "halfedge %u of vertex %u does not exist", h, v);
+            broken(c, 8, (he_element){HE_VERTEX, v}, "halfedge %u of vertex %u does not exist", h,
+                   v);
         }
     }
     for (uint32_t f = 0; f < k->faces.issued && !enough(c); f++) {
         uint32_t h = k->face_halfedge[f];
         if (h != HE_DEAD && !halfedge_lives(c->m, h)) {
-            broken(c, 6, (element){HE_FACE, f}, "halfedge %u of face %u does not exist", h, f);
+            broken(c, 6, (he_element){HE_FACE, f}, "halfedge %u of face %u does not exist", h, f);
         }
     }
 }
@@ -113,28 +108,28 @@ static void check_halfedges(checker *c)
         }
         uint32_t next = k->next[h];
         if (k->prev[next] != h) {
-            broken(c, 2, (element){HE_HALFEDGE, h}, "prev of next of halfedge %u is %u", h,
+            broken(c, 2, (he_element){HE_HALFEDGE, h}, "prev of next of halfedge %u is %u", h,
                    k->prev[next]);
         }
         if (k->next[k->prev[h]] != h) {
-            broken(c, 2, (element){HE_HALFEDGE, h}, "next of prev of halfedge %u is %u", h,
+            broken(c, 2, (he_element){HE_HALFEDGE, h}, "next of prev of halfedge %u is %u", h,
                    k->next[k->prev[h]]);
         }
         if (k->origin[next] != k->origin[h ^ 1]) {
-            broken(c, 3, (element){HE_HALFEDGE, h},
+            broken(c, 3, (he_element){HE_HALFEDGE, h},
                    "halfedge %u ends at vertex %u, its next begins at %u", h, k->origin[h ^ 1],
                    k->origin[next]);
         }
         if (k->face[next] != k->face[h]) {
-            broken(c, 4, (element){HE_HALFEDGE, h},
+            broken(c, 4, (he_element){HE_HALFEDGE, h},
                    "halfedge %u and its next %u have different faces", h, next);
         }
         if ((h & 1) == 0 && k->face[h] == HE_NONE && k->face[h + 1] == HE_NONE) {
-            broken(c, 5, (element){HE_EDGE, h >> 1}, "edge %u has no face", h >> 1);
+            broken(c, 5, (he_element){HE_EDGE, h >> 1}, "edge %u has no face", h >> 1);
         }
         if ((h & 1) == 0 && k->origin[h] == k->origin[h + 1]) {
-            broken(c, 10, (element){HE_EDGE, h >> 1}, "edge %u joins vertex %u to itself", h >> 1,
-                   k->origin[h]);
+            broken(c, 10, (he_element){HE_EDGE, h >> 1}, "edge %u joins vertex %u to itself",
+                   h >> 1, k->origin[h]);
         }
     }
 }
@@ -144,26 +139,26 @@ static void check_face(checker *c, uint32_t f)
     const he_content *k = &c->m->c;
     uint32_t first = k->face_halfedge[f], h = first;
     if (k->face[first] != f) {
-        broken(c, 6, (element){HE_FACE, f}, "halfedge %u of face %u has another face", first, f);
+        broken(c, 6, (he_element){HE_FACE, f}, "halfedge %u of face %u has another face", first, f);
         return;
     }
     uint64_t degree = 0;
     do {
         if (he_bits_get(c->in_face, h)) {
-            broken(c, 6, (element){HE_FACE, f}, "the loop of face %u does not close", f);
+            broken(c, 6, (he_element){HE_FACE, f}, "the loop of face %u does not close", f);
             return;
         }
         he_bits_set(c->in_face, h);
         uint32_t v = k->origin[h];
         if (c->stamp[v] == f + 1) {
-            broken(c, 7, (element){HE_FACE, f}, "face %u uses vertex %u twice", f, v);
+            broken(c, 7, (he_element){HE_FACE, f}, "face %u uses vertex %u twice", f, v);
         }
         c->stamp[v] = f + 1;
         degree++;
         h = k->next[h];
     } while (h != first);
     if (degree < 3) {
-        broken(c, 7, (element){HE_FACE, f}, "face %u has %u corners", f, (unsigned)degree);
+        broken(c, 7, (he_element){HE_FACE, f}, "face %u has %u corners", f, (unsigned)degree);
     }
 }
 
@@ -177,7 +172,7 @@ static void check_faces(checker *c)
     }
     for (uint32_t h = 0; h < 2 * k->edges.issued && !enough(c); h++) {
         if (k->next[h] != HE_DEAD && k->face[h] != HE_NONE && !he_bits_get(c->in_face, h)) {
-            broken(c, 6, (element){HE_FACE, k->face[h]},
+            broken(c, 6, (he_element){HE_FACE, k->face[h]},
                    "halfedge %u is not in the loop of its face %u", h, k->face[h]);
         }
     }
@@ -188,14 +183,14 @@ static void check_ring(checker *c, uint32_t v)
     const he_content *k = &c->m->c;
     uint32_t first = k->vertex_halfedge[v], h = first;
     if (k->origin[first] != v) {
-        broken(c, 8, (element){HE_VERTEX, v}, "halfedge %u of vertex %u leaves vertex %u", first, v,
-               k->origin[first]);
+        broken(c, 8, (he_element){HE_VERTEX, v}, "halfedge %u of vertex %u leaves vertex %u", first,
+               v, k->origin[first]);
         return;
     }
     bool boundary = false;
     do {
         if (he_bits_get(c->in_ring, h) || k->origin[h] != v) {
-            broken(c, 9, (element){HE_VERTEX, v},
+            broken(c, 9, (he_element){HE_VERTEX, v},
                    "the half-edges around vertex %u do not lead back to the first", v);
             return;
         }
@@ -203,14 +198,14 @@ static void check_ring(checker *c, uint32_t v)
         boundary |= k->face[h] == HE_NONE;
         uint32_t target = k->origin[h ^ 1];
         if (target > v && c->stamp[target] == v + 1) {
-            broken(c, 10, (element){HE_EDGE, h >> 1},
+            broken(c, 10, (he_element){HE_EDGE, h >> 1},
                    "edge %u is not the only edge between vertices %u and %u", h >> 1, v, target);
         }
         c->stamp[target] = v + 1;
         h = k->prev[h] ^ 1;
     } while (h != first);
     if (boundary && k->face[first] != HE_NONE) {
-        broken(c, 8, (element){HE_VERTEX, v},
+        broken(c, 8, (he_element){HE_VERTEX, v},
                "halfedge %u of boundary vertex %u is not on the boundary", first, v);
     }
 }
@@ -226,14 +221,14 @@ static void check_vertices(checker *c)
         }
         he_vec3 p = k->position[v];
         if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z)) {
-            broken(c, 11, (element){HE_VERTEX, v}, "the position of vertex %u is not finite", v);
+            broken(c, 11, (he_element){HE_VERTEX, v}, "the position of vertex %u is not finite", v);
         }
     }
     for (uint32_t h = 0; h < 2 * k->edges.issued && !enough(c); h++) {
         if (k->next[h] != HE_DEAD && !he_bits_get(c->in_ring, h)) {
             uint32_t v = k->origin[h];
             bool isolated = k->vertex_halfedge[v] == HE_NONE;
-            broken(c, isolated ? 8 : 9, (element){HE_VERTEX, v},
+            broken(c, isolated ? 8 : 9, (he_element){HE_VERTEX, v},
                    "the half-edges around vertex %u do not include halfedge %u", v, h);
         }
     }
@@ -242,8 +237,8 @@ static void check_vertices(checker *c)
 static void check_count(checker *c, const char *what, uint32_t stored, uint32_t counted)
 {
     if (stored != counted) {
-        broken(c, 12, (element){HE_MESH_KIND, 0}, "the mesh counts %u %s, but has %u", stored, what,
-               counted);
+        broken(c, 12, (he_element){HE_MESH_KIND, 0}, "the mesh counts %u %s, but has %u", stored,
+               what, counted);
     }
 }
 
@@ -252,7 +247,7 @@ static void check_dead_attributes(checker *c, const he_column *column)
     for (size_t row = 0; row < column->rows && !enough(c); row++) {
         if (!he_mesh_is_live(c->m, column->domain, (uint32_t)row) &&
             memcmp(he_column_row(column, row), column->fallback, column->row_bytes) != 0) {
-            broken(c, 12, (element){column->domain, (uint32_t)row},
+            broken(c, 12, (he_element){column->domain, (uint32_t)row},
                    "deleted %s %zu has a value of attribute %s", he_kind_name(column->domain), row,
                    column->name);
         }
@@ -267,7 +262,7 @@ static void check_rows(checker *c)
         vertices += k->vertex_halfedge[v] != HE_DEAD;
         he_vec3 p = k->position[v];
         if (k->vertex_halfedge[v] == HE_DEAD && (p.x != 0 || p.y != 0 || p.z != 0)) {
-            broken(c, 12, (element){HE_VERTEX, v}, "deleted vertex %u has a position", v);
+            broken(c, 12, (he_element){HE_VERTEX, v}, "deleted vertex %u has a position", v);
         }
     }
     for (uint32_t h = 0; h < 2 * k->edges.issued; h++) {
@@ -298,10 +293,11 @@ static void check_materials(checker *c)
         }
         he_look look = row->look;
         if (he_materials_find(table, row->name, row->length) != i) {
-            broken(c, 13, (element){HE_MESH_KIND, 0}, "two materials are called %.80s", row->name);
+            broken(c, 13, (he_element){HE_MESH_KIND, 0}, "two materials are called %.80s",
+                   row->name);
         }
         if (row->length == 0 || he_look_clamp(&look)) {
-            broken(c, 13, (element){HE_MESH_KIND, 0},
+            broken(c, 13, (he_element){HE_MESH_KIND, 0},
                    "material %zu has no name, or a number out of range", i);
         }
     }
