@@ -4,9 +4,12 @@
 
 static bool is_type(const api_field *field, const char *type)
 {
-    size_t length = strlen(type);
-    return strncmp(field->type, type, length) == 0 && strspn(field->type + length, "?") <= 1 &&
-           field->type[length + strspn(field->type + length, "?")] == '\0';
+    const size_t length = strlen(type);
+    if (strncmp(field->type, type, length) != 0) {
+        return false;
+    }
+    const char *rest = field->type + length;
+    return *rest == '\0' || strcmp(rest, "?") == 0;
 }
 
 static bool is_nullable(const api_field *field)
