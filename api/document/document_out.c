@@ -199,8 +199,8 @@ static uint64_t count_places(const api_document_out *out, he_kind domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* Returns the row of an attribute's column at position i in the order of the document; HE_NONE if
- * that vertex or face was deleted. */
+/* Returns the row, in the column of an attribute, of the element that is number i of its kind in
+ * the document; HE_NONE if it is deleted. Deleted vertices and faces keep their numbers. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {

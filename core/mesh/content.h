@@ -20,7 +20,7 @@ HE_NODISCARD he_status he_content_reserve_edges(he_content *c, size_t rows, he_e
 HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_error *err);
 
 /* Returns the table of rows of a kind of element; NULL for HE_MESH_KIND. Half-edges have no table
- * of their own: they have two rows for each row of the edges. */
+ * of their own, so HE_HALFEDGE gets that of the edges, of which each row is for two half-edges. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
 /* Applies the records of a delta between the positions `from` and `to` to a content: forwards, or

@@ -107,7 +107,7 @@ function section(name, command, printed) {
     return `${lines.join('\n')}\n`;
 }
 
-// Returns the columns of compare.mjs for the rows in the list above.
+// Returns rows of a Markdown table, one for each title in `chosen`, from what compare.mjs printed.
 function rowsOf(printed) {
     return chosen.flatMap((title) => {
         const row = printed.split('\n').find((line) => line.startsWith(title.padEnd(41) + 'natural'));
