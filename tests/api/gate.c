@@ -463,8 +463,8 @@ static void try_bodies_and_ids(world *w)
  * tokens it is an unknown job. */
 static void try_jobs(world *w)
 {
-    static const char *const async[] = {"Authorization", "Bearer left" SECRET, "Prefer",
-                                        "respond-async", NULL};
+    static const char left[] = "Bearer left" SECRET;
+    static const char *const async[] = {"Authorization", left, "Prefer", "respond-async", NULL};
     static const char *const ends[] = {"", "/result", "/events"};
     bench_reply made = ask_with(w, "POST", "/v1/meshes/left-m/query", async, "{\"queries\":[]}");
     char job[TARGET], id[TARGET];

@@ -163,7 +163,7 @@ static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **
 
 /* --- the memory budget --- */
 
-enum { WRITERS = 4, LARGE = 1 << 20, SMALL = 1 << 10, BLOCKS = 1 << 16 };
+enum { WRITERS = 4, LARGE = 1 << 20, SMALL = 1 << 10 };
 static const uint64_t BUDGET = (uint64_t)32 << 20;
 
 typedef struct writer {
@@ -204,22 +204,35 @@ static void await_all(writer writers[WRITERS])
     }
 }
 
-/* Allocates all memory that the budget has left, and returns the number of blocks. The function
+/* A block of memory that is held only so that others cannot have it. */
+typedef struct block {
+    struct block *next;
+} block;
+
+/* Allocates all memory that the budget has left, and adds the blocks to the list. The function
  * tries repeatedly, because other threads free memory meanwhile. */
-static size_t take_all(void **blocks, size_t count)
+static void take_all(block **list)
 {
     for (size_t size = LARGE; size >= SMALL / 16; size /= 4) {
-        while (count < BLOCKS && (blocks[count] = he_mem_alloc(size)) != NULL) {
-            count++;
+        for (block *b; (b = he_mem_alloc(size)) != NULL; *list = b) {
+            b->next = *list;
         }
     }
-    return count;
+}
+
+static void free_all(block **list)
+{
+    while (*list != NULL) {
+        block *next = (*list)->next;
+        he_mem_free(*list);
+        *list = next;
+    }
 }
 
 static void a_budget_filled_while_four_writers_write_stops_nobody_for_good(void **state)
 {
     (void)state;
-    static void *blocks[BLOCKS];
+    block *taken = NULL;
     writer writers[WRITERS] = {{.id = "a"}, {.id = "b"}, {.id = "c"}, {.id = "d"}};
     st_memory_install(BUDGET);
     atomic_store(&ending, false);
@@ -230,17 +243,13 @@ static void a_budget_filled_while_four_writers_write_stops_nobody_for_good(void 
     }
     for (int round = 0; round < 3; round++) {
         await_all(writers);
-        size_t count = 0;
         for (int i = 0; i < WRITERS; i++) {
             const uint64_t before = atomic_load(&writers[i].refused);
             while (atomic_load(&writers[i].refused) < before + 5) {
-                count = take_all(blocks, count);
-                assert_true(count < BLOCKS);
+                take_all(&taken);
             }
         }
-        while (count > 0) {
-            he_mem_free(blocks[--count]);
-        }
+        free_all(&taken);
     }
     await_all(writers);
     assert_int_equal(disk_status(), ST_OK);
