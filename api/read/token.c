@@ -103,11 +103,18 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
                                (size_t)(c - target));
         }
     }
-    if (raw[0] != '/' || strlen(target) > most || api_gate_ticket(query) != NULL) {
-        return api_in_fail(
-            in, API_BAD_PATH,
-            "a path must begin with \"/\", have at most %zu characters and contain no ticket",
-            most);
+    if (raw[0] != '/') {
+        return api_in_fail(in, API_BAD_PATH, "the path of a ticket must begin with \"/\"");
+    }
+    if (strlen(target) > most) {
+        return api_in_fail(in, API_BAD_PATH,
+                           "the path has %zu characters; a ticket is made for at most %zu",
+                           strlen(target), most);
+    }
+    if (api_gate_ticket(query) != NULL) {
+        return api_in_fail(in, API_BAD_PATH,
+                           "the path already has the query parameter \"ticket\", which the server "
+                           "adds");
     }
     if (!api_path_split(raw, &x->arena, &path, &x->problem)) {
         x->problem.status = x->problem.code == HE_NO_MEMORY ? 0 : 400;

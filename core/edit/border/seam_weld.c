@@ -111,10 +111,12 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     ends[1] = (pair){he_origin(m, h), he_target(m, k), k, h};
     if (ends[0].stays.i == ends[1].goes.i || ends[1].stays.i == ends[0].goes.i) {
         he_face f = he_face_of(m, he_twin(h));
+        bool begin = ends[1].stays.i == ends[0].goes.i;
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i,
-                       "edges %u and %u run in the same direction at vertex %u: both ends would "
-                       "become one corner of face %u",
-                       a.i, b.i, he_origin(m, h).i, f.i);
+                       "the boundary %s vertex %u on both edges %u and %u: welding them would join "
+                       "the two ends of edge %u, and face %u would visit one vertex twice",
+                       begin ? "leaves" : "reaches", (begin ? ends[1] : ends[0]).stays.i, a.i, b.i,
+                       a.i, f.i);
     }
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
         status = check_end(m, &ends[i], a, b, err);

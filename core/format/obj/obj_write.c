@@ -82,11 +82,13 @@ static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 static void note_unnamed(const obj_writer *w, he_warnings *warnings)
 {
     he_warnings_add_count(warnings, "unnamed_uv",
-                          "written, but no face names them: the texture coordinates of a vertex",
+                          "written as vt lines that no face uses: texture coordinates of vertices "
+                          "without faces",
                           count_unnamed(&w->uv, w->mesh));
-    he_warnings_add_count(warnings, "unnamed_normal",
-                          "written, but no face names it: the normal of a vertex",
-                          count_unnamed(&w->normal, w->mesh));
+    he_warnings_add_count(
+        warnings, "unnamed_normal",
+        "written as vn lines that no face uses: normals of vertices without faces",
+        count_unnamed(&w->normal, w->mesh));
 }
 
 /* Finds the names of the material libraries. Returns the attribute that has them, or NULL. */
