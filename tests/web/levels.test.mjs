@@ -262,6 +262,8 @@ test('levels stay when the connection was lost and the mesh is as it was', async
     way.mend();
     await connection('on');
     await (await caughtUp).finished();
+    await waitForFrames(page);
+    await waitForFaces(page, FACES);
     await page.keyboard.press('Home');
     await waitForFaces(page, 4);
     assert.equal(await page.getByText('Back to the mesh').count(), 1);

@@ -179,6 +179,9 @@ function update(what, change) {
 // Returns a label that says what the next frame will show.
 function label() {
     const { mesh, shown: content, selection } = session;
+    if (refining.isOn) {
+        return refining.label;
+    }
     return content === null
         ? null
         : {

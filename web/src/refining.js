@@ -157,7 +157,7 @@ export class Refining {
         const { button, box, slider, hint, play } = this.#elements;
         const { geometry, most } = this.#levels;
         this.#levels.goTo(0);
-        this.#stage.showLevel(geometry, this.#label);
+        this.#stage.showLevel(geometry, this.label);
         this.#pace = new Pace(geometry.triangleCount, most);
         slider.max = this.#pace.positions;
         slider.disabled = false;
@@ -216,7 +216,7 @@ export class Refining {
         const before = levels.level;
         levels.goTo(pace.levelAt(this.#position));
         if (levels.level !== before) {
-            this.#stage.refine(levels.takeChanges(), this.#label);
+            this.#stage.refine(levels.takeChanges(), this.label);
         }
         // Screen readers announce the number of faces only at the end of playing. When the user
         // moves the slider, the slider itself is announced.
@@ -228,7 +228,8 @@ export class Refining {
         }
     }
 
-    get #label() {
+    // Returns the label of a frame that shows the present level, see Stage.show().
+    get label() {
         const { mesh, revision } = this.#mesh;
         return { mesh, revision, faces: this.#levels.geometry.triangleCount };
     }
