@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-enum { THREADS = 4, OPEN = 16, ROUNDS = 40, ALL = THREADS * OPEN };
+enum { THREADS = 4, OPEN = 16, ROUNDS = 15, ALL = THREADS * OPEN };
 
 static api_decompressor_room room;
 static _Atomic unsigned unfolded, gone;

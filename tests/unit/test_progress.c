@@ -485,7 +485,7 @@ static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
         assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
         size_t before = blocks;
         /* Cancelled work must leave the mesh unchanged, so the next attempt uses the same mesh. */
-        for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 23) {
+        for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 47) {
             listener l = {.give_up_at = n};
             status = run_recorded(operations[i], copy, &l);
             assert_false(l.fell);
