@@ -134,8 +134,9 @@ const he_op he_edge_rows[] = {
                                              "half-edge, 1 = the other end."}},
         .results = {[EDGE_BISECT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                                 "The new vertex."},
-                    [EDGE_BISECT_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
-                                              "The new edge, at the end of the divided edge."}},
+                    [EDGE_BISECT_OUT_EDGE] =
+                        {"edge", HE_RESULT_ELEMENT, HE_EDGE,
+                         "The new edge, from the new vertex to the far end of the divided edge."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
         .change = {1, 1, 0},
         .run = run_edge_bisect,
@@ -251,14 +252,14 @@ const he_op he_edge_rows[] = {
                        {.name = "width",
                         .type = HE_PARAM_NUMBER,
                         .flags = HE_REQUIRED,
-                        .doc =
-                            "The distance from its ends at which the neighbouring edges are cut: "
-                            "above 0, and at most 0.99 of their length."}},
-        .results = {[EDGE_BEVEL_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
-                    [EDGE_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                                                 "The new vertices, in the order of the new face."},
-                    [EDGE_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                              "The sides of the new face, in the same order."}},
+                        .doc = "The distance from the ends of the edge at which the neighbouring "
+                               "edges are cut: above 0, and at most 0.99 of their length."}},
+        .results =
+            {[EDGE_BEVEL_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
+             [EDGE_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                          "The new vertices, in the order of the new face."},
+             [EDGE_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                       "The sides of the new face, in the order of its corners."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
                      HE_LOW_DEGREE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 1},

@@ -107,10 +107,9 @@ const he_op he_loop_rows[] = {
                         .doc =
                             "The half-edge of the other loop that is merged with `a`: its target "
                             "becomes the origin of `a`."}},
-        .results = {[LOOP_JOIN_OUT_MOVED] =
-                        {"moved", HE_RESULT_NUMBER, 0,
-                         "How many values of vertices became values of corners, because merged "
-                         "vertices had different ones."}},
+        .results = {[LOOP_JOIN_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
+                                             "How many vertex values became corner values, because "
+                                             "the merged vertices had different values."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_LOOP, HE_LOOP_LENGTH,
                      HE_REPEATED_CORNER, HE_SHARED_VERTEX, HE_BOUNDARY_EDGE, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},

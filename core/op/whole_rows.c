@@ -65,7 +65,7 @@ const he_op he_whole_rows[] = {
     },
     {
         .name = "reverse",
-        .doc = "Reverse the orientation of faces, and their attributes `normal`.",
+        .doc = "Reverse the orientation of faces, and their attributes named `normal`.",
         .size = HE_OP_WHOLE,
         .params = {[REVERSE_FACES] =
                        {.name = "face",

@@ -320,7 +320,7 @@ static he_status mix(const he_mesh *m, const he_region *r, const he_vec3 *to, he
 {
     he_vec3 *means = he_mem_array(NULL, r->faces.ids.count, sizeof *means);
     if (means == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the means of faces");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the centres of faces");
     }
     for (size_t i = 0; i < r->faces.ids.count; i++) {
         means[i] = he_loop_mean(m, he_face_halfedge(m, (he_face){r->faces.ids.ids[i]}));

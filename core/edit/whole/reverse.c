@@ -99,7 +99,8 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
 {
     uint64_t *chosen = he_bits_new(m->c.faces.issued);
     if (chosen == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look for the rest of components");
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory to check that the faces are whole components");
     }
     for (size_t i = 0; i < p->faces.count; i++) {
         he_bits_set(chosen, p->faces.ids[i]);

@@ -256,7 +256,7 @@ static void add_words(he_glb_parts *g, const he_column *column, he_warnings *war
     }
     he_warnings_add(warnings,
                     &(he_occurrence){.code = "in_extras",
-                                     .text = "stored so that only hedge reads it back: attribute",
+                                     .text = "stored in a form that only hedge reads: attribute",
                                      .subject = subject,
                                      .length = (size_t)length});
 }
@@ -415,11 +415,11 @@ static void note_geometry(const he_glb_parts *g, he_warnings *warnings)
 {
     he_warnings_add_count(
         warnings, "triangulated",
-        "cut into triangles for other programs, and stored uncut for hedge: a face",
+        "cut into triangles for other programs, and also stored whole for hedge: a face",
         g->cuts.polygons);
     he_warnings_add_count(warnings, "split_vertices",
-                          "added for other programs where values of corners differ, and merged "
-                          "again when hedge reads the file: a vertex",
+                          "duplicated for other programs because values of its corners differ, and "
+                          "merged again when hedge reads the file: a vertex",
                           g->splits.copies.count);
     he_warnings_add_count(warnings, "turned_triangles",
                           "cut into triangles of which some have no area or are reversed: a face",
