@@ -298,7 +298,7 @@ he_status he_decimation_begin(he_decimation *d, const he_decimate_options *optio
     d->places = he_mem_zero(m->c.edges.issued, sizeof *d->places);
     he_status status = he_queue_init(&d->queue, m->c.edges.live, err);
     if (status == HE_OK && (d->memory == NULL || d->flags == NULL || d->places == NULL)) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to weigh the faces");
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the weights of the faces");
     }
     if (status == HE_OK) {
         status = weigh(d, err);

@@ -323,8 +323,9 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
     return face == HE_NONE || face == HE_DEAD ? HE_OK : he_ids_add(&t->faces, face, err);
 }
 
-/* Adds the elements whose rows a record may change. A half-edge that changed its face has a record
- * that names both faces, so any other record of a half-edge adds only the present face. */
+/* Adds the elements whose rows in the arrays may be changed by a record of a delta. A half-edge
+ * that changed its face has a record that names both faces, so any other record of a half-edge adds
+ * only the present face. */
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;

@@ -178,7 +178,7 @@ const he_op he_edge_rows[] = {
                     [EDGE_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
                                               "The new part of the edge, then the diagonals."},
                     [EDGE_SPLIT_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                              "The new faces, left one first."}},
+                                              "The new faces, the left one first."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {1, HE_VARIES, HE_VARIES},
         .run = run_edge_split,

@@ -454,8 +454,8 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
     g.work.progress = soup->limits.progress;
     g.work.of = soup->face_count;
     if (g.bad == NULL || g.stamp == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to look through %zu faces",
-                               soup->face_count);
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory to examine %zu faces", soup->face_count);
     }
     if (status == HE_OK) {
         status = find(&g, err);

@@ -9,8 +9,8 @@ typedef struct motion {
     he_vec3 *path;  /* displacement of each corner on the rim at time 1 */
     he_vec3 *at;    /* positions of the corners of one face */
     he_vec3 *moves; /* displacements at time 1 of the corners of that face */
-    /* The mean of the corners of each face of the region or, if sides move in parallel, its
-     * normal. */
+    /* The mean of the corners of each face of the region or, if sides move in parallel, the normal
+     * of each face. */
     he_vec3 *of;
     /* The first time at which a corner hits a side, a side has no length or a corner flips. */
     double end;

@@ -45,7 +45,8 @@ static uint64_t corner_count(const he_mesh *m)
 
 static bool all_below(const he_column *column, double end)
 {
-    for (size_t row = 0; row <= column->rows; row++) { /* the row after the last is the default */
+    /* The row after the last one holds the default value. */
+    for (size_t row = 0; row <= column->rows; row++) {
         for (uint32_t i = 0; i < column->components; i++) {
             if (he_export_number(column, row, i) >= end) {
                 return false;

@@ -7,10 +7,9 @@
  * format whose parts refer to each other in any order, until it is finished:
  *
  *     he_reader_new -> he_reader_feed ... -> he_reader_finish -> he_import -> he_build
- * (build/build.h)
  *
- * If a file refers to other files, the caller gives those that came with it before it finishes
- * (he_reader_beside).
+ * build/build.h declares he_build. If a file refers to other files, the caller gives those that
+ * came with it before it finishes (he_reader_beside).
  *
  * An import, the result of a reader, is a polygon soup, warnings about what was ignored, and the
  * place of each vertex and face in the input. A reader refuses errors of the text itself (syntax,
