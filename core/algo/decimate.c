@@ -136,8 +136,8 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* Vertices without an edge are skipped: writing their nodes would touch fresh pages of memory,
-     * which takes long. */
+    /* Vertices without an edge are skipped: writing to their nodes would touch memory pages that
+     * were not used yet, which takes long. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_progress_at(m->progress, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {

@@ -64,8 +64,8 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* Adds the corner column `takes` to the soup. It replaces the vertex attribute `column`, unless
- * that one `stays`. */
+/* Adds the corner column `takes` to the soup, and removes the vertex attribute `column` unless
+ * `stays` is true. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {

@@ -81,8 +81,8 @@ static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf
     return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
-/* Returns the component type in which a column is written as attribute `number` of a semantic,
- * such as TEXCOORD_1; 0 if the column cannot be written as this attribute. */
+/* Returns the component type in which a column is written as attribute `number` of a semantic, such
+ * as TEXCOORD_1 with the number 1; 0 if the column cannot be written as this attribute. */
 static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
                         unsigned number)
 {

@@ -26,9 +26,8 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
                 "renamed by adding a number, because another material has that name: material", own,
                 value);
         }
-        number = number > FEW && number <= i ? (unsigned)i + 1
-                                             : number; /* after some tries, a number above that of
-                                                          all materials, which is mostly free */
+        /* After a few tries the next number is i + 1, which in most files no name has. */
+        number = number > FEW && number <= i ? (unsigned)i + 1 : number;
         he_material_number_name(own, number, name);
     }
     return he_labels_add(names, name, strlen(name), &index, err);

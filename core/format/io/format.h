@@ -80,7 +80,7 @@ typedef struct he_format {
         *media_types; /* NULL ends this and the other lists; exports get the first media type */
     const char *const *extensions;
     const char *const *encodings; /* encodings of the writer, the default first */
-    const char *const *carries;   /* what files preserve: "polygons", attributes as "face color" */
+    const char *const *carries;   /* what a file preserves, such as "polygons" or "face color" */
     /* Returns true if `bytes` could be the first bytes of a file in this format. */
     bool (*sniff)(const char *bytes, size_t n);
     const he_reading *reading; /* NULL: the format cannot be read */

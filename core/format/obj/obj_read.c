@@ -16,8 +16,8 @@ typedef struct obj {
     he_corner_pool uv, normal;
     he_colors colors;
     he_face_groups object, group, material, smoothing;
-    he_labels *libraries; /* names on the lines of mtllib, NULL while there are none */
-    he_ids library_lines; /* line on which the name of each library comes first */
+    he_labels *libraries; /* names of libraries on mtllib lines, NULL while there are none */
+    he_ids library_lines; /* the first line that names each library */
     uint32_t highest;     /* highest vertex that a corner refers to */
     uint64_t last_line;   /* number of the last line read */
     uint64_t understood;  /* number of lines with a keyword of the format */
