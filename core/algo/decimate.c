@@ -136,8 +136,8 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* Vertices without an edge are skipped: writing their nodes would touch fresh pages of memory,
-     * which takes long. */
+    /* Vertices without an edge are skipped: writing to their nodes would touch memory pages that
+     * were not used yet, which takes long. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_progress_at(m->progress, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
@@ -298,7 +298,7 @@ he_status he_decimation_begin(he_decimation *d, const he_decimate_options *optio
     d->places = he_mem_zero(m->c.edges.issued, sizeof *d->places);
     he_status status = he_queue_init(&d->queue, m->c.edges.live, err);
     if (status == HE_OK && (d->memory == NULL || d->flags == NULL || d->places == NULL)) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to weigh the faces");
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the weights of the faces");
     }
     if (status == HE_OK) {
         status = weigh(d, err);

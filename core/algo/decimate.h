@@ -82,7 +82,8 @@ typedef struct he_decimated {
  * The work is done in a copy, and then each word of the mesh that differs is written once. If more
  * than HE_DECIMATE_RECORDED faces would be deleted, the copy replaces the content instead, recorded
  * as one replacement that keeps ids and the old arrays; the sets of changes are then empty. That
- * takes a quarter of the memory: words take 264 bytes for each deleted face.
+ * takes a quarter of the memory that a record of each word would take: 264 bytes for each deleted
+ * face.
  *
  * `out` may be NULL.
  * Returns HE_NOT_TRIANGLE naming a face, if one is no triangle.

@@ -47,7 +47,7 @@ HE_NODISCARD static inline he_status he_queue_init(he_edge_queue *queue, uint32_
     queue->chunks = he_mem_array(NULL, edges / HE_QUEUE_CHUNK + partly + 1, sizeof *queue->chunks);
     queue->first = he_mem_array(NULL, HE_QUEUE_BUCKETS, sizeof *queue->first);
     if (queue->chunks == NULL || queue->first == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to order %u edges", edges);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a queue of %u edges", edges);
     }
     memset(queue->first, 0xFF, HE_QUEUE_BUCKETS * sizeof *queue->first);
     return HE_OK;

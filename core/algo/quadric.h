@@ -40,8 +40,8 @@ static inline he_vec3 he_quadric_times(const he_quadric *q, he_vec3 x)
                      q->xz * x.x + q->yz * x.y + q->zz * x.z};
 }
 
-/* Returns the value of the quadric at x; never negative, because a negative value is rounding
- * noise. */
+/* Returns the value of the quadric at x; a negative value, which can only be rounding noise, is
+ * returned as 0. */
 static inline double he_quadric_at(const he_quadric *q, he_vec3 x)
 {
     double value = he_vec3_dot(x, he_vec3_add(he_quadric_times(q, x), he_vec3_scale(q->b, 2)));

@@ -358,19 +358,19 @@ static const he_shape shapes[] = {
      torus_size,
      torus_fill},
     {"cylinder",
-     "Quads about the z axis, closed by a polygon at either end or open.",
+     "A tube of quads around the z axis, open or closed by a polygon at each end.",
      {COUNT("segments", 32, 3, MOST, "sides"), LENGTH("radius", 1, "radius of the circles"),
       LENGTH("height", 2, "height along z"), FLAG("caps", 1, "close the ends")},
      cylinder_size,
      cylinder_fill},
     {"cone",
-     "Triangles from a circle to a tip above it, closed by a polygon below or open.",
+     "Triangles from a circle to a tip above it. The circle is closed by a polygon or open.",
      {COUNT("segments", 32, 3, MOST, "sides"), LENGTH("radius", 1, "radius of the circle"),
       LENGTH("height", 2, "height along z"), FLAG("caps", 1, "close the base")},
      cone_size,
      cone_fill},
     {"disk",
-     "A fan of triangles about its centre that faces up.",
+     "A disk of triangles around its centre that faces up.",
      {COUNT("segments", 32, 3, MOST, "triangles"),
       LENGTH("radius", 1, "radius of the circle"),
       {"height", HE_SHAPE_NUMBER, false, 0, -LONGEST, LONGEST,
@@ -439,7 +439,7 @@ static he_status check_one(const he_shape_param *p, double x, he_error *err)
         return he_fail_plain(err, HE_NOT_FINITE, "%s is not a finite number", p->name);
     }
     if (x < p->min || x > p->max || (p->exclusive && x == p->min)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "%s is %s, which is not %s %s and at most %s",
+        return he_fail_plain(err, HE_BAD_VALUE, "%s is %s, but must be %s %s and at most %s",
                              p->name, show(x).text, p->exclusive ? "above" : "at least",
                              show(p->min).text, show(p->max).text);
     }

@@ -30,28 +30,29 @@
  * half-edge 2e its face (edge_flip). A face keeps its id in the part at the origin of its stored
  * half-edge. New ids follow the order of the old ones: vertices by edge, then by face; edges:
  * second halves by edge, then those inside, by face and from its stored half-edge on; faces by
- * face, then by corner from the one after the stored half-edge's on, the middle triangle last. Dead
- * ids stay dead.
+ * face, and within a face by corner, from the corner after that of the stored half-edge on, the
+ * middle triangle last. Dead ids stay dead.
  *
- * CURVES. A boundary edge, and an edge whose bool attribute `feature` is true, is sharp; so are its
- * parts; what comes to be inside faces is not, in any step of the call, whatever the default of the
- * attribute is. By the number of sharp edges a vertex is smooth (0), a dart (1: smooth rule), on a
- * curve (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth Surface Reconstruction,
- * 1994. At a vertex of two sharp edges the curve becomes their cubic B-spline: the middle of an
- * edge, and (1 6 1) / 8 at vertices, as in DeRose, Kass, Truong, Subdivision Surfaces in Character
- * Animation, 1998. Corners stay in place, and so do a boundary vertex with one face, a bow-tie, an
- * isolated vertex and a vertex whose `locked` was true before the call. By sqrt3 sharp edges are
- * not flipped; in every second step of one call they are cut in three, by the B-spline's rules for
- * that, (1 16 10) / 27 and (4 19 4) / 27, and the triangles beside them become three at the two new
- * vertices instead of having one inside.
+ * CURVES. An edge is sharp if it is on the boundary or its bool attribute `feature` is true, and
+ * the parts of a sharp edge are sharp. Edges that are made inside faces are never sharp, whatever
+ * the default of the attribute is. By the number of sharp edges a vertex is smooth (0), a dart (1:
+ * smooth rule), on a curve (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth
+ * Surface Reconstruction, 1994. At a vertex of two sharp edges the curve becomes their cubic
+ * B-spline: the middle of an edge, and (1 6 1) / 8 at vertices, as in DeRose, Kass, Truong,
+ * Subdivision Surfaces in Character Animation, 1998. Corners stay in place, and so do a boundary
+ * vertex with one face, a bow-tie, an isolated vertex and a vertex whose `locked` was true before
+ * the call. By sqrt3 sharp edges are not flipped; in every second step of one call they are cut in
+ * three, by the B-spline's rules for that, (1 16 10) / 27 and (4 19 4) / 27, and the triangles
+ * beside them become three at the two new vertices instead of having one inside.
  *
  * ATTRIBUTES. Vertices: interpolated columns follow the rules of positions, so that a column that
- * is linear in the position remains so; a copy is from the origin of half-edge 2e, from the nearer
- * end, or from the corner of the face's stored half-edge. Corners: linear within the old face;
- * interpolated columns have the middle of two corners at an edge and the mean inside. Edges: both
- * parts have the edge's value, unless the rule is default; edges inside have the default. Faces:
- * the parts have the face's value, unless the rule is default. Parts of `feature` edges are
- * features under any rule.
+ * is linear in the position remains so; in copied columns a new vertex gets the value of the origin
+ * of half-edge 2e, of the nearer end of an edge that is cut in three, or of the corner of the
+ * face's stored half-edge. Corners: linear within the old face; interpolated columns have the mean
+ * of two corners on an edge, and the mean of all corners inside the face. Edges: both parts have
+ * the edge's value, unless the rule is default; edges inside have the default. Faces: the parts
+ * have the face's value, unless the rule is default. Parts of `feature` edges are features under
+ * any rule.
  *
  * LOCKED edges and faces are cut, like by other edits: the part that keeps the id is locked. New
  * vertices are never locked, even between locked ones: see marks.h. */
@@ -63,8 +64,8 @@
 typedef enum he_scheme { HE_LOOP, HE_CATMULL_CLARK, HE_LINEAR, HE_SQRT3 } he_scheme;
 
 enum { HE_SUBDIVIDE_STEPS = 12 };
-/* Most rows of vertices, edges and faces together that a refined mesh may have: some 3 GB of
- * links. */
+/* The largest number of vertices, edges and faces together that a refined mesh may have. Their
+ * links take about 3 GB. */
 #define HE_SUBDIVIDE_ROWS (UINT64_C(1) << 27)
 
 /* The numbers of live elements after each step of a subdivision. */

@@ -41,8 +41,9 @@ he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err)
         s->corner_from = he_mem_zero(2 * (size_t)to->edges.issued, sizeof *s->corner_from);
         done = s->corner_from != NULL;
     }
-    return done ? HE_OK
-                : he_fail_plain(err, HE_NO_MEMORY, "no memory to carry the attributes along");
+    return done
+               ? HE_OK
+               : he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes of the finer mesh");
 }
 
 /* --- attribute values of any numeric type, as doubles --- */
@@ -205,8 +206,8 @@ static he_status carry_corners(const he_subdivide_step *s, const he_column *from
                                he_error *err)
 {
     he_status status = HE_OK;
-    /* A corner that copies another corner has a higher id, because the first edge inside a face is
-     * the lowest, so one pass in the order of ids suffices. */
+    /* If a new corner copies another new corner, it has the higher id of the two, because of the
+     * edges inside a face the first has the lowest id. So one pass in the order of ids suffices. */
     for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
         status = he_progress_at(s->progress, h, 2 * (uint64_t)s->to->edges.issued, err);
         fill_corner(s, from, to, h);

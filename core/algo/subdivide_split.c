@@ -190,7 +190,8 @@ static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, 
 {
     cutting *c = context;
     const he_subdivide_step *s = c->s;
-    /* A copy of this lane's ids, because lanes would write to one cache line. */
+    /* This is a copy of the lane's ids: those of several lanes share a cache line, and threads that
+     * write to one cache line slow each other down. */
     fresh at = c->at[lane];
     he_status status = HE_OK;
     for (size_t f = from; f < to && status == HE_OK; f++) {

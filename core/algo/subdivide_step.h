@@ -22,7 +22,8 @@ typedef struct he_sizes {
     uint64_t boundary; /* number of boundary half-edges */
     /* `sharp`: number of sharp edges; `sharp_sides`: number of faces beside them */
     uint64_t sharp, sharp_sides;
-    /* `polygons`: number of faces that are no triangles; `corners`: that of their corners */
+    /* `polygons`: number of faces that are no triangles; `corners`: number of corners of these
+     * faces */
     uint64_t polygons, corners;
 } he_sizes;
 
@@ -33,7 +34,7 @@ typedef enum he_source_how {
     HE_FROM_MIDDLE,  /* mean of the values of half-edges a and b */
     HE_FROM_THIRD,   /* 2/3 of the value of half-edge a and 1/3 of that of half-edge b */
     HE_FROM_FACE,    /* mean of the values in the face of half-edge a */
-    HE_FROM_NEW      /* a copy of half-edge a of the finer content */
+    HE_FROM_NEW      /* a copy of the value of half-edge a of the finer mesh */
 } he_source_how;
 
 typedef struct he_corner_source {

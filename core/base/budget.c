@@ -4,7 +4,7 @@ he_status he_budget_exhausted(he_budget *budget, he_error *err)
 {
     budget->left = 0;
     return he_fail_plain(err, HE_LIMIT,
-                         "this needs more computing steps than the request has left");
+                         "the request needs more computing steps than its budget has left");
 }
 
 he_status he_budget_ask(he_budget *budget, he_error *err)

@@ -16,67 +16,67 @@
 #define HE_NODISCARD __attribute__((warn_unused_result))
 
 /* X(constant, slug, title) */
-#define HE_STATUS_MAP(X)                                                                      \
-    X(OK, "ok", "Success")                                                                    \
-    /* resources */                                                                           \
-    X(NO_MEMORY, "no_memory", "Out of memory")                                                \
-    X(IDS_EXHAUSTED, "ids_exhausted", "No ids are left in this mesh")                         \
-    X(LIMIT, "limit_exceeded", "A configured limit was exceeded")                             \
-    X(CANCELLED, "cancelled", "The work was cancelled")                                       \
-    /* statuses for input that is wrong by itself */                                          \
-    X(SYNTAX, "syntax", "The input is not well formed")                                       \
-    X(BAD_VALUE, "bad_value", "A value is outside its allowed range")                         \
-    X(NOT_FINITE, "not_finite", "A number is not finite")                                     \
-    X(BAD_INDEX, "bad_index", "An index is out of range")                                     \
-    X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")           \
-    X(BEYOND_FLOAT, "beyond_float", "A coordinate is too large for the floats of the format") \
-    X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                        \
-    /* statuses for elements that the caller must not name */                                 \
-    X(NO_SUCH_ELEMENT, "no_such_element", "There is no such element")                         \
-    X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                          \
-    X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                      \
-    /* statuses for shapes that a half-edge mesh cannot represent */                          \
-    X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")              \
-    X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                             \
-    X(REPEATED_CORNER, "repeated_corner", "A face would use a vertex twice")                  \
-    X(NONMANIFOLD_EDGE, "nonmanifold_edge", "An edge would have more than two faces")         \
-    X(ORIENTATION, "orientation", "Two faces would run along an edge in the same direction")  \
-    X(NOT_ORIENTABLE, "not_orientable", "The faces cannot be oriented consistently")          \
-    X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")             \
-    X(CLOSED_FAN, "closed_fan", "A closed fan would share its vertex with another fan")       \
-    /* statuses for edits that the elements around them forbid */                             \
-    X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                          \
-    X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                     \
-    X(INTERIOR_VERTEX, "interior_vertex", "The vertex is surrounded by faces")                \
-    X(BOUNDARY_VERTEX, "boundary_vertex", "The vertex is on the boundary")                    \
-    X(BOWTIE, "bowtie", "The vertex has more than one fan")                                   \
-    X(NOT_NEIGHBOUR, "not_neighbour", "The vertices are not joined by an edge")               \
-    X(NO_SECTOR, "no_sector", "No face would move to the new vertex")                         \
-    X(NOT_A_CORNER, "not_a_corner", "The element is not a corner of the face")                \
-    X(SAME_CORNER, "same_corner", "Both corners are the same")                                \
-    X(DIFFERENT_ORIGINS, "different_origins", "The half-edges leave different vertices")      \
-    X(NO_FACE, "no_face", "The new edge would have no face")                                  \
-    X(ADJACENT_CORNERS, "adjacent_corners", "The corners are already neighbours on the face") \
-    X(SHARED_BOUNDARY, "shared_boundary", "The faces share more than this edge")              \
-    X(WRONG_DEGREE, "wrong_degree", "The vertex does not have degree two")                    \
-    X(TRIANGLE_SIDE, "triangle_side", "A face beside the vertex is a triangle")               \
-    X(LOW_DEGREE, "low_degree", "A vertex has too few edges")                                 \
-    X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")               \
-    X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
-    X(BRANCHING_CHAIN, "branching_chain", "The edges branch at a vertex")                     \
-    X(SAME_LOOP, "same_loop", "Both half-edges lie on one loop")                              \
-    X(SHARED_VERTEX, "shared_vertex", "The loops have a vertex in common")                    \
-    X(LOOP_LENGTH, "loop_length", "The loops have different lengths")                         \
-    X(OPEN_LOOP, "open_loop", "The cut does not close within the plane")                      \
-    X(NOT_A_CYCLE, "not_a_cycle", "The edges do not form a cycle")                            \
-    X(SHARED_FACE, "shared_face", "A face touches more than one of the edges")                \
-    X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                           \
-    X(NO_RIM, "no_rim", "The faces are a whole closed component")                             \
-    X(RIM_MEETS_ITSELF, "rim_meets_itself", "The outline of the faces passes a vertex twice") \
-    X(NO_NORMAL, "no_normal", "The face has no area and so no normal")                        \
-    X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of the same name have different types") \
-    /* refusals because of marks (marks.h) */                                                 \
-    X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
+#define HE_STATUS_MAP(X)                                                                         \
+    X(OK, "ok", "Success")                                                                       \
+    /* resources */                                                                              \
+    X(NO_MEMORY, "no_memory", "Out of memory")                                                   \
+    X(IDS_EXHAUSTED, "ids_exhausted", "No ids are left in this mesh")                            \
+    X(LIMIT, "limit_exceeded", "A configured limit was exceeded")                                \
+    X(CANCELLED, "cancelled", "The work was cancelled")                                          \
+    /* statuses for input that is wrong by itself */                                             \
+    X(SYNTAX, "syntax", "The input is not well formed")                                          \
+    X(BAD_VALUE, "bad_value", "A value is outside its allowed range")                            \
+    X(NOT_FINITE, "not_finite", "A number is not finite")                                        \
+    X(BAD_INDEX, "bad_index", "An index is out of range")                                        \
+    X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")              \
+    X(BEYOND_FLOAT, "beyond_float", "A coordinate is too large for the floats of the format")    \
+    X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                           \
+    /* statuses for elements that the caller must not name */                                    \
+    X(NO_SUCH_ELEMENT, "no_such_element", "There is no such element")                            \
+    X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                             \
+    X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                         \
+    /* statuses for shapes that a half-edge mesh cannot represent */                             \
+    X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")                 \
+    X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                                \
+    X(REPEATED_CORNER, "repeated_corner", "A face would use a vertex twice")                     \
+    X(NONMANIFOLD_EDGE, "nonmanifold_edge", "An edge would have more than two faces")            \
+    X(ORIENTATION, "orientation", "Two faces would run along an edge in the same direction")     \
+    X(NOT_ORIENTABLE, "not_orientable", "The faces cannot be oriented consistently")             \
+    X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")                \
+    X(CLOSED_FAN, "closed_fan", "A closed fan of faces would share its vertex with another fan") \
+    /* statuses for edits that the elements around them forbid */                                \
+    X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                             \
+    X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                        \
+    X(INTERIOR_VERTEX, "interior_vertex", "The vertex is surrounded by faces")                   \
+    X(BOUNDARY_VERTEX, "boundary_vertex", "The vertex is on the boundary")                       \
+    X(BOWTIE, "bowtie", "The vertex has more than one fan of faces")                             \
+    X(NOT_NEIGHBOUR, "not_neighbour", "The vertices are not joined by an edge")                  \
+    X(NO_SECTOR, "no_sector", "No face would move to the new vertex")                            \
+    X(NOT_A_CORNER, "not_a_corner", "The element is not a corner of the face")                   \
+    X(SAME_CORNER, "same_corner", "Both corners are the same")                                   \
+    X(DIFFERENT_ORIGINS, "different_origins", "The half-edges leave different vertices")         \
+    X(NO_FACE, "no_face", "The new edge would have no face")                                     \
+    X(ADJACENT_CORNERS, "adjacent_corners", "The corners are already neighbours on the face")    \
+    X(SHARED_BOUNDARY, "shared_boundary", "The faces share more than this edge")                 \
+    X(WRONG_DEGREE, "wrong_degree", "The vertex does not have degree two")                       \
+    X(TRIANGLE_SIDE, "triangle_side", "A face beside the vertex is a triangle")                  \
+    X(LOW_DEGREE, "low_degree", "A vertex has too few edges")                                    \
+    X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")                  \
+    X(LINK_CONDITION, "link_condition", "The link condition does not hold")                      \
+    X(BRANCHING_CHAIN, "branching_chain", "The edges branch at a vertex")                        \
+    X(SAME_LOOP, "same_loop", "Both half-edges lie on one loop")                                 \
+    X(SHARED_VERTEX, "shared_vertex", "The loops have a vertex in common")                       \
+    X(LOOP_LENGTH, "loop_length", "The loops have different lengths")                            \
+    X(OPEN_LOOP, "open_loop", "The cut does not close within the plane")                         \
+    X(NOT_A_CYCLE, "not_a_cycle", "The edges do not form a cycle")                               \
+    X(SHARED_FACE, "shared_face", "A face touches more than one of the edges")                   \
+    X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                              \
+    X(NO_RIM, "no_rim", "The faces are a whole closed component and have no outline")            \
+    X(RIM_MEETS_ITSELF, "rim_meets_itself", "The outline of the faces passes a vertex twice")    \
+    X(NO_NORMAL, "no_normal", "The face has no area and so no normal")                           \
+    X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of the same name have different types")    \
+    /* refusals because of marks (marks.h) */                                                    \
+    X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                       \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")
 
 typedef enum he_status {

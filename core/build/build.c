@@ -210,8 +210,9 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         status = he_report_fail(report, err);
     }
     if (status == HE_OK && swings.edges > HE_MAX_ROWS) {
-        status = he_fail_plain(err, HE_IDS_EXHAUSTED, "%zu edges are more than %u", swings.edges,
-                               HE_MAX_ROWS);
+        status = he_fail_plain(err, HE_IDS_EXHAUSTED,
+                               "the mesh would have %zu edges, more than the %u that are possible",
+                               swings.edges, HE_MAX_ROWS);
     }
     if (status == HE_OK) {
         status = he_materials_copy(&soup->materials, &mesh->c.materials, err);

@@ -62,7 +62,7 @@ static he_status number_edges(void *context, uint32_t lane, size_t from, size_t 
     return HE_OK;
 }
 
-/* Turns each lane's count of edges into the number at which its edges begin. */
+/* Replaces each lane's count of edges by the number of the first edge of that lane. */
 static void place_edges(linking *l)
 {
     uint32_t at = 0;

@@ -64,8 +64,8 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* Adds the corner column `takes` to the soup. It replaces the vertex attribute `column`, unless
- * that one `stays`. */
+/* Adds the corner column `takes` to the soup, and removes the vertex attribute `column` unless
+ * `stays` is true. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {
@@ -87,9 +87,9 @@ static he_status add_corners(he_soup *soup, he_column *column, const char *name,
     he_column *made = NULL;
     uint64_t limit = soup->limits.bytes;
     if (limit != 0 && soup->corner_count * (uint64_t)column->row_bytes > limit) {
-        return he_fail_plain(err, HE_LIMIT,
-                             "attribute %s needs more than %llu bytes of memory at corners",
-                             column->name, (unsigned long long)limit);
+        return he_fail_plain(
+            err, HE_LIMIT, "the corner values of attribute %s need more than %llu bytes of memory",
+            column->name, (unsigned long long)limit);
     }
     he_status status = he_column_for_corners(column, name, soup->corner_count, &made, err);
     for (size_t c = 0; c < soup->corner_count && status == HE_OK; c++) {

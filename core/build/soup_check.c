@@ -80,9 +80,9 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
     return status;
 }
 
-/* A corner in the list of one end of its edge, which is the edge to the next corner of its face.
- * The list is that of the end with the smaller id; `far` is the other end, and its top bit is set
- * if the corner's half-edge leaves that end. */
+/* A corner as an entry in the list of a vertex. The edge of a corner runs to the next corner of its
+ * face; the corner is in the list of that end of its edge which has the smaller id. `far` is the
+ * other end; its top bit is set if the corner's half-edge leaves `far`. */
 typedef struct filed {
     uint32_t far, corner;
 } filed;

@@ -28,7 +28,7 @@ typedef struct swinging {
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* Checks a face of few corners. Where this is inlined for triangles and quads, `count` is a
+/* Checks a face of few corners. Where the function is inlined for triangles and quads, `count` is a
  * constant. */
 static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
 {

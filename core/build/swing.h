@@ -8,7 +8,7 @@
  *                 o
  *            swing(c)\   face of c        the edge from prev(c) to c runs back along swing(c), so
  *                     \                   the mate of a corner (the one whose half-edge is the
- *          ------------ v -----> c        twin) is the turn of the next corner of its face
+ *          ------------ v -----> c        twin) is the swing of the next corner of its face
  *
  * Once the corners are sorted by vertex, one vertex after another is checked, in a few words that
  * lie together in memory: which of its edges have two faces, that no edge has three faces or two in

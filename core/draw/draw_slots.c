@@ -281,7 +281,9 @@ he_status he_draw_slots_changed(const he_draw_slots *s, uint64_t since, uint64_t
     size_t t = step == 0 ? 0 : s->steps[step - 1].slots;
     size_t v_count = s->changed_vertices.count - v, t_count = s->changed_slots.count - t;
     if (v_count + t_count > most) {
-        return he_fail_plain(err, HE_LIMIT, "%zu changes are recorded", v_count + t_count);
+        return he_fail_plain(err, HE_LIMIT,
+                             "%zu vertices and triangles changed, more than may be listed",
+                             v_count + t_count);
     }
     he_status status = he_ids_reserve(vertices, v_count, err);
     if (status == HE_OK) {
@@ -303,7 +305,8 @@ he_status he_draw_slots_changed(const he_draw_slots *s, uint64_t since, uint64_t
         status = he_ids_sort(triangles, err);
     }
     if (status == HE_OK && vertices->count + triangles->count > rows_of(s) / 2) {
-        return he_fail_plain(err, HE_UNSUPPORTED, "most of the rows changed");
+        return he_fail_plain(err, HE_UNSUPPORTED,
+                             "more than half of the vertices and triangles changed");
     }
     return status;
 }
@@ -320,8 +323,9 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
     return face == HE_NONE || face == HE_DEAD ? HE_OK : he_ids_add(&t->faces, face, err);
 }
 
-/* Adds the elements whose rows a record may change. A half-edge that changed its face has a record
- * that names both faces, so any other record of a half-edge adds only the present face. */
+/* Adds the elements whose rows in the arrays may be changed by a record of a delta. A half-edge
+ * that changed its face has a record that names both faces, so any other record of a half-edge adds
+ * only the present face. */
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -340,7 +344,7 @@ static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_e
     case HE_COL_POSITION:
         return he_ids_add(&t->moved, r->row, err);
     case HE_COL_REPLACED:
-        return he_fail_plain(err, HE_UNSUPPORTED, "the content was replaced");
+        return he_fail_plain(err, HE_UNSUPPORTED, "the whole content of the mesh was replaced");
     case HE_COL_PREV:
     case HE_COL_PARENT:
     case HE_COL_MERGED:

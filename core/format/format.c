@@ -283,7 +283,7 @@ static void note_unused(he_import *import)
             he_warnings_add(
                 &import->warnings,
                 &(he_occurrence){.code = "ignored_file",
-                                 .text = "ignored, because no other file refers to it: file",
+                                 .text = "ignored, because no other file refers to it: the file",
                                  .subject = file->name,
                                  .length = strlen(file->name)});
         }

@@ -32,7 +32,8 @@ double he_edge_length(const he_mesh *m, he_edge e);
  * the direction of its area vector, which need not be perpendicular to the edge: the angle is
  * atan2((a x b) . d, a . b) for the unit normals a of the first half-edge's face and b of its
  * twin's, with d the unit vector along the first half-edge, and |sin| of it may be less than |a x
- * b|. Returns false, and 0, on the boundary or beside a degenerate face. */
+ * b|. On the boundary and beside a degenerate face the angle is 0 and the function returns false.
+ */
 bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
 /* Finds the dihedral angles of the whole mesh, into an array with one entry for each issued edge:
  * NaN for edges where he_edge_dihedral returns false, and for deleted edges. Each face is measured
@@ -70,8 +71,8 @@ typedef enum he_weight {
     HE_WEIGHT_UNIFORM /* all faces weigh the same */
 } he_weight;
 
-/* Finds the unit normal of a vertex. Returns false, with zero, if the vertex is isolated, if all
- * its faces are degenerate, or if their normals cancel out. */
+/* Finds the unit normal of a vertex. If the vertex is isolated, if all its faces are degenerate, or
+ * if their normals cancel out, the normal is zero and the function returns false. */
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
 /* These functions find the normals of all faces or vertices of a mesh, into an array of one entry
@@ -107,12 +108,12 @@ typedef struct he_box {
     he_vec3 min, max;
 } he_box;
 
-/* Finds the box around all live vertices, isolated ones included. Returns false, and zero, if there
- * are none. */
+/* Finds the box around all live vertices, isolated ones included. If there are none, the box is
+ * zero and the function returns false. */
 bool he_mesh_box(const he_mesh *m, he_box *out);
 /* Finds the box around the vertices that have edges. Scales and tolerances are taken from this box,
- * so that an isolated vertex far away has no influence. Returns false, and zero, if there are no
- * edges. */
+ * so that an isolated vertex far away has no influence. If there are no edges, the box is zero and
+ * the function returns false. */
 bool he_surface_box(const he_mesh *m, he_box *out);
 
 /* The sum of the faces' areas, and the volume that a closed mesh encloses: positive if normals

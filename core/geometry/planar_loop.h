@@ -28,8 +28,8 @@ void he_planar_loop_clear(he_planar_loop *flat);
  * limit. */
 #define HE_PLANAR_LOOP_THIN 1e-12
 
-/* Returns true if the triangle of corners a, b, c turns counter-clockwise, by more than
- * rounding. */
+/* Returns true if the triangle of corners a, b, c turns counter-clockwise, by more than rounding
+ * errors. */
 static inline bool he_planar_loop_turns_left(const he_planar_loop *f, uint32_t a, uint32_t b,
                                              uint32_t c)
 {

@@ -29,8 +29,8 @@ he_ring he_ring_walk(const he_mesh *m, uint32_t first, double scale, uint32_t *b
 he_ring he_ring_measure(const he_mesh *m, uint32_t first, uint32_t *budget, int *exponent);
 he_ring he_ring_of_face(const he_mesh *m, he_face f, int *exponent);
 
-/* Finds the unit normal of a face from its sums. Returns false, and zero, if the face is
- * degenerate. */
+/* Finds the unit normal of a face from its sums. If the face is degenerate, the normal is zero and
+ * the function returns false. */
 bool he_ring_normal(const he_ring *r, he_vec3 *out);
 double he_ring_area(const he_ring *r, int exponent);
 /* Returns the centroid of the face whose sums were found by walking from `first`. */

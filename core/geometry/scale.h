@@ -35,7 +35,8 @@ static inline double he_clamped(double x)
     return fmax(fmin(x, DBL_MAX), -DBL_MAX);
 }
 
-/* Finds the unit vector of `a`, whatever its length. Returns false, and zero, if `a` is zero. */
+/* Finds the unit vector of `a`, whatever its length. If `a` is zero, the result is zero and the
+ * function returns false. */
 static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
 {
     double square = he_vec3_dot(a, a);

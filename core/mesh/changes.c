@@ -177,7 +177,7 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* What a slot for an attribute column had before the first change. */
+/* What a slot for an attribute column contained before the first change. */
 typedef struct attribute_slot {
     const he_column *before; /* the first column in the slot; NULL if the slot was free */
     bool has_changed;        /* a column was added to the slot or dropped from it */

@@ -117,8 +117,8 @@ static void check_halfedges(checker *c)
         }
         if (k->origin[next] != k->origin[h ^ 1]) {
             broken(c, 3, (he_element){HE_HALFEDGE, h},
-                   "halfedge %u ends at vertex %u, its next begins at %u", h, k->origin[h ^ 1],
-                   k->origin[next]);
+                   "halfedge %u ends at vertex %u, but the next half-edge begins at vertex %u", h,
+                   k->origin[h ^ 1], k->origin[next]);
         }
         if (k->face[next] != k->face[h]) {
             broken(c, 4, (he_element){HE_HALFEDGE, h},
@@ -139,7 +139,8 @@ static void check_face(checker *c, uint32_t f)
     const he_content *k = &c->m->c;
     uint32_t first = k->face_halfedge[f], h = first;
     if (k->face[first] != f) {
-        broken(c, 6, (he_element){HE_FACE, f}, "halfedge %u of face %u has another face", first, f);
+        broken(c, 6, (he_element){HE_FACE, f},
+               "halfedge %u, which face %u stores, belongs to another face", first, f);
         return;
     }
     uint64_t degree = 0;
@@ -183,8 +184,8 @@ static void check_ring(checker *c, uint32_t v)
     const he_content *k = &c->m->c;
     uint32_t first = k->vertex_halfedge[v], h = first;
     if (k->origin[first] != v) {
-        broken(c, 8, (he_element){HE_VERTEX, v}, "halfedge %u of vertex %u leaves vertex %u", first,
-               v, k->origin[first]);
+        broken(c, 8, (he_element){HE_VERTEX, v},
+               "halfedge %u, which vertex %u stores, leaves vertex %u", first, v, k->origin[first]);
         return;
     }
     bool boundary = false;

@@ -78,10 +78,11 @@ static he_status ready_column(he_content *c, const he_delta *delta, size_t i, vo
     he_column *column = objects[r->before];
     he_status status = HE_OK;
     if (column == NULL) {
-        return refuse(i, refused, "does not add an attribute", err);
+        return refuse(i, refused, "should add an attribute, but the stored edit holds none for it",
+                      err);
     }
     if (r->row > c->column_count) {
-        return refuse(i, refused, "does not use the first free slot", err);
+        return refuse(i, refused, "adds an attribute, but not in the first free slot", err);
     }
     size_t rows = he_content_issued(c, column->domain);
     if (column->rows < rows) {
@@ -96,7 +97,8 @@ static he_status ready_material(he_content *c, const he_delta *delta, size_t i, 
 {
     uint32_t slot = delta->records[i].row;
     if (slot > c->materials.count || slot >= HE_MATERIALS) {
-        return refuse(i, refused, "uses a slot that is out of range or is not the first free one",
+        return refuse(i, refused,
+                      "sets a material in a slot that is out of range or is not the first free one",
                       err);
     }
     if (slot < c->materials.count) {
@@ -240,7 +242,7 @@ he_status he_content_forward(he_content *c, const he_delta *delta, void **object
     for (size_t i = 0; i < delta->count && status == HE_OK; i++) {
         if (!holds(c, objects, &delta->records[i])) {
             he_content_apply(c, delta, i, 0, objects);
-            status = refuse(i, refused, "was made from a value that the mesh does not hold", err);
+            status = refuse(i, refused, "replaces a value that the mesh does not have", err);
         } else {
             he_content_apply(c, delta, i, i + 1, objects);
         }

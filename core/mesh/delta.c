@@ -151,8 +151,8 @@ he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_erro
             table[at] = kept;
         }
     }
-    /* If the work was cancelled, the records that were not folded are moved behind those that
-     * were. */
+    /* If the work was cancelled, the records that were not folded are moved behind the folded
+     * records. */
     memmove(d->records + kept, d->records + i, (d->count - i) * sizeof *d->records);
     d->count -= i - kept;
     he_mem_free(table);

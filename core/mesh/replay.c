@@ -96,7 +96,8 @@ static he_status copy_object(void *object, uint32_t of, void **out, he_error *er
     }
     he_content *copy = he_mem_zero(1, sizeof *copy);
     if (copy == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the content before an edit");
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory for a copy of the content that an edit replaces");
     }
     *out = copy;
     return he_content_copy(object, NULL, copy, err);
@@ -163,8 +164,9 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     }
     other_side *side = find_side(replay, crossing->key);
     if (side == NULL && !crossing->held) {
-        return he_fail_plain(err, HE_UNSUPPORTED,
-                             "the stored edit does not hold the state that it leads to");
+        return he_fail_plain(
+            err, HE_UNSUPPORTED,
+            "the stored edit lacks the attributes or the content that the mesh has after the edit");
     }
     if (side == NULL) {
         he_status status = side_of(crossing->delta, crossing->key, &side, err);

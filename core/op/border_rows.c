@@ -104,9 +104,9 @@ const he_op he_border_rows[] = {
             {[EDGE_CUT_OUT_VERTICES] =
                  {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                   "The new vertices, in the same places as those that they were split from."},
-             [EDGE_CUT_OUT_EDGES] =
-                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                  "The new edges on the other side, in ascending order of the cut edges."}},
+             [EDGE_CUT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                     "The new edges, on the other side of the cut, in ascending "
+                                     "order of the cut edges."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BOUNDARY_EDGE,
                      HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 0},
@@ -126,18 +126,17 @@ const he_op he_border_rows[] = {
                                     .kind = HE_EDGE,
                                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
                                     .doc =
-                                        "The edge that is merged into it, with its two vertices."},
+                                        "The edge that is merged into `a`, with its two vertices."},
                    [EDGE_WELD_KEEP] = {.name = "keep",
                                        .type = HE_PARAM_CHOICE,
                                        .choices = keeps,
                                        .doc = "Where the merged vertices are placed: midway, or "
-                                              "where those of a or b were."}},
+                                              "where the vertices of a or b were."}},
         .results = {[EDGE_WELD_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
                                             "The edge that stays."},
-                    [EDGE_WELD_OUT_MOVED] =
-                        {"moved", HE_RESULT_NUMBER, 0,
-                         "How many values of vertices became values of corners, because merged "
-                         "vertices had different ones."}},
+                    [EDGE_WELD_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
+                                             "How many vertex values became corner values, because "
+                                             "the merged vertices had different values."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
                      HE_REPEATED_CORNER, HE_DOUBLED_EDGE, HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, -1, 0},
@@ -146,13 +145,13 @@ const he_op he_border_rows[] = {
     {
         .name = "edge_extrude",
         .doc = "Extrude boundary edges into quads.",
-        .params = {[EDGE_EXTRUDE_EDGES] =
-                       {.name = "edge",
-                        .plural = "edges",
-                        .type = HE_PARAM_ELEMENTS,
-                        .kind = HE_EDGE,
-                        .flags = HE_REQUIRED,
-                        .doc = "The edges to extrude. Edges that follow each other share corners."},
+        .params = {[EDGE_EXTRUDE_EDGES] = {.name = "edge",
+                                           .plural = "edges",
+                                           .type = HE_PARAM_ELEMENTS,
+                                           .kind = HE_EDGE,
+                                           .flags = HE_REQUIRED,
+                                           .doc = "The edges to extrude. The quads of edges that "
+                                                  "follow each other share a side."},
                    [EDGE_EXTRUDE_BY] = {.name = "by",
                                         .type = HE_PARAM_POINT,
                                         .flags = HE_REQUIRED,
@@ -161,10 +160,11 @@ const he_op he_border_rows[] = {
             {[EDGE_EXTRUDE_OUT_VERTICES] =
                  {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                   "The new vertices, in ascending order of the vertices that they are copies of."},
-             [EDGE_EXTRUDE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                         "The copies of the edges, in the same order."},
+             [EDGE_EXTRUDE_OUT_EDGES] =
+                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                  "The copies of the edges, in the order of the given edges."},
              [EDGE_EXTRUDE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                         "The quads, in the same order."}},
+                                         "The quads, in the order of the given edges."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
                      HE_BRANCHING_CHAIN, HE_CLOSED_FAN, HE_NOT_FINITE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},

@@ -134,8 +134,9 @@ const he_op he_edge_rows[] = {
                                              "half-edge, 1 = the other end."}},
         .results = {[EDGE_BISECT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                                 "The new vertex."},
-                    [EDGE_BISECT_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
-                                              "The new edge, at the end of the divided edge."}},
+                    [EDGE_BISECT_OUT_EDGE] =
+                        {"edge", HE_RESULT_ELEMENT, HE_EDGE,
+                         "The new edge, from the new vertex to the far end of the divided edge."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
         .change = {1, 1, 0},
         .run = run_edge_bisect,
@@ -177,7 +178,7 @@ const he_op he_edge_rows[] = {
                     [EDGE_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
                                               "The new part of the edge, then the diagonals."},
                     [EDGE_SPLIT_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                              "The new faces, left one first."}},
+                                              "The new faces, the left one first."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {1, HE_VARIES, HE_VARIES},
         .run = run_edge_split,
@@ -251,14 +252,14 @@ const he_op he_edge_rows[] = {
                        {.name = "width",
                         .type = HE_PARAM_NUMBER,
                         .flags = HE_REQUIRED,
-                        .doc =
-                            "The distance from its ends at which the neighbouring edges are cut: "
-                            "above 0, and at most 0.99 of their length."}},
-        .results = {[EDGE_BEVEL_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
-                    [EDGE_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                                                 "The new vertices, in the order of the new face."},
-                    [EDGE_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                              "The sides of the new face, in the same order."}},
+                        .doc = "The distance from the ends of the edge at which the neighbouring "
+                               "edges are cut: above 0, and at most 0.99 of their length."}},
+        .results =
+            {[EDGE_BEVEL_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
+             [EDGE_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                          "The new vertices, in the order of the new face."},
+             [EDGE_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                       "The sides of the new face, in the order of its corners."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
                      HE_LOW_DEGREE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 1},

@@ -80,10 +80,9 @@ const he_op he_loop_rows[] = {
         .results =
             {[LOOP_BRIDGE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
                                         "The new edges, beginning at the origin of `a`."},
-             [LOOP_BRIDGE_OUT_FACES] =
-                 {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                  "The new faces: each lies between the new edge at the same place in the list "
-                  "and the next one."}},
+             [LOOP_BRIDGE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                        "The new faces: each lies between the entry of `edges` "
+                                        "with the index of the face and the next entry."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_SAME_LOOP,
                      HE_SHARED_VERTEX, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
@@ -98,7 +97,7 @@ const he_op he_loop_rows[] = {
                                     .kind = HE_HALFEDGE,
                                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
                                     .doc =
-                                        "A half-edge of one loop, whose vertices and edges stay."},
+                                        "A half-edge of the loop whose vertices and edges stay."},
                    [LOOP_JOIN_B] =
                        {.name = "b",
                         .type = HE_PARAM_ELEMENT,
@@ -107,10 +106,9 @@ const he_op he_loop_rows[] = {
                         .doc =
                             "The half-edge of the other loop that is merged with `a`: its target "
                             "becomes the origin of `a`."}},
-        .results = {[LOOP_JOIN_OUT_MOVED] =
-                        {"moved", HE_RESULT_NUMBER, 0,
-                         "How many values of vertices became values of corners, because merged "
-                         "vertices had different ones."}},
+        .results = {[LOOP_JOIN_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
+                                             "How many vertex values became corner values, because "
+                                             "the merged vertices had different values."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_LOOP, HE_LOOP_LENGTH,
                      HE_REPEATED_CORNER, HE_SHARED_VERTEX, HE_BOUNDARY_EDGE, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},

@@ -54,8 +54,8 @@ const he_op he_material_rows[] = {
                  {.name = "name",
                   .type = HE_PARAM_TEXT,
                   .flags = HE_REQUIRED,
-                  .doc = "The name of the material, which is created if there is none. With "
-                         "\"\" the faces have no material, and nothing else may be given."},
+                  .doc = "The name of the material, which is created if it does not exist. With "
+                         "\"\" the faces lose their material, and only `faces` may be given."},
              [MATERIAL_SET_RENAME] = {.name = "rename",
                                       .type = HE_PARAM_TEXT,
                                       .flags = HE_COSTS_MESH,

@@ -86,9 +86,10 @@ const he_op he_region_rows[] = {
         .results = {[FACE_EXTRUDE_OUT_VERTICES] =
                         {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                          "The new vertices, one for each corner of the outline."},
-                    [FACE_EXTRUDE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                                "For each new vertex an edge of the moved outline "
-                                                "and the edge that leads up to the vertex."},
+                    [FACE_EXTRUDE_OUT_EDGES] =
+                        {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                         "Two edges for each new vertex: an edge of the moved outline, and the "
+                         "edge from the old vertex to the new one."},
                     [FACE_EXTRUDE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
                                                 "The side faces."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NO_RIM,
@@ -132,9 +133,9 @@ const he_op he_region_rows[] = {
         .results =
             {[FACE_INSET_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                           "The new vertices, one for each corner of the outline."},
-             [FACE_INSET_OUT_EDGES] =
-                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                  "For each new vertex an inner edge and the edge across the border."},
+             [FACE_INSET_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                       "Two edges for each new vertex: an edge of the inner part, "
+                                       "and the edge across the border."},
              [FACE_INSET_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
                                        "The faces of the border."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,

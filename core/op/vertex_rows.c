@@ -166,10 +166,10 @@ const he_op he_vertex_rows[] = {
                                              .kind = HE_VERTEX,
                                              .flags = HE_REQUIRED | HE_REACHES,
                                              .doc = "The vertex to delete."},
-                   [VERTEX_DELETE_KEEP_ISOLATED] = {.name = "keep_isolated",
-                                                    .type = HE_PARAM_FLAG,
-                                                    .doc =
-                                                        "Keep neighbours that have no face left."}},
+                   [VERTEX_DELETE_KEEP_ISOLATED] =
+                       {.name = "keep_isolated",
+                        .type = HE_PARAM_FLAG,
+                        .doc = "Keep neighbouring vertices that have no face left."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .run = run_vertex_delete,

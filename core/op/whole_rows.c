@@ -65,7 +65,7 @@ const he_op he_whole_rows[] = {
     },
     {
         .name = "reverse",
-        .doc = "Reverse the orientation of faces, and their attributes `normal`.",
+        .doc = "Reverse the orientation of faces, and their attributes named `normal`.",
         .size = HE_OP_WHOLE,
         .params = {[REVERSE_FACES] =
                        {.name = "face",
@@ -95,12 +95,11 @@ const he_op he_whole_rows[] = {
         .name = "append",
         .doc = "Add a copy of another mesh, with its attributes and materials.",
         .size = HE_OP_WHOLE,
-        .params = {[APPEND_MESH] =
-                       {.name = "mesh",
-                        .type = HE_PARAM_MESH,
-                        .flags = HE_REQUIRED,
-                        .doc = "The id of the other mesh. It is copied as it was when the request "
-                               "began, and does not change."}},
+        .params = {[APPEND_MESH] = {.name = "mesh",
+                                    .type = HE_PARAM_MESH,
+                                    .flags = HE_REQUIRED,
+                                    .doc = "The id of the other mesh, which is copied as it was "
+                                           "when the request began and is not changed."}},
         .results =
             {[APPEND_OUT_VERTICES] =
                  {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,

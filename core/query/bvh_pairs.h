@@ -1,4 +1,4 @@
-/* bvh_pairs.h - state shared by the two searches for intersecting triangles.
+/* bvh_pairs.h - the state that the two searches for pairs of intersecting triangles share.
  *
  * The first finds all pairs except those at one hub (hubs.h: a position at which very many
  * triangles, its spokes, meet), down the tree of boxes; the second finds pairs of spokes of one

@@ -99,7 +99,7 @@ he_status he_defects_of_components(const he_mesh *m, double small, he_progress *
     s.component = component;
     s.shells = he_mem_array(NULL, count, sizeof *s.shells);
     if (s.shells == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to survey %u components", count);
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to measure %u components", count);
     }
     for (uint32_t i = 0; i < count && status == HE_OK; i++) {
         s.shells[i] = (shell){.face = HE_NONE,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A vertex at whose position a hub may be. */
+/* A vertex at whose position there may be a hub. */
 typedef struct candidate {
     he_vec3 place;
     uint32_t vertex, corners;

@@ -9,7 +9,7 @@ static uint32_t halfedge_end(const he_mesh *m)
 
 static he_status no_memory(he_error *err)
 {
-    he_fail_plain(err, HE_NO_MEMORY, "no memory to survey the mesh");
+    he_fail_plain(err, HE_NO_MEMORY, "no memory to find the topology of the mesh");
     return HE_NO_MEMORY;
 }
 

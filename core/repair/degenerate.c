@@ -217,8 +217,8 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     g->stack.count = 0;
     for (size_t i = from; i < end && status == HE_OK; i++) {
         uint32_t c = g->loops.ids[i], at = g->place[corners[c]];
-        /* An index left there by another loop, or by corners that were removed, is not valid in
-         * this stack. */
+        /* The array `place` may still have an index from another loop, or from corners that were
+         * removed, which is not valid in this stack. */
         if (at < g->stack.count && corners[g->stack.ids[at]] == corners[c]) {
             status = pop_loop(g, at, err);
         }
@@ -454,8 +454,8 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
     g.work.progress = soup->limits.progress;
     g.work.of = soup->face_count;
     if (g.bad == NULL || g.stamp == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to look through %zu faces",
-                               soup->face_count);
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory to examine %zu faces", soup->face_count);
     }
     if (status == HE_OK) {
         status = find(&g, err);

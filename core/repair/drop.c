@@ -4,8 +4,7 @@
 
 static he_status no_memory(const he_soup *soup, he_error *err)
 {
-    return he_fail_plain(err, HE_NO_MEMORY, "no memory to look through %zu faces",
-                         soup->face_count);
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu faces", soup->face_count);
 }
 
 /* Removes the faces whose bit is set in `gone`, and moves the others up. */

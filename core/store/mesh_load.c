@@ -75,7 +75,7 @@ static bool has_marks(const he_mesh *content, const uint32_t issued[HE_KIND_COUN
 
 static st_status wrong_marks(load *l, const st_record *record)
 {
-    return damaged(l, "record %llu gave out other ids than it says",
+    return damaged(l, "the edit in record %llu issues other ids than the record says",
                    (unsigned long long)record->number);
 }
 

@@ -1,8 +1,8 @@
 /* mesh_load.h - loads a mesh from the journal.
  *
  *     base:                [content]                            the history begins here
- *     records after it:    [edit] [edit] [undo] [rename] ...    each applied like the original
- * change end:                 the mesh must agree with its card, he_check
+ *     records after it:    [edit] [edit] [undo] [rename] ...    each repeats its change
+ *     end:                 the mesh must agree with its card and pass he_check
  *
  * After the load, the content, the undo and redo stacks, the entries of the history and the facts
  * of the mesh are what they were after the last record. */

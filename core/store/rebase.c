@@ -115,8 +115,8 @@ static void take(void *context)
         mesh->appended -= next->before;
         settle(mesh);
     } else {
-        /* If memory or disk space is out, the next snapshot is tried only after as many bytes of
-         * records again. */
+        /* If memory or disk space is out, another snapshot is tried only after further records of
+         * as many bytes. */
         mesh->appended = 0;
         st_rebase_drop(mesh);
     }

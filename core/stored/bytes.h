@@ -7,8 +7,9 @@
 
 #include <string.h>
 
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
-               "values and arrays are copied as they lie in memory");
+_Static_assert(
+    __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+    "the stored formats are little-endian, and numbers are copied as they lie in memory");
 
 enum { HE_VARINT_BYTES = 10, HE_LINK_BYTES = 5 };
 

@@ -9,7 +9,7 @@
 
 enum {
     HE_CONTENT_START = 4 + 4 + 8, /* bytes of magic, version and header length */
-    /* HE_CONTENT_START and the bytes of ten words of counts, the last one zero */
+    /* bytes of the start and of ten words of counts, of which the last is zero */
     HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4,
     /* bytes of the kind and the length that begin a slot */
     HE_CONTENT_SLOT = 1 + 8,

@@ -321,7 +321,8 @@ size_t he_stored_writer_next(he_stored_writer *w, unsigned char *to, unsigned *c
 size_t he_stored_content_bound(const he_mesh *mesh)
 {
     uint64_t bytes = all_bytes(mesh), last = bytes % HE_STORED_PART;
-    /* A link may take more bytes than a word: all words of the last part count as links. */
+    /* A link may take more bytes than a word, so the bound assumes that all words of the last part
+     * are links. */
     last += last / sizeof(uint32_t) * (HE_LINK_BYTES - sizeof(uint32_t));
     last = last > HE_STORED_PART ? HE_STORED_PART : last;
     return (size_t)(bytes / HE_STORED_PART * (HE_PART_HEAD + HE_STORED_PART) + HE_PART_HEAD + last);

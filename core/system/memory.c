@@ -9,7 +9,7 @@
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
-static _Atomic uint64_t outside; /* those of the used bytes that st_memory_count has added */
+static _Atomic uint64_t outside; /* how many of the used bytes st_memory_count has added */
 static _Atomic uint64_t budget_bytes;
 /* True if the memory budget, and not the C library, refused the last block that was refused. */
 static _Atomic bool over_budget;

@@ -227,7 +227,7 @@ static unsigned read_off(const pg_mesh *pg, const char *kind, const char *what, 
     if (strcmp(what, "faces") == 0) {
         return pg->face[strcmp(kind, "face") == 0 ? h ^ 1u : h];
     }
-    return h; /* the half-edges themselves are the relations outgoing, halfedges, loop and ring */
+    return h; /* the relations outgoing, halfedges, loop and ring consist of the half-edges */
 }
 
 void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out)

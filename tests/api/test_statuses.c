@@ -32,7 +32,7 @@ typedef struct step {
 #define ANY     "If-None-Match", "*"
 #define LARGE   "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"
 #define ASYNC   "Prefer", "respond-async"
-#define BIG     "too big" /* stands for a body that is longer than a JSON request may be */
+#define BIG     "too big" /* a placeholder for a body that is longer than a JSON request may be */
 
 static const step steps[] = {
     {"PUT", "/v1/meshes/m", 201, CUBE, {ABSENT}},

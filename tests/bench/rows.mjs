@@ -11,7 +11,8 @@
 //     near     relative tolerance of the results; 0 if only `exact` is compared
 //     drawn    the result counts edges drawn at random, not the same ones in each program: the
 //              tolerance is that of the usual input, and wider if there are fewer edges
-//     target   [peer, ratio]: how many times the peer's figure; or a limit of our own with `less`
+//     target   [[peer, ratio]]: our figure must be at least `ratio` times better than that of
+//              `peer`; 'best' stands for the peer with the best figure
 //     runs     the number of runs of each side, if it is not that of the other rows
 //     fresh    each run has a process of its own
 //     meter    the quantity measured, if it is not seconds (tests/bench/side/side.h)

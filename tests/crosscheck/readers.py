@@ -473,14 +473,14 @@ def facts_differ(kind, facts, answer):
 # words, and why.
 KNOWN = [
     ('stl', 'daemon', 'facets that it declares', 'a count that lies may hide facets'),
-    ('stl', 'daemon', '(in|out)side a facet|a fourth vertex in one facet|a facet has [0-9]+ corners', 'the reference drops it'),
+    ('stl', 'daemon', '(in|out)side a facet|a fourth vertex in a facet|a facet has [0-9]+ corners', 'the reference drops it'),
     ('stl', 'daemon', 'control character', 'a name that nothing could show'),
     ('stl', 'daemon', 'it has no facets', 'unknown words and nothing else'),
     ('stl', 'reference', 'bad-syntax|short-vertex', 'white space is free in a text'),
     ('off', 'daemon', 'comes after the last face', 'a count that lies may hide faces'),
     ('off', 'daemon', 'the three counts|is not what the header declares|ends after',
      'numbers that no header announces belong to the next line'),
-    ('obj', 'daemon', 'does not begin a line', 'it may have been the end of a face'),
+    ('obj', 'daemon', 'cannot begin a line', 'it may have been the end of a face'),
     ('obj', 'daemon', 'numbers and needs [13]|is not a number', 'a line without its values'),
     ('obj', 'daemon', 'the body is empty|has no vertices', 'a body without a line of the format'),
     ('off ply stl', 'daemon', 'NUL byte', 'no text has one'),
@@ -498,15 +498,15 @@ KNOWN = [
      'a CR within a line that ends in LF is white space, not the end of a row'),
     ('ply', 'reference', 'no end_header', 'blanks may stand before it'),
     ('ply', 'reference', 'bad-header', 'other white space, and other letters than ASCII'),
-    ('ply', 'daemon', 'is not of its type', 'a value that its type cannot hold'),
-    ('ply', 'daemon', 'does not name a vertex', 'the reference cuts fractions off'),
+    ('ply', 'daemon', 'does not fit its type', 'a value that its type cannot hold'),
+    ('ply', 'daemon', 'is not a vertex index', 'the reference cuts fractions off'),
     ('ply', 'reference', 'bad-integer', 'a corner with a point, in a list of floats'),
     ('stl', 'reference', 'file ends inside a facet', 'two words on a line'),
     ('glb gltf', 'daemon', r'(accessors|bufferViews|buffers|scene|scenes|meshes|nodes)/?',
      'it is no valid glTF, also where the reference looks away'),
     ('glb', 'reference', 'unaligned-chunk', 'it is read, with a note'),
     ('ply', 'daemon', 'no properties|name of two|given twice|too many', 'a header that is wrong'),
-    ('ply', 'daemon', 'rows are more than a mesh can have', 'of rows without properties the reference reads any'),
+    ('ply', 'daemon', 'rows that is more than a mesh can have', 'of rows without properties the reference reads any'),
 ]
 
 

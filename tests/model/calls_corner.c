@@ -2,7 +2,7 @@
 
 #include "mesh/walk.h"
 
-/* Returns an interior vertex if there is one near. */
+/* Returns an interior vertex if a few random tries find one, else any vertex. */
 static uint32_t draw_interior(md_draft *d)
 {
     uint32_t v = md_pick(d, HE_VERTEX);

@@ -75,7 +75,8 @@ static void containers(void **state)
     he_error err = {0};
     assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_BAD_VALUE);
     assert_non_null(strstr(
-        err.text, "buffers/0: the buffer has no URI, and the file has no binary chunk for it"));
+        err.text,
+        "buffers/0: the buffer has no URI, and the file has no binary chunk that holds its bytes"));
     glb_make(&f, "{" DATA "," MESHES "}", bin, 0);
     assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_BAD_VALUE);
     assert_non_null(
@@ -280,7 +281,8 @@ static void references_and_numbers(void **state)
         {"{" ASSET ",'buffers':3}", HE_BAD_VALUE, "buffers: this is not an array"},
         {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
          "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
-         HE_BAD_VALUE, "buffers/1: the buffer has no URI, and the file has no binary chunk for it"},
+         HE_BAD_VALUE,
+         "buffers/1: the buffer has no URI, and the file has no binary chunk that holds its bytes"},
         /* mistakes in normals and other directions */
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'NORMAL':4},'indices':1}"), HE_BAD_VALUE,
          "accessors/4: NORMAL must have componentType 5126, not 5121"},
@@ -352,7 +354,8 @@ static void references_and_numbers(void **state)
         {"{" DATA ",'scene':2,'scenes':[{}]}", HE_BAD_INDEX,
          "scene: there is no scene 2; the file has 1"},
         /* mistakes in sparse accessors */
-        {WITH_SPARSE("{'count':2}"), HE_BAD_VALUE, "'indices' and 'values' are needed"},
+        {WITH_SPARSE("{'count':2}"), HE_BAD_VALUE,
+         "a sparse accessor needs 'indices' and 'values'"},
         {WITH_SPARSE("{'count':5,'indices':{'bufferView':1,'componentType':5123},'values':"
                      "{'bufferView':0}}"),
          HE_BAD_VALUE, "accessors/0/sparse/count: 5 is not a whole number from 1 to 4"},

@@ -363,7 +363,7 @@ static void wrong_values_cost_the_corner_its_value(void **state)
         char text[300];
         snprintf(text, sizeof text, "%svt 1 2\nvt 3 4\n%s", cube, rows[i].lines);
         if (rows[i].code == NULL) {
-            expect_refused("obj", text, HE_SYNTAX, 8, "is not a corner");
+            expect_refused("obj", text, HE_SYNTAX, 8, "is not a valid corner");
             continue;
         }
         he_import import = read_text("obj", text);
@@ -436,18 +436,18 @@ static void wrong_text_names_its_line(void **state)
         {"vn 1 2\n", HE_SYNTAX, 5, "needs 3"},
         {"f\n", HE_TOO_FEW_CORNERS, 5, "the face has no corners"},
         {"f # none\n", HE_TOO_FEW_CORNERS, 5, "the face has no corners"},
-        {"f 1 2 a\n", HE_SYNTAX, 5, "'a' is not a corner"},
-        {"f 1 2 3.0\n", HE_SYNTAX, 5, "'3.0' is not a corner"},
-        {"f 1 2 3/1/1/1\n", HE_SYNTAX, 5, "is not a corner"},
-        {"f 1 2 /1\n", HE_SYNTAX, 5, "is not a corner"},
-        {"f 1 2 --3\n", HE_SYNTAX, 5, "is not a corner"},
-        {"f 1 2 ++3\n", HE_SYNTAX, 5, "is not a corner"},
-        {"f 1 2 3\nf 1 2 3x\n", HE_SYNTAX, 6, "is not a corner"},
+        {"f 1 2 a\n", HE_SYNTAX, 5, "'a' is not a valid corner"},
+        {"f 1 2 3.0\n", HE_SYNTAX, 5, "'3.0' is not a valid corner"},
+        {"f 1 2 3/1/1/1\n", HE_SYNTAX, 5, "is not a valid corner"},
+        {"f 1 2 /1\n", HE_SYNTAX, 5, "is not a valid corner"},
+        {"f 1 2 --3\n", HE_SYNTAX, 5, "is not a valid corner"},
+        {"f 1 2 ++3\n", HE_SYNTAX, 5, "is not a valid corner"},
+        {"f 1 2 3\nf 1 2 3x\n", HE_SYNTAX, 6, "is not a valid corner"},
         {"s 1.5\n", HE_SYNTAX, 5, "smoothing"},
         {"s 4294967296\n", HE_SYNTAX, 5, "smoothing"},
-        {"1 2 3\n", HE_SYNTAX, 5, "'1' does not begin"},
-        {"{\"vertices\": []}\n", HE_SYNTAX, 5, "does not begin"},
-        {"<html>\n", HE_SYNTAX, 5, "does not begin"},
+        {"1 2 3\n", HE_SYNTAX, 5, "'1' cannot begin"},
+        {"{\"vertices\": []}\n", HE_SYNTAX, 5, "cannot begin"},
+        {"<html>\n", HE_SYNTAX, 5, "cannot begin"},
         {"g a\tb\x07\n", HE_SYNTAX, 5, "control character 7"},
         {"v 1 2 3\rv 4 5 6\n", HE_SYNTAX, 5, "is not a number"},
     };

@@ -264,7 +264,7 @@ static void colors_of_every_type_are_fractions(void **state)
     expect_refused("ply",
                    ASCII "element vertex 1\n" XYZ "property uchar red\nproperty uchar green\n"
                          "property uchar blue\nend_header\n0 0 0 1 .5 1\n",
-                   HE_BAD_VALUE, 11, "a value of property 'green' is not of its type uchar");
+                   HE_BAD_VALUE, 11, "a value of property 'green' does not fit its type uchar");
 }
 
 static void what_is_left_out_is_noted(void **state)

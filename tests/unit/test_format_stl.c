@@ -265,7 +265,7 @@ static void wrong_text_names_its_line(void **state)
         {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", HE_SYNTAX, 5,
          "a facet has 2 corners"},
         {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nvertex 3 0 0\n", HE_SYNTAX, 6,
-         "is a fourth vertex in one facet"},
+         "begins a fourth vertex in a facet"},
         {"solid\nfacet\nvertex 0 0 a\n", HE_SYNTAX, 3, "'a' is not a number"},
         {"solid\nfacet\nvertex 0 0\nendfacet\n", HE_SYNTAX, 4, "'endfacet' is not a number"},
         {"solid\nfacet\nvertex 0 nan 0\n", HE_NOT_FINITE, 3, "'nan' is not finite"},

@@ -508,7 +508,7 @@ static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
         HE_CORRUPT);
     /* The change is refused at offset 2, where its run of changes begins: the version and the
      * number of runs come before. */
-    expect_text(&err, HE_CORRUPT, 2, "change 0 was made from a value that the mesh does not hold");
+    expect_text(&err, HE_CORRUPT, 2, "change 0 replaces a value that the mesh does not have");
     run.issued[HE_EDGE] += 1000;
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),

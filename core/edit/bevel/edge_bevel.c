@@ -121,8 +121,9 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
         need.edges += ends[i].gap > 0;
         need.deleted_vertices += ends[i].gap == 0;
     }
-    /* Each cut edge has its origin and two links written; each of the two faces beside the bevelled
-     * edge two links and a stored half-edge; a hole two more links. */
+    /* These links are written: for each cut edge its origin and two links; for each of the two
+     * faces beside the bevelled edge two links and a stored half-edge; for a hole two more links.
+     */
     need.links = 3 * cuts + 2 * (3 + 2 + HE_SETTLE_LINKS);
     need.attributes = cuts;
     need.lineage = need.vertices + need.edges + 1;

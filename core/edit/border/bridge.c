@@ -211,7 +211,7 @@ static he_status compare_rungs(const plan *p, uint32_t *first, uint32_t *next, h
             uint32_t id = p->corners.ids.ids[v];
             status = he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, id,
                              "two new edges at vertex %u would join the same two vertices, because "
-                             "a boundary loop passes it twice",
+                             "a boundary loop passes that vertex twice",
                              id);
         }
     }

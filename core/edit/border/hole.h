@@ -5,8 +5,8 @@
 #include "mesh/mesh.h"
 
 typedef enum he_fill {
-    HE_FILL_POLYGON,    /* one face: V + 0, E + 0, F + 1 */
-    HE_FILL_FAN,        /* triangles around a new vertex at the mean: V + 1, E + n, F + n */
+    HE_FILL_POLYGON, /* one face: V + 0, E + 0, F + 1 */
+    HE_FILL_FAN, /* triangles around a new vertex at the mean of the corners: V + 1, E + n, F + n */
     HE_FILL_TRIANGULATE /* triangles between the corners: V + 0, E + (n - 3), F + (n - 2) */
 } he_fill;
 

@@ -252,8 +252,9 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
     } while (h.i != first.i);
 }
 
-/* Puts a[i] in the place of the twin of b[i]. If the half-edge before or after that twin in its
- * loop is the twin of b[i - 1] or b[i + 1], a[i] is linked to a[i - 1] or a[i + 1] instead. */
+/* Links a[i] to the half-edges before and after the twin of b[i], in place of that twin. If one of
+ * these two neighbours is itself the twin of b[i - 1] or b[i + 1], a[i] is linked to a[i - 1] or
+ * a[i + 1] instead. */
 static void sew_side(const plan *p, uint32_t i)
 {
     he_mesh *m = p->m;

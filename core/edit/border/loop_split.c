@@ -141,8 +141,8 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_attributes_copy(m, HE_EDGE, made->edges[i].i, e.i);
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
-    /* The elements on the right are found by walking around the vertices, so their origins are
-     * changed before any link there is. */
+    /* The half-edges on the right of the cycle are found by walking around its vertices, so their
+     * origins are changed before any other link at these vertices. */
     for (unsigned i = 0; i < 3; i++) {
         move_right(m, cycle, i, made->vertices[i]);
     }

@@ -14,7 +14,7 @@ typedef struct pair {
     he_halfedge in, out;
 } pair;
 
-/* Returns the one half-edge of a boundary edge that has no face. */
+/* Returns the half-edge of a boundary edge that has no face. */
 static he_halfedge outer(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);

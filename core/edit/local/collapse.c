@@ -116,7 +116,8 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
     he_vertex v = he_target(m, h), w = he_target(m, k);
     if (w.i != c.i && w.i != d.i &&
         (of_v != NULL ? is_in(of_v, w.i) : he_find_halfedge(m, w, v).i != HE_NONE)) {
-        return refuse(err, h, "its ends share a neighbour that is not a corner of its faces",
+        return refuse(err, h,
+                      "the edge's ends share a neighbour that is not a corner of the edge's faces",
                       "vertex", w.i);
     }
     /* All corners of a triangle at u are neighbours of u, so the check of L1 includes that of
@@ -126,8 +127,9 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
     }
     he_face f = he_face_of(m, h), g = he_face_of(m, he_twin(h)), x = he_face_of(m, k);
     if (x.i != HE_NONE && x.i != f.i && x.i != g.i && he_face_corner(m, x, v).i != HE_NONE) {
-        return refuse(err, h, "both its ends are corners of a face that is not beside it", "face",
-                      x.i);
+        return refuse(err, h,
+                      "both ends of the edge are corners of a face that is not beside the edge",
+                      "face", x.i);
     }
     return HE_OK;
 }
@@ -136,7 +138,8 @@ static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_vertex c = opposite(m, h), d = opposite(m, he_twin(h));
     if (c.i != HE_NONE && c.i == d.i) {
-        return refuse(err, h, "both triangles have the same opposite corner", "vertex", c.i);
+        return refuse(err, h, "both triangles beside the edge have the same opposite corner",
+                      "vertex", c.i);
     }
     ring of_u, of_v;
     he_status status = HE_OK;
@@ -158,8 +161,8 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 {
     if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
         he_is_boundary_halfedge(m, he_twin(he_prev(m, h)))) {
-        return refuse(err, h, "a triangle beside it has both other sides on the boundary", "face",
-                      he_face_of(m, h).i);
+        return refuse(err, h, "a triangle beside the edge has both other sides on the boundary",
+                      "face", he_face_of(m, h).i);
     }
     return HE_OK;
 }
@@ -184,7 +187,7 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
     he_vertex u = he_origin(m, h), v = he_target(m, h);
     if (he_is_boundary_vertex(m, u) && he_is_boundary_vertex(m, v) &&
         !he_is_boundary_edge(m, he_edge_of(h))) {
-        return refuse(err, h, "it is inside the mesh but both its ends are on the boundary",
+        return refuse(err, h, "the edge is inside the mesh but both its ends are on the boundary",
                       "vertex", u.i);
     }
     he_status status = check_sides(m, h, err);
@@ -195,7 +198,7 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
         status = check_ring(m, h, err);
     }
     if (status == HE_OK && is_apex(m, h) && is_apex(m, t)) {
-        return refuse(err, h, "it is part of a tetrahedron", "vertex", u.i);
+        return refuse(err, h, "the edge is part of a tetrahedron", "vertex", u.i);
     }
     return status;
 }

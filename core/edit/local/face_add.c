@@ -3,7 +3,8 @@
 #include "edit/piece/list.h"
 #include "edit/piece/ring.h"
 
-/* Finds the boundary half-edge that runs from a to b; HE_NONE if no edge joins them. */
+/* Finds the boundary half-edge that runs from vertex a to vertex b; HE_NONE if no edge joins a and
+ * b. */
 static he_status find_side(const he_mesh *m, he_vertex a, he_vertex b, uint32_t *out, he_error *err)
 {
     he_halfedge h = he_find_halfedge(m, a, b);

@@ -7,9 +7,9 @@
 /* face_add adds a face over existing vertices: V + 0, E + the number of missing edges, F + 1.
  *
  *        c       d                    c - - - d           The face runs counter-clockwise through
- *        |       |                    |       |           the vertices in the order given. Edges
- *        |       |      a,b,d,c       |  new  |           it needs that exist must be on the
- *        a-------b      --->          a-------b           boundary on its side and are adopted.
+ *        |       |                    |       |           the vertices in the order given. A side
+ *        |       |      a,b,d,c       |  new  |           that exists as an edge must be on the
+ *        a-------b      --->          a-------b           boundary there, and becomes the side.
  *
  * If two sides of the face meet at a vertex v and both exist already, the face fills the gap
  * between two fans of v. If other fans lie in that gap, their links are moved to another gap first:

@@ -19,7 +19,8 @@ static he_status check(const he_mesh *m, he_edge e, double t, he_error *err)
     he_vertex c = he_target(m, he_next(m, h)), d = he_target(m, he_next(m, back));
     if (!he_is_boundary_edge(m, e) && c.i == d.i) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, c.i,
-                       "both diagonals of edge %u would end at vertex %u", e.i, c.i);
+                       "a split of edge %u would make two diagonals that both end at vertex %u",
+                       e.i, c.i);
     }
     return HE_OK;
 }

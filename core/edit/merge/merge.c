@@ -77,8 +77,8 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
     he_status status = check_faces(p, &marks, err);
     for (uint32_t i = 0; status == HE_OK && i < p->group.count; i++) {
         he_vertex v = {p->group.ids[i]};
-        /* Whether a vertex moves is not tested if it is merged into another one: that test visits
-         * all vertices that are merged into the same vertex. */
+        /* The function moves() is not called for a vertex that is merged into another one, because
+         * it visits all vertices that are merged into the same vertex. */
         if (goes_into_another(p, v) || moves(p, i)) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }

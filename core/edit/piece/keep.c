@@ -55,8 +55,8 @@ static bool is_needed(const he_mesh *m, const he_column *column)
     return false;
 }
 
-/* Returns true if all corners at vertex v have the value of v already, so that the value is kept
- * there. */
+/* Returns true if all corners at vertex v have the value of v already, so that the value of v is
+ * not lost if v is merged. */
 static bool says_so(const he_mesh *m, const he_column *corners, const he_column *column, uint32_t v)
 {
     he_halfedge first = he_vertex_halfedge(m, (he_vertex){v}), h = first;

@@ -9,8 +9,8 @@ typedef struct motion {
     he_vec3 *path;  /* displacement of each corner on the rim at time 1 */
     he_vec3 *at;    /* positions of the corners of one face */
     he_vec3 *moves; /* displacements at time 1 of the corners of that face */
-    /* The mean of the corners of each face of the region or, if sides move in parallel, its
-     * normal. */
+    /* The mean of the corners of each face of the region or, if sides move in parallel, the normal
+     * of each face. */
     he_vec3 *of;
     /* The first time at which a corner hits a side, a side has no length or a corner flips. */
     double end;
@@ -320,7 +320,7 @@ static he_status mix(const he_mesh *m, const he_region *r, const he_vec3 *to, he
 {
     he_vec3 *means = he_mem_array(NULL, r->faces.ids.count, sizeof *means);
     if (means == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the means of faces");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the centres of faces");
     }
     for (size_t i = 0; i < r->faces.ids.count; i++) {
         means[i] = he_loop_mean(m, he_face_halfedge(m, (he_face){r->faces.ids.ids[i]}));

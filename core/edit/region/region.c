@@ -169,10 +169,10 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
 {
     for (size_t i = 0; i < r->corners.ids.count; i++) {
         if (!he_point_is_finite(to[i])) {
-            return he_fail(err, HE_NOT_FINITE, HE_VERTEX, r->corners.ids.ids[i],
-                           "the new vertex above vertex %u would have a position that is not "
-                           "finite",
-                           r->corners.ids.ids[i]);
+            return he_fail(
+                err, HE_NOT_FINITE, HE_VERTEX, r->corners.ids.ids[i],
+                "the new vertex made from vertex %u would have a position that is not finite",
+                r->corners.ids.ids[i]);
         }
     }
     return HE_OK;

@@ -27,11 +27,11 @@ static he_status check_clash(const he_column *own, const he_column *theirs, he_e
     }
     const char *labelled[2] = {own->labels != NULL ? " with labels" : "",
                                theirs->labels != NULL ? " with labels" : ""};
-    return he_fail_plain(err, HE_ATTRIBUTE_CLASH,
-                         "attribute %.60s of %s is %u %s%s here and %u %s%s in the other mesh",
-                         own->name, he_kind_plural(own->domain), own->components,
-                         he_type_name(own->type), labelled[0], theirs->components,
-                         he_type_name(theirs->type), labelled[1]);
+    return he_fail_plain(
+        err, HE_ATTRIBUTE_CLASH,
+        "attribute %.60s of %s is %u %s%s in this mesh and %u %s%s in the other mesh", own->name,
+        he_kind_plural(own->domain), own->components, he_type_name(own->type), labelled[0],
+        theirs->components, he_type_name(theirs->type), labelled[1]);
 }
 
 static he_status check_columns(const he_mesh *m, const he_mesh *other, he_error *err)
@@ -313,7 +313,7 @@ static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uin
 
 /* --- COMMIT: writing --- */
 
-/* The new id of every old id, for each kind of element. */
+/* The id that each element of the other mesh gets in this mesh, for each kind of element. */
 typedef struct maps {
     uint32_t *vertex, *edge, *face;
 } maps;

@@ -23,7 +23,7 @@ typedef struct flipper {
     uint64_t dequeued;
     uint64_t work; /* work since progress was last reported */
     /* `from`: number of records in the delta before this edit; `fold_at`: number of records at
-     * which those of one word are next folded into one. */
+     * which all records of one word are next folded into one. */
     size_t from, fold_at;
 } flipper;
 

@@ -12,7 +12,8 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
         return HE_OK;
     }
     return he_fail_plain(err, HE_ATTRIBUTE_CLASH,
-                         "the attribute material of faces is %u %s%s and not a uint32 with labels",
+                         "the attribute material of faces has values of %u %s%s, but must have "
+                         "values of 1 uint32 with labels",
                          (*out)->components, he_type_name((*out)->type),
                          (*out)->labels != NULL ? " with labels" : "");
 }
@@ -137,7 +138,8 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     /* "" is no name of a material, so it cannot be renamed: all faces without a material would get
      * one. */
     if (*name == '\0') {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is no material without a name");
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "a material without a name does not exist and cannot be renamed");
     }
     if (he_materials_find(&m->c.materials, to, strlen(to)) != SIZE_MAX ||
         has_label(column, to, &index)) {

@@ -99,7 +99,8 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
 {
     uint64_t *chosen = he_bits_new(m->c.faces.issued);
     if (chosen == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to look for the rest of components");
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory to check that the faces are whole components");
     }
     for (size_t i = 0; i < p->faces.count; i++) {
         he_bits_set(chosen, p->faces.ids[i]);
@@ -113,7 +114,7 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
 }
 
 /* Moves the corner values around vertex v. The corner that h leaves in face(h) is left by
- * turn_ccw(h) afterwards, so the values of half-edges around v shift by one place. Those of
+ * he_swing_ccw(h) afterwards, so the values of half-edges around v shift by one place. Those of
  * boundary half-edges shift, too, so that reversing a second time restores all values. */
 static void shift_corners(he_mesh *m, size_t slot, he_vertex v)
 {

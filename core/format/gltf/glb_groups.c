@@ -245,14 +245,12 @@ static he_status make(finding *f, he_warnings *warnings, he_error *err)
     }
     bool found = find_groups(f);
     for (size_t tries = 0; !found && tries < 2; tries++) {
-        he_warnings_add(
-            warnings,
-            &(he_occurrence){
-                .code = "not_apart",
-                .text =
-                    "merged, because they are too many to be separate parts for other programs:",
-                .subject = told[tries],
-                .length = strlen(told[tries])});
+        he_warnings_add(warnings,
+                        &(he_occurrence){.code = "not_apart",
+                                         .text = "too many to be stored as separate parts for "
+                                                 "other programs, and therefore merged:",
+                                         .subject = told[tries],
+                                         .length = strlen(told[tries])});
         g->names[HE_GLB_OBJECT] = g->names[HE_GLB_GROUP] = NULL;
         g->names[HE_GLB_MATERIAL] = tries > 0 ? NULL : g->names[HE_GLB_MATERIAL];
         found = find_groups(f);

@@ -45,7 +45,8 @@ static uint64_t corner_count(const he_mesh *m)
 
 static bool all_below(const he_column *column, double end)
 {
-    for (size_t row = 0; row <= column->rows; row++) { /* the row after the last is the default */
+    /* The row after the last one holds the default value. */
+    for (size_t row = 0; row <= column->rows; row++) {
         for (uint32_t i = 0; i < column->components; i++) {
             if (he_export_number(column, row, i) >= end) {
                 return false;
@@ -80,8 +81,8 @@ static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf
     return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
-/* Returns the component type in which a column is written as attribute `number` of a semantic,
- * such as TEXCOORD_1; 0 if the column cannot be written as this attribute. */
+/* Returns the component type in which a column is written as attribute `number` of a semantic, such
+ * as TEXCOORD_1 with the number 1; 0 if the column cannot be written as this attribute. */
 static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
                         unsigned number)
 {
@@ -256,7 +257,7 @@ static void add_words(he_glb_parts *g, const he_column *column, he_warnings *war
     }
     he_warnings_add(warnings,
                     &(he_occurrence){.code = "in_extras",
-                                     .text = "stored so that only hedge reads it back: attribute",
+                                     .text = "stored in a form that only hedge reads: attribute",
                                      .subject = subject,
                                      .length = (size_t)length});
 }
@@ -415,11 +416,11 @@ static void note_geometry(const he_glb_parts *g, he_warnings *warnings)
 {
     he_warnings_add_count(
         warnings, "triangulated",
-        "cut into triangles for other programs, and stored uncut for hedge: a face",
+        "cut into triangles for other programs, and also stored whole for hedge: a face",
         g->cuts.polygons);
     he_warnings_add_count(warnings, "split_vertices",
-                          "added for other programs where values of corners differ, and merged "
-                          "again when hedge reads the file: a vertex",
+                          "duplicated for other programs because values of its corners differ, and "
+                          "merged again when hedge reads the file: a vertex",
                           g->splits.copies.count);
     he_warnings_add_count(warnings, "turned_triangles",
                           "cut into triangles of which some have no area or are reversed: a face",

@@ -139,7 +139,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span
             (unsigned long long)length);
     }
     if ((part.start + offset) % alignment != 0 || stride % alignment != 0) {
-        he_gltf_note(asset, "misaligned", "read although they are misaligned: numbers", HE_NONE,
+        he_gltf_note(asset, "misaligned",
+                     "accepted, although they are not aligned as glTF requires: numbers", HE_NONE,
                      object);
     }
     *out = (span){part.bytes + offset, (size_t)stride,
@@ -159,8 +160,8 @@ static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32
         uint32_t index = he_gltf_whole(a->changed_type, a->changed_index + i * bytes);
         if (index < least || index >= a->count) {
             return he_json_fail(&asset->json, sparse, err, HE_BAD_INDEX,
-                                "sparse index %u (number %llu) is not greater than the one before, "
-                                "or not less than %llu",
+                                "sparse index %u (number %llu) is not greater than the sparse "
+                                "index before it, or not less than %llu",
                                 index, (unsigned long long)i, (unsigned long long)a->count);
         }
         least = (uint64_t)index + 1;
@@ -176,7 +177,8 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     uint32_t values = he_json_find(json, sparse, "values");
     span found = {0};
     if (he_json_type(json, indices) != '{' || he_json_type(json, values) != '{') {
-        return he_json_fail(json, sparse, err, HE_BAD_VALUE, "'indices' and 'values' are needed");
+        return he_json_fail(json, sparse, err, HE_BAD_VALUE,
+                            "a sparse accessor needs 'indices' and 'values'");
     }
     he_status status =
         he_gltf_need(asset, sparse, "count", (he_gltf_range){1, a->count}, &a->changed, err);

@@ -31,9 +31,10 @@ void he_gltf_note_text(he_gltf *asset, const char *code, const char *text, const
 
 void he_gltf_note_stale(he_gltf *asset, uint32_t place)
 {
-    he_gltf_note(asset, "stale_extras",
-                 "ignored, because they do not fit the geometry: hedge's own data in extras",
-                 HE_NONE, place);
+    he_gltf_note(
+        asset, "stale_extras",
+        "ignored, because they do not fit the geometry: the data that hedge stored in extras",
+        HE_NONE, place);
 }
 
 /* Reports progress. The number of steps that reading will take is not known, so the fraction
@@ -229,9 +230,9 @@ static void note_rest(he_gltf *asset)
 {
     static const struct {
         const char *name, *code, *text;
-    } parts[] = {{"animations", "ignored_animations", "ignored: animations"},
-                 {"skins", "ignored_skins",
-                  "ignored, so that meshes are only placed by their nodes: skins"}};
+    } parts[] = {
+        {"animations", "ignored_animations", "ignored: animations"},
+        {"skins", "ignored_skins", "ignored, so each mesh is placed by its node alone: skins"}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         uint32_t list = he_json_find(&asset->json, 0, parts[i].name);
         if (he_json_first(&asset->json, list) != HE_NONE) {

@@ -134,7 +134,8 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
             he_warnings_add(
                 &s->asset->into->warnings,
                 &(he_occurrence){.code = "not_finite",
-                                 .text = "set to 0: values that are not finite, of attribute",
+                                 .text =
+                                     "set to 0, because they are not finite: values of attribute",
                                  .subject = column->name,
                                  .length = strlen(column->name),
                                  .place = HE_PLACE_BYTE,
@@ -247,7 +248,7 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     if (column != NULL && (column->type != type || column->components != a->components)) {
         he_gltf_note_text(
             s->asset, "attribute_types",
-            "ignored, because an earlier part of the file has it with another type: attribute",
+            "ignored, because an earlier part of the file gives it another type: attribute",
             semantic, value);
         return HE_OK;
     }

@@ -25,8 +25,8 @@ typedef struct he_gltf_primitive {
     uint64_t mode;
     he_gltf_accessor positions, indices;
     uint64_t faces;          /* number of triangles */
-    uint64_t vertices;       /* number of vertices that the soup gets, at the first positions; the
-                                positions after them are those of copies of these vertices */
+    uint64_t vertices;       /* number of vertices that the soup gets, one for each of the first
+                                positions; the positions after these belong to copies of vertices */
     he_gltf_accessor copies; /* for each copy of a vertex, the vertex that was copied */
     bool private;            /* the extras are valid as far as they were read */
     bool exact;              /* attributes read from extras take precedence over those of glTF */
@@ -77,8 +77,8 @@ typedef struct he_gltf_semantic {
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
     he_gltf_role role;
-    he_gltf_role partner; /* an attribute of `role` is only written beside one of the role
-                             `partner`; equal to `role` if it needs no other */
+    he_gltf_role partner; /* an attribute of `role` is only written if one of the role `partner` is
+                             written too; `partner` equals `role` if no other attribute is needed */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
 

@@ -140,13 +140,14 @@ static he_status find_bytes(he_gltf *asset, size_t i, uint32_t value, const he_g
         return read_uri(asset, buffer, uri, err);
     }
     if (i > 0 || bin->bytes == NULL) {
-        return he_json_fail(&asset->json, value, err, HE_BAD_VALUE,
-                            "the buffer has no URI, and the file has no binary chunk for it");
+        return he_json_fail(
+            &asset->json, value, err, HE_BAD_VALUE,
+            "the buffer has no URI, and the file has no binary chunk that holds its bytes");
     }
     *buffer = (he_gltf_buffer){.bytes = bin->bytes, .length = bin->length, .place = bin->place};
     if (bin->length > length && bin->length - length > 3) {
-        he_gltf_note(asset, "bin_longer", "ignored: bytes of the BIN chunk behind its buffer",
-                     HE_NONE, value);
+        he_gltf_note(asset, "bin_longer",
+                     "ignored: bytes of the BIN chunk after the end of its buffer", HE_NONE, value);
     }
     return HE_OK;
 }

@@ -21,13 +21,13 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
     memcpy(name, own, strlen(own) + 1);
     for (unsigned number = 2; he_labels_find(names, name, strlen(name), &index); number++) {
         if (number == 2) {
-            he_gltf_note_text(asset, "material_renamed",
-                              "renamed with a number, because another has the same name: material",
-                              own, value);
+            he_gltf_note_text(
+                asset, "material_renamed",
+                "renamed by adding a number, because another material has that name: material", own,
+                value);
         }
-        number = number > FEW && number <= i ? (unsigned)i + 1
-                                             : number; /* after some tries, a number above that of
-                                                          all materials, which is mostly free */
+        /* After a few tries the next number is i + 1, which in most files no name has. */
+        number = number > FEW && number <= i ? (unsigned)i + 1 : number;
         he_material_number_name(own, number, name);
     }
     return he_labels_add(names, name, strlen(name), &index, err);
@@ -147,8 +147,8 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
     if (r.odd) {
         he_gltf_note_text(
             asset, "material_range",
-            "replaced by the default or the nearest allowed value: a number of material", name,
-            value);
+            "replaced by the default or the nearest allowed value: an invalid number of material",
+            name, value);
     }
     he_status status = he_material_new(name, strlen(name), &look, &row, err);
     if (status == HE_BAD_VALUE) { /* the name has a control character */

@@ -136,7 +136,8 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
     }
     if (composed) {
         he_gltf_note(asset, "matrix_and_more",
-                     "ignored: a translation, rotation or scale beside a matrix", HE_NONE, node);
+                     "ignored: the translation, rotation or scale of a node that also has a matrix",
+                     HE_NONE, node);
     }
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
         return he_json_fail(json, he_json_find(json, node, "matrix"), err, HE_BAD_VALUE,
@@ -388,7 +389,7 @@ static void note_meshes(const scene *s)
     }
     he_warnings_add_count(warnings, "unused_meshes",
                           "left out, because no node of the scene uses it: a mesh", unused);
-    he_warnings_add_count(warnings, "instances", "copied, because another node uses it too: a mesh",
+    he_warnings_add_count(warnings, "instances", "copied, because several nodes use it: a mesh",
                           s->instances);
 }
 

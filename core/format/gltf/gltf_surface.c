@@ -400,12 +400,14 @@ static he_status finish_names(he_gltf_surface *surface, he_face_groups *groups, 
         return he_face_groups_merge(groups, soup->face_count, column, own, err);
     }
     if (groups->changes.count > 0) {
-        he_warnings_add(&into->warnings,
-                        &(he_occurrence){.code = "attribute_types",
-                                         .text = "ignored, because an earlier part of the "
-                                                 "file has it with another type: attribute",
-                                         .subject = name,
-                                         .length = strlen(name)});
+        he_warnings_add(
+            &into->warnings,
+            &(he_occurrence){
+                .code = "attribute_types",
+                .text =
+                    "ignored, because an earlier part of the file gives it another type: attribute",
+                .subject = name,
+                .length = strlen(name)});
     }
     return HE_OK;
 }

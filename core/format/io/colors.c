@@ -82,7 +82,8 @@ he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_warnings *
     }
     if (above) {
         he_warnings_add_count(warnings, "byte_colors",
-                              "read as 0 to 255, because they are whole numbers above 1: colours",
+                              "read as numbers from 0 to 255, because they are whole numbers and "
+                              "some are above 1: colours",
                               colors->given);
     }
     return HE_OK;

@@ -50,7 +50,8 @@ he_status he_narrowed_finish(const he_narrowed *narrowed, he_warnings *warnings,
                        "vertex %u has a coordinate too large for the floats of this format%s",
                        narrowed->first, more);
     }
-    he_warnings_add_count(warnings, "rounded", "rounded to floats: a position", narrowed->rounded);
+    he_warnings_add_count(warnings, "rounded", "rounded to 32-bit floats: a position",
+                          narrowed->rounded);
     return HE_OK;
 }
 
@@ -102,11 +103,12 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
         for (uint32_t i = 0; i < column->components; i++) {
             if (!isfinite(component_of(column, row, i))) {
                 he_warnings_add(
-                    warnings, &(he_occurrence){
-                                  .code = "not_finite",
-                                  .text = "written as 0: values that are not finite, of attribute",
-                                  .subject = name,
-                                  .length = strlen(name)});
+                    warnings,
+                    &(he_occurrence){
+                        .code = "not_finite",
+                        .text = "written as 0, because they are not finite: values of attribute",
+                        .subject = name,
+                        .length = strlen(name)});
             }
         }
     }

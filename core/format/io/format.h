@@ -7,10 +7,9 @@
  * format whose parts refer to each other in any order, until it is finished:
  *
  *     he_reader_new -> he_reader_feed ... -> he_reader_finish -> he_import -> he_build
- * (build/build.h)
  *
- * If a file refers to other files, the caller gives those that came with it before it finishes
- * (he_reader_beside).
+ * build/build.h declares he_build. If a file refers to other files, the caller gives those that
+ * came with it before it finishes (he_reader_beside).
  *
  * An import, the result of a reader, is a polygon soup, warnings about what was ignored, and the
  * place of each vertex and face in the input. A reader refuses errors of the text itself (syntax,
@@ -81,7 +80,7 @@ typedef struct he_format {
         *media_types; /* NULL ends this and the other lists; exports get the first media type */
     const char *const *extensions;
     const char *const *encodings; /* encodings of the writer, the default first */
-    const char *const *carries;   /* what files preserve: "polygons", attributes as "face color" */
+    const char *const *carries;   /* what a file preserves, such as "polygons" or "face color" */
     /* Returns true if `bytes` could be the first bytes of a file in this format. */
     bool (*sniff)(const char *bytes, size_t n);
     const he_reading *reading; /* NULL: the format cannot be read */

@@ -35,7 +35,7 @@ static he_status widen(he_weld *weld, he_error *err)
     size_t count = weld->slots == NULL ? 0 : (size_t)1 << weld->bits;
     wide.slots = he_mem_zero((size_t)1 << wide.bits, sizeof *wide.slots);
     if (wide.slots == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to tell %zu positions apart",
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu positions",
                              (size_t)1 << wide.bits);
     }
     if (count == 0) {

@@ -88,8 +88,9 @@ static he_status end_material(library *l, he_error *err)
         return HE_OK;
     }
     if (he_look_clamp(&l->look)) {
-        note(l, "material_range", "replaced by the nearest allowed value: a number of material",
-             l->name, l->length);
+        note(l, "material_range",
+             "replaced by the nearest allowed value: an invalid number of material", l->name,
+             l->length);
     }
     he_status status = number_name(l, l->name, l->length, &number, &fresh, err);
     return status == HE_OK ? add_row(l, number, fresh, err) : status;
@@ -140,7 +141,8 @@ static he_status read_color(library *l, const he_line *line, const char *keyword
     p = he_skip_blanks(p, line->end);
     const char *end = he_token_end(p, line->end);
     if (end - p > 2 && (memcmp(p, "spectral", 3) == 0 || memcmp(p, "xyz", 3) == 0)) {
-        note(l, "ignored_color", "ignored: a colour that is not red, green and blue", keyword, 2);
+        note(l, "ignored_color", "ignored: a colour that is not given as red, green and blue",
+             keyword, 2);
         return HE_OK;
     }
     for (; !he_at_end(p, line->end) && count < 3; p = he_skip_blanks(p, line->end)) {

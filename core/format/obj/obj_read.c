@@ -16,8 +16,8 @@ typedef struct obj {
     he_corner_pool uv, normal;
     he_colors colors;
     he_face_groups object, group, material, smoothing;
-    he_labels *libraries; /* names on the lines of mtllib, NULL while there are none */
-    he_ids library_lines; /* line on which the name of each library comes first */
+    he_labels *libraries; /* names of libraries on mtllib lines, NULL while there are none */
+    he_ids library_lines; /* the first line that names each library */
     uint32_t highest;     /* highest vertex that a corner refers to */
     uint64_t last_line;   /* number of the last line read */
     uint64_t understood;  /* number of lines with a keyword of the format */
@@ -141,7 +141,7 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
     size_t used = 0;
     he_status status = he_u64_parse(begin + sign, line->end, &value, &used);
     if (status == HE_SYNTAX) {
-        return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
+        return he_token_fail(err, HE_SYNTAX, line, begin, "is not a valid corner of a face");
     }
     *p = begin + sign + used;
     if (status == HE_OK && value != 0) {
@@ -169,8 +169,9 @@ static void note_no_value(obj *o, const he_corner_pool *pool, uint64_t at)
         &(he_occurrence){
             .code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
             .text = pool == &o->uv
-                        ? "set to 0, because it does not exist: a corner's texture coordinate"
-                        : "set to 0, because it does not exist: a corner's normal",
+                        ? "set to 0, because the file does not have it: the texture coordinate of "
+                          "a corner"
+                        : "set to 0, because the file does not have it: the normal of a corner",
             .place = HE_PLACE_LINE,
             .at = at});
 }
@@ -219,7 +220,7 @@ static he_status read_corner(obj *o, const he_line *line, const char **p, he_err
         status = read_value(o, line, p, pools[i], corner, err);
     }
     if (status == HE_OK && !he_token_ends(*p, end)) {
-        return he_token_fail(err, HE_SYNTAX, line, begin, "is not a corner of a face");
+        return he_token_fail(err, HE_SYNTAX, line, begin, "is not a valid corner of a face");
     }
     return he_line_locate(status, line, err);
 }
@@ -254,7 +255,8 @@ static he_status read_smoothing(obj *o, const he_line *line, const char *p, he_e
     } else if (length != 0 && !(length == 3 && memcmp(p, "off", 3) == 0)) {
         he_status status = he_u64_parse(p, end, &value, &used);
         if (status != HE_OK || used != length || value > UINT32_MAX) {
-            return he_token_fail(err, HE_SYNTAX, line, p, "is not a smoothing group");
+            return he_token_fail(err, HE_SYNTAX, line, p,
+                                 "is not a smoothing group, which is a whole number, on or off");
         }
     }
     return he_face_groups_set(&o->smoothing, o->into->soup.face_count, (uint32_t)value, err);
@@ -339,7 +341,7 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
         break;
     }
     if (!is_word(p, end)) {
-        return he_token_fail(err, HE_SYNTAX, line, p, "does not begin a line of an OBJ file");
+        return he_token_fail(err, HE_SYNTAX, line, p, "cannot begin a line of an OBJ file");
     }
     for (size_t i = 0; i < sizeof passed_over / sizeof *passed_over; i++) {
         if (*passed_over[i] == *p && strlen(passed_over[i]) == length &&
@@ -476,9 +478,9 @@ static he_status note_unused(obj *o, he_error *err)
     }
     if (status == HE_OK) {
         he_warnings_add_count(&o->into->warnings, "unused_uv",
-                              "ignored: texture coordinates that no corner has", uvs);
+                              "ignored: texture coordinates that no corner uses", uvs);
         he_warnings_add_count(&o->into->warnings, "unused_normal",
-                              "ignored: normals that no corner has", normals);
+                              "ignored: normals that no corner uses", normals);
     }
     return status;
 }

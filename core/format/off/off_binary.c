@@ -140,7 +140,7 @@ static he_status take_degree(he_off_binary *b, const unsigned char *p, he_error 
 {
     he_soup *soup = &b->values->into->soup;
     uint64_t count = 0, at = begin_of(b, WORD);
-    he_status status = take_count(p, "corners in one face", soup->limits.corners, at, &count, err);
+    he_status status = take_count(p, "corners in a face", soup->limits.corners, at, &count, err);
     if (status == HE_OK) {
         status = he_source_map_add(&b->values->into->faces, (uint32_t)soup->face_count, at, err);
     }

@@ -91,7 +91,7 @@ static he_status end_binary_header(const he_line *line, const char **p, he_error
     *p = he_skip_blanks(he_token_end(*p, line->end), line->end);
     return he_at_end(*p, line->end)
                ? HE_OK
-               : he_token_fail(err, HE_SYNTAX, line, *p, "follows BINARY in its line");
+               : he_token_fail(err, HE_SYNTAX, line, *p, "is not allowed after BINARY on its line");
 }
 
 static he_status read_header(off *o, const he_line *line, const char **p, he_error *err)
@@ -107,8 +107,9 @@ static he_status read_header(off *o, const he_line *line, const char **p, he_err
     }
     const char *rest = he_skip_blanks(end, line->end);
     if (flags == -2) {
-        return he_token_fail(err, HE_UNSUPPORTED, line, *p,
-                             "is not supported: the points are not in three dimensions");
+        return he_token_fail(
+            err, HE_UNSUPPORTED, line, *p,
+            "is not supported: this header says that the points do not have three dimensions");
     }
     o->has = (unsigned)flags;
     o->is_binary = he_token_end(rest, line->end) - rest == 6 && memcmp(rest, "BINARY", 6) == 0;
@@ -177,7 +178,7 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     into->edges_line = line->number;
     if (status == HE_OK && !he_at_end(he_skip_blanks(*p, line->end), line->end)) {
         return he_token_fail(err, HE_SYNTAX, line, he_skip_blanks(*p, line->end),
-                             "follows the three counts");
+                             "is not allowed after the three counts");
     }
     return status;
 }
@@ -254,9 +255,10 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
      * file with such a vertex no vertex may omit its last values, because it could not be
      * distinguished from one that continues. */
     if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
-        return he_line_fail(err, HE_SYNTAX, line, line->begin,
-                            "the line has %zu numbers, which is not what the header declares",
-                            count);
+        return he_line_fail(
+            err, HE_SYNTAX, line, line->begin,
+            "the line has %zu numbers, which does not match what the header declares for a vertex",
+            count);
     }
     he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
     if (status == HE_OK && p.normal > 0) {
@@ -273,7 +275,7 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     }
     if (lacking) {
         note(o, "missing_numbers",
-             "read although numbers that the header declares are missing: a vertex", line);
+             "accepted, although numbers that the header declares are missing: a vertex", line);
     }
     if (count > end) {
         note(o, "extra_numbers", "ignored, because the header does not declare them: numbers",
@@ -363,7 +365,7 @@ static he_status read_corner(off *o, const he_line *line, const char **p, he_err
     bool negative = **p == '-', sign = negative || **p == '+';
     he_status status = he_u64_parse(*p + sign, line->end, &value, &used);
     if (status == HE_SYNTAX || !he_token_ends(*p + sign + used, line->end)) {
-        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a corner of a face");
+        return he_token_fail(err, HE_SYNTAX, line, *p, "is not a valid corner of a face");
     }
     if (status != HE_OK || value >= o->vertices || negative) {
         char text[40];
@@ -435,7 +437,7 @@ static he_status read_face(off *o, const he_line *line, const char **p, he_error
         return status;
     }
     if (!o->open) {
-        status = read_count(line, p, "corners in one face", soup->limits.corners, &o->missing, err);
+        status = read_count(line, p, "corners in a face", soup->limits.corners, &o->missing, err);
         if (status == HE_OK) {
             status =
                 he_source_map_add(&o->into->faces, (uint32_t)soup->face_count, line->number, err);

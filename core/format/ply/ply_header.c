@@ -78,7 +78,8 @@ static he_status require_end(const he_line *line, const char *p, he_error *err)
 {
     word w = next_word(line, &p);
     return w.begin == w.end ? HE_OK
-                            : refuse(err, HE_SYNTAX, line, w, "is one word too many for the line");
+                            : refuse(err, HE_SYNTAX, line, w,
+                                     "is an extra word that this line of the header must not have");
 }
 
 static he_status read_format(he_ply_header *h, const he_line *line, const char *p, he_error *err)
@@ -100,7 +101,8 @@ static he_status read_format(he_ply_header *h, const he_line *line, const char *
         return refuse(err, HE_SYNTAX, line, w, "is not an encoding of a PLY file");
     }
     if (!is(version, "1.0")) {
-        return refuse(err, HE_UNSUPPORTED, line, version, "is not the version 1.0");
+        return refuse(err, HE_UNSUPPORTED, line, version,
+                      "is not version 1.0, the only one supported");
     }
     h->encoding = encoding;
     return require_end(line, p, err);
@@ -117,7 +119,8 @@ static he_status read_element(he_ply_header *h, const he_line *line, const char 
     }
     bool held = is(name, "vertex") || is(name, "face");
     if (status != HE_OK || count > (held ? HE_MAX_ROWS : MOST_ROWS)) {
-        return refuse(err, HE_BAD_VALUE, line, rows, "rows are more than a mesh can have");
+        return refuse(err, HE_BAD_VALUE, line, rows,
+                      "is a number of rows that is more than a mesh can have");
     }
     if (h->count == HE_PLY_ELEMENTS) {
         return he_line_fail(err, HE_LIMIT, line, line->begin,
@@ -166,7 +169,8 @@ static he_status read_types(he_ply_property *property, const he_line *line, cons
     w = next_word(line, p);
     he_status status = read_type(line, w, &property->count, err);
     if (status == HE_OK && property->count >= HE_PLY_FLOAT) {
-        return refuse(err, HE_SYNTAX, line, w, "is not a type to count a list with");
+        return refuse(err, HE_SYNTAX, line, w,
+                      "is not an integer type, which the count of a list needs");
     }
     return status == HE_OK ? read_type(line, next_word(line, p), &property->type, err) : status;
 }
@@ -262,7 +266,8 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
     if (!h->begun) {
         h->begun = true;
         return is(w, "ply") ? require_end(line, p, err)
-                            : refuse(err, HE_SYNTAX, line, w, "does not begin a PLY file");
+                            : refuse(err, HE_SYNTAX, line, w,
+                                     "cannot begin a PLY file, which begins with 'ply'");
     }
     if (is(w, "format")) {
         return read_format(h, line, p, err);
@@ -283,7 +288,7 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
     if (is(w, "obj_info")) {
         return HE_OK;
     }
-    return refuse(err, HE_SYNTAX, line, w, "does not begin a line of a PLY header");
+    return refuse(err, HE_SYNTAX, line, w, "cannot begin a line of a PLY header");
 }
 
 size_t he_ply_find(const he_ply_header *h, const he_ply_element *element, const char *name)

@@ -36,7 +36,7 @@ const char *he_ply_type_name(he_ply_type type);
 he_type he_ply_type_column(he_ply_type type);
 
 typedef struct he_ply_property {
-    char name[HE_WARNING_SUBJECT]; /* the name, made printable, and cut if it is longer */
+    char name[HE_WARNING_SUBJECT]; /* the name, made printable, and cut if it does not fit */
     bool nameable;                 /* an attribute can have this name */
     bool list;
     he_ply_type count, type; /* `count` is the type of a list's length */

@@ -80,7 +80,8 @@ static he_status read_list(ply *o, const he_line *line, const char **p, size_t k
     const he_ply_property *property = &o->header.properties[o->rows.element->first + k];
     bool ignored = he_ply_rows_role(&o->rows, k) == HE_PLY_IGNORED;
     int64_t count = 0, value = 0;
-    he_status status = read_whole(line, p, "is not the count of a list", &count, err);
+    he_status status = read_whole(
+        line, p, "is not a whole number, which the count of a list must be", &count, err);
     if (status == HE_OK) {
         status = he_ply_rows_list(&o->rows, k, count, err);
     }
@@ -102,7 +103,7 @@ static he_status read_list(ply *o, const he_line *line, const char **p, size_t k
             }
             continue;
         }
-        status = read_whole(line, p, "is not a corner of a face", &value, err);
+        status = read_whole(line, p, "is not a valid corner of a face", &value, err);
         if (status == HE_OK) {
             status = he_ply_rows_item(&o->rows, k, value, err);
         }
@@ -123,7 +124,7 @@ static he_status read_row(ply *o, const he_line *line, const char *p, he_error *
             properties[k].list ? read_list(o, line, &p, k, err) : read_value(o, line, &p, k, err);
     }
     if (status == HE_OK && !he_at_end(he_skip_blanks(p, line->end), line->end)) {
-        note(o, "extra_numbers", "ignored: what follows a row on its line", line->number);
+        note(o, "extra_numbers", "ignored: text after the last value of a row", line->number);
     }
     return status == HE_OK ? he_ply_rows_end(&o->rows, err) : status;
 }

@@ -155,7 +155,7 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
             &rows->into->warnings,
             &(he_occurrence){
                 .code = "fraction_indices",
-                .text = "read although it is not a type of whole numbers: vertex indices of type",
+                .text = "accepted, although it is not an integer type: vertex indices of type",
                 .subject = he_ply_type_name(property->type),
                 .length = strlen(he_ply_type_name(property->type)),
                 .place = HE_PLACE_LINE,
@@ -327,7 +327,7 @@ static he_status refuse_value(const he_ply_rows *rows, size_t property, he_error
 {
     const he_ply_property *p = &rows->header->properties[rows->element->first + property];
     return he_fail_at(err, HE_BAD_VALUE, rows->unit, rows->at,
-                      "a value of property '%s' is not of its type %s", p->name,
+                      "a value of property '%s' does not fit its type %s", p->name,
                       he_ply_type_name(p->type));
 }
 
@@ -346,7 +346,7 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
         he_warnings_add(
             &rows->into->warnings,
             &(he_occurrence){.code = "not_finite",
-                             .text = "set to 0: values that are not finite, of attribute",
+                             .text = "set to 0, because they are not finite: values of attribute",
                              .subject = column->name,
                              .length = strlen(column->name),
                              .place = rows->unit,
@@ -506,7 +506,7 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
         he_warnings_add(
             &rows->into->warnings,
             &(he_occurrence){.code = "not_finite",
-                             .text = "set to 0: values that are not finite, of attribute",
+                             .text = "set to 0, because they are not finite: values of attribute",
                              .subject = "uv",
                              .length = strlen("uv"),
                              .place = rows->unit,
@@ -531,9 +531,10 @@ static he_status end_uvs(he_ply_rows *rows, he_error *err)
             &rows->into->warnings,
             &(he_occurrence){
                 .code = count == 0 ? "faces_without_uv" : "texcoord_count",
-                .text = count == 0 ? "set to 0, because it has none: texture coordinates of a face"
-                                   : "set to 0, because there are not two for each corner: texture "
-                                     "coordinates of a face",
+                .text = count == 0
+                            ? "set to 0, because the file gives none: texture coordinates of a face"
+                            : "set to 0, because there are not two numbers for each corner: "
+                              "texture coordinates of a face",
                 .place = rows->unit,
                 .at = rows->at});
         return HE_OK;
@@ -554,7 +555,8 @@ he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
     double most = p->type == HE_PLY_FLOAT ? FLOAT_WHOLE : DOUBLE_WHOLE;
     if (!is_whole(value, -most, most)) {
         return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
-                          "the %s %.17g does not name a vertex", he_ply_type_name(p->type), value);
+                          "the %s %.17g is not a vertex index, which must be a whole number",
+                          he_ply_type_name(p->type), value);
     }
     return he_ply_rows_item(rows, property, (int64_t)value, err);
 }

@@ -133,7 +133,8 @@ static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain,
         w->outputs[w->count - 1].color = group->color;
     }
     if (column != NULL && group->color && !he_colors_are_bytes(w->mesh, column, &lost)) {
-        he_warnings_add_count(warnings, "rounded_colors", "rounded to bytes: a colour", lost);
+        he_warnings_add_count(warnings, "rounded_colors",
+                              "rounded to components of 8 bits: a colour", lost);
     }
 }
 
@@ -198,8 +199,8 @@ static he_status split(ply_writer *w, he_progress *progress, he_warnings *warnin
         add(w, HE_PLY_VERTEX_MARK, NULL, 0, HE_PLY_UINT32);
         w->outputs[w->count - 1].own = true;
         he_warnings_add_count(warnings, "split_vertices",
-                              "added for other programs where values of corners differ, and merged "
-                              "again when hedge reads the file: a vertex",
+                              "duplicated for other programs because values of its corners differ, "
+                              "and merged again when hedge reads the file: a vertex",
                               w->splits.copies.count);
     }
     return status;

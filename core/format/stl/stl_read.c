@@ -124,8 +124,9 @@ static he_status read_word(stl *o, const he_line *line, const char **p, he_error
     if (is(word, end, "vertex")) {
         if (!o->in_facet || o->corner_count == 3) {
             return he_token_fail(err, HE_SYNTAX, line, word,
-                                 o->in_facet ? "is a fourth vertex in one facet"
-                                             : "is outside a facet");
+                                 o->in_facet
+                                     ? "begins a fourth vertex in a facet, which must have 3"
+                                     : "is outside a facet");
         }
         o->numbers = 3;
     } else if (is(word, end, "facet") || is(word, end, "solid") || is(word, end, "endsolid")) {

@@ -106,12 +106,13 @@ static he_status note_differences(const stl_writer *w, again *a, he_warnings *wa
     if (status == HE_OK) {
         he_warnings_add_count(warnings, "isolated_vertices",
                               "not written, because it belongs to no face: a vertex", a->isolated);
-        he_warnings_add_count(
-            warnings, "merged",
-            "read back as one with another vertex, because both have the same position: a vertex",
-            merged);
+        he_warnings_add_count(warnings, "merged",
+                              "merged with another vertex when the file is read, because both have "
+                              "the same position: a vertex",
+                              merged);
         he_warnings_add_count(warnings, "no_mesh_again",
-                              "readable only with repairs: a facet or vertex", defects);
+                              "refused when the file is read without repairs: a facet or vertex",
+                              defects);
     }
     return status;
 }

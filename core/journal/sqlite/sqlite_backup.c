@@ -165,7 +165,8 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
         }
     }
     return st_sqlite_has_no_log(
-        file, "this log would be replayed onto the backup; remove the log, or choose another file",
+        file,
+        "SQLite would replay this log onto the backup; remove the log, or choose another file",
         message);
 }
 

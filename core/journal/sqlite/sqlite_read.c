@@ -381,8 +381,9 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
         return status == HE_UNSUPPORTED ? ST_NEWER : ST_DAMAGED;
     }
     if (reader->frame.record.number != number) {
-        return damaged(reader, "record %llu has the number %llu", (unsigned long long)number,
-                       (unsigned long long)reader->frame.record.number);
+        return damaged(reader,
+                       "in the place of record %llu the store has a record with the number %llu",
+                       (unsigned long long)number, (unsigned long long)reader->frame.record.number);
     }
     reader->number = number;
     return ST_OK;
