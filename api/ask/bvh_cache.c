@@ -79,7 +79,8 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
     api_bvh *tree = tree_new(a);
     if (tree == NULL) {
         he_error err = {0};
-        (void)he_fail_plain(&err, HE_NO_MEMORY, "no memory for a tree of boxes");
+        (void)he_fail_plain(&err, HE_NO_MEMORY,
+                            "no memory for the search tree of the mesh's faces");
         api_asker_refuse(a, in, &err);
     } else if (kept == NULL || kept->revision < a->revision) {
         hold(tree);

@@ -188,7 +188,7 @@ static he_status dihedrals(const he_mesh *m, const selection *of, const options 
     uint32_t issued = he_mesh_issued(m, HE_EDGE);
     double *rows = he_mem_array(NULL, (size_t)issued + 1, sizeof *rows);
     if (rows == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedrals of a mesh");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedral angles of a mesh");
     }
     he_status status = he_edge_dihedrals(m, o->progress, rows, err);
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {

@@ -82,8 +82,8 @@ bool api_asker_exceed(api_asker *a, const api_in *in)
         a->x->is_job = is_job;
         return false;
     }
-    const char *limit = "\"%s\" needs more than what is left of the %llu computing steps that a %s "
-                        "may take on this mesh%s";
+    const char *limit = "\"%s\" would exceed the %llu computing steps that all questions of a %s "
+                        "together may take on this mesh%s";
     const char *what = a->x->phase == API_PHASE_JOB ? "job" : "request";
     const char *hint =
         may_be_job ? "; a job may take more: send the header Prefer: respond-async" : "";

@@ -47,7 +47,7 @@ api_attributes_in *api_attributes_in_new(void)
 {
     api_attributes_in *in = he_mem_zero(1, sizeof *in);
     if (in != NULL) {
-        in->head.what = "the members besides the values";
+        in->head.what = "all members of the attribute except \"values\"";
         in->head.most = API_MAX_EDITS;
         in->head.values_most = API_MAX_EDITS_VALUES;
     }
@@ -193,9 +193,10 @@ static bool pack(api_attributes_in *in, item *out)
                             "the values do not have as many components as \"components\" says");
     }
     if (words ? in->has_numbers : in->has_words) {
-        return refuse_value(in, 0, API_WRONG_TYPE,
-                            words ? "values of a bool must be true or false"
-                                  : "only an attribute of type bool has the values true and false");
+        return refuse_value(
+            in, 0, API_WRONG_TYPE,
+            words ? "values of a bool must be true or false"
+                  : "only an attribute of type bool may have the values true and false");
     }
     out->values = he_mem_array(NULL, in->number_count + 1, size);
     if (out->values == NULL) {
@@ -414,8 +415,8 @@ bool api_attributes_in_repaired(const api_attributes_in *in, api_problem *proble
         const item *one = &in->items[i];
         if (goes_with_edges(one)) {
             api_problem_set(problem, HE_UNSUPPORTED,
-                            "the repairs change edges, so values of %s would be lost: leave out "
-                            "the repairs or the attribute",
+                            "the repairs change edges, so the attribute's values of %s would be "
+                            "lost: leave out the repairs or the attribute",
                             he_kind_plural(one->column->domain));
             api_problem_set_pointer(problem, "/attributes/%zu/values", i);
             return false;

@@ -43,10 +43,12 @@ struct api_document_in {
     api_in root;
 };
 
-_Static_assert((int)API_MAX_DOCUMENT_NUMBER <= (int)HE_JSON_CARRY,
-               "a number of the largest size must fit where pieces of the body are joined");
-_Static_assert(2 * (int)API_MAX_KEY <= (int)HE_JSON_NAMES,
-               "the name of a member must fit where pieces of the body are joined");
+_Static_assert(
+    (int)API_MAX_DOCUMENT_NUMBER <= (int)HE_JSON_CARRY,
+    "the buffer that joins a number cut by two pieces of the body must hold the longest number");
+_Static_assert(
+    2 * (int)API_MAX_KEY <= (int)HE_JSON_NAMES,
+    "the buffer that joins a name cut by two pieces of the body must hold the longest name");
 
 api_document_in *api_document_in_new(const he_limits *limits)
 {
@@ -57,7 +59,7 @@ api_document_in *api_document_in_new(const he_limits *limits)
         in->lexer.depth_most = API_MAX_DEPTH;
         in->lexer.number_most = API_MAX_DOCUMENT_NUMBER;
         in->lexer.name_most = API_MAX_KEY;
-        in->rest = (api_members){.what = "members besides vertices and faces",
+        in->rest = (api_members){.what = "the members other than \"vertices\" and \"faces\"",
                                  .most = API_MAX_CONTROL,
                                  .values_most = API_MAX_CONTROL_VALUES};
         in->materials = (api_members){
@@ -143,7 +145,7 @@ static bool add_vertex(api_document_in *in, const double *values, size_t count)
     he_error err;
     if (count != 3) {
         api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), HE_BAD_VALUE,
-                           "a vertex must have three coordinates, and this one has %zu", count);
+                           "a vertex must have three coordinates, but this vertex has %zu", count);
         return point(in, IN_LIST);
     }
     he_vec3 position = {values[0], values[1], values[2]};
@@ -205,7 +207,7 @@ static bool add_value(api_document_in *in, double value)
     }
     if (in->part == 3) {
         return refuse_in(in, IN_LIST, HE_BAD_VALUE,
-                         "a vertex must have three coordinates, but this one has more");
+                         "a vertex must have three coordinates, but this vertex has more");
     }
     in->point[in->part++] = value;
     return true;
@@ -401,7 +403,7 @@ bool api_document_in_end(api_document_in *in, api_problem *problem)
 {
     in->problem = problem;
     if (in->lexer.state != HE_JSON_DONE) {
-        return refuse(in, API_MALFORMED_JSON, "the body ends before the mesh document does");
+        return refuse(in, API_MALFORMED_JSON, "the body ends before the mesh document is complete");
     }
     return read_materials(in, problem) &&
            api_members_parse(&in->rest, &in->document, &in->root, problem);

@@ -112,10 +112,11 @@ static bool refuse(api_exchange *x, const api_parts *p)
                         "choose with ?format=",
                         names);
     }
-    return api_fail(x, API_UNCLEAR_PARTS,
-                    "none of the files is %s%s, judged by name, media type and first bytes: %s",
-                    p->wanted == NULL ? "in a format that the server reads" : "in the format ",
-                    p->wanted == NULL ? "" : p->wanted, names);
+    return api_fail(
+        x, API_UNCLEAR_PARTS,
+        "none of the files is %s%s, as far as their names, media types and first bytes show: %s",
+        p->wanted == NULL ? "in a format that the server reads" : "in the format ",
+        p->wanted == NULL ? "" : p->wanted, names);
 }
 
 /* Returns true for a file that belongs to another file and is no mesh itself, such as a texture. */

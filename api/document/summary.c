@@ -84,7 +84,8 @@ static const api_field item_fields[] = {
     API_FIELD("revision", "count", st_card, revision, .required = true),
     API_FIELD_MADE("counts", "#counts", write_brief_counts, .required = true),
     API_FIELD("damage", "text", st_card, damage, .zero_is_none = true,
-              .doc = "What is damaged on the disk. The mesh can only be deleted or replaced."),
+              .doc = "Present only if the mesh is damaged: says what is damaged on the disk. The "
+                     "mesh can only be deleted or replaced."),
 };
 const api_record api_mesh_item_record = {"mesh_item", item_fields,
                                          sizeof item_fields / sizeof *item_fields};
@@ -140,15 +141,16 @@ static const api_field summary_fields[] = {
     API_FIELD_MADE("counts", "#counts", write_counts, .required = true),
     API_FIELD("euler", "integer", whole, euler, .required = true,
               .doc = "V - E + F, where V counts only vertices that have an edge."),
-    API_FIELD("genus", "integer?", whole, genus, .required = true,
-              .known = API_KNOWN(whole, has_genus),
-              .doc = "Null if the mesh has a bow-tie, for which there is no genus."),
+    API_FIELD(
+        "genus", "integer?", whole, genus, .required = true, .known = API_KNOWN(whole, has_genus),
+        .doc = "The genus; null if the mesh has a bow-tie, because the genus is then not defined."),
     API_FIELD("closed", "flag", whole, closed, .required = true,
               .doc = "True if the mesh has no boundary and at least one face."),
     API_FIELD("manifold", "flag", whole, manifold, .required = true,
               .doc = "True if the mesh has no bow-tie and at least one face."),
     API_FIELD_MADE("degrees", "#degrees", write_degrees, .required = true,
-                   .doc = "For each number of corners, how many faces have it."),
+                   .doc =
+                       "For each number of corners: how many faces have this number of corners."),
     API_FIELD_MADE("bbox", "#box?", write_box, .required = true,
                    .known = API_KNOWN(whole, has_box)),
     API_FIELD("area", "number", whole, area, .required = true),

@@ -497,10 +497,11 @@ static void note_edges(upload *u, const he_mesh *mesh)
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
         he_warnings_add(
             &u->import.warnings,
-            &(he_occurrence){.code = "edge_count",
-                             .text = "ignored, because it is wrong: the number of edges",
-                             .place = HE_PLACE_LINE,
-                             .at = import->edges_line});
+            &(he_occurrence){
+                .code = "edge_count",
+                .text = "the number of edges in the header of the file is wrong, and is ignored",
+                .place = HE_PLACE_LINE,
+                .at = import->edges_line});
     }
 }
 
@@ -634,7 +635,8 @@ static const api_field warning_fields[] = {
                    .doc = "The bytes where it occurred, if the body is binary; at most 100 for all "
                           "warnings together."),
     API_FIELD_MADE("vertices", "*id", write_warned, .known = API_KNOWN(shown_warning, has_vertices),
-                   .doc = "For bowtie and isolated_vertices: the first 100 of these vertices."),
+                   .doc = "For the warnings bowtie and isolated_vertices: the first 100 vertices "
+                          "that they are about."),
 };
 const api_record api_warning_record = {"warning", warning_fields,
                                        sizeof warning_fields / sizeof *warning_fields};

@@ -43,8 +43,8 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
 {
     return u->memory.refused
                ? api_problem_set(problem, API_TOO_MANY_CODED,
-                                 "the bodies that are decompressed at the same time would take "
-                                 "more than %zu bytes of memory with this one",
+                                 "decompressing this body together with the others that are "
+                                 "arriving would take more than %zu bytes of memory",
                                  u->memory.most)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory to decompress the body");
 }
@@ -240,9 +240,10 @@ static bool refuse_gzip(api_decompressor *u, int status, api_problem *problem)
         return refuse(u, problem, "the bytes are not in gzip format");
     }
     return refuse(u, problem,
-                  status == Z_NEED_DICT ? "a preset dictionary is needed, and none is supported"
-                  : z->msg == NULL      ? "the compressed data is damaged"
-                                        : z->msg);
+                  status == Z_NEED_DICT
+                      ? "the data needs a preset dictionary, which the server does not support"
+                  : z->msg == NULL ? "the compressed data is damaged"
+                                   : z->msg);
 }
 
 static bool feed_gzip(api_decompressor *u, const unsigned char *bytes, size_t length, size_t *used,
@@ -307,7 +308,9 @@ static bool end_frame(api_decompressor *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
     if (!u->skipped && said != ZSTD_CONTENTSIZE_UNKNOWN && said != u->to) {
-        return refuse(u, problem, "the length of the frame differs from the one in its header");
+        return refuse(
+            u, problem,
+            "the length of the decompressed frame differs from the length in the frame's header");
     }
     u->head_length = 0;
     end_part(u);

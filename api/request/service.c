@@ -192,7 +192,8 @@ static api_step finish(api_exchange *x)
     }
     end_given_up(x);
     if (x->problem.code == HE_OK && !x->answered) {
-        api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
+        api_fail(x, API_INTERNAL,
+                 "the server has no answer for the route %s, which is an error in the server",
                  x->route == NULL ? "-" : x->route->name);
     }
     if (x->problem.code != HE_OK && x->published != 0) {

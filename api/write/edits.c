@@ -201,8 +201,8 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     }
     if (delta->count > API_MAX_EDITS_ROWS) {
         return api_in_fail(in, HE_LIMIT,
-                           "the list is too long: the operations before this one change %zu rows, "
-                           "and at most %d are allowed",
+                           "the list is too long: the operations before this one change %zu rows "
+                           "of elements and attributes, and at most %d are allowed",
                            delta->count, (int)API_MAX_EDITS_ROWS);
     }
     return true;
