@@ -95,7 +95,8 @@ static bool visit_in(st_store *store, const st_card *card, visit *each, void *co
         printf("%s: WRITTEN BY A NEWER RELEASE: %s\n", card->id, damage);
     } else if (status != ST_ABSENT) {
         printf("%s: NOT READ: %s\n", card->id,
-               status == ST_FAILED ? "the disk reported an error" : "there is no memory for it");
+               status == ST_FAILED ? "a read of the disk failed"
+                                   : "not enough memory for this mesh");
     }
     st_release(mesh);
     return good;
@@ -176,7 +177,7 @@ static int look(const char *path, visit *each, void *context, const char *done)
     if (faults > 0 && there > reached) {
         printf(", %" PRIu64 " cannot be found", there - reached);
     }
-    printf(faults > 0 ? "; the file itself is damaged\n" : "\n");
+    printf(faults > 0 ? "; the database file itself is damaged\n" : "\n");
     if (!all) {
         return fail("not all meshes could be listed, because the list cannot be read to its end");
     }
@@ -189,7 +190,7 @@ static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *co
 {
     (void)context;
     printf("%s: %s, revision %" PRIu64 ", %u vertices, %u faces\n", info->id,
-           whole ? "whole" : "undamaged only up to here", info->revision,
+           whole ? "whole" : "only an earlier state is undamaged", info->revision,
            (unsigned)he_mesh_vertices(content), (unsigned)he_mesh_faces(content));
     return true;
 }
@@ -277,8 +278,8 @@ int srv_maintenance_run(const srv_config *config)
         return look(config->verified, say_whole, NULL, "whole");
     }
     if (folder == NULL) {
-        return fail(
-            "a store in memory keeps nothing on the disk: name a store with --store sqlite:DIR");
+        return fail("a store in memory keeps nothing on the disk: give the folder of a store with "
+                    "--store sqlite:DIR");
     }
     return config->backup != NULL    ? backup(folder, config->backup)
            : config->restore != NULL ? restore(folder, config->restore)

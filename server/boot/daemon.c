@@ -92,7 +92,7 @@ int srv_daemon_run(const srv_started *started)
     parts.log = srv_log_new(STDERR_FILENO, srv_log_capacity(st_memory_budget()), &settings);
     if (parts.log == NULL) {
         srv_line_write(STDERR_FILENO, settings.json, SRV_LEVEL_ERROR,
-                       "no memory or threads to start");
+                       "there is not enough memory, or there are not enough threads, to start");
         return 1;
     }
     srv_start_tell(parts.log, started->config, started->environment);

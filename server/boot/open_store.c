@@ -29,7 +29,8 @@ static bool open_threads(srv_parts *parts)
     parts->makers = st_pool_new("hedged-answers", srv_cores(), MAKER_QUEUE);
     parts->parallel = st_parallel_new(srv_cores() - 1);
     return (parts->pool != NULL && parts->makers != NULL && parts->parallel != NULL) ||
-           srv_open_failed(parts, "no memory or threads to start");
+           srv_open_failed(parts,
+                           "there is not enough memory, or there are not enough threads, to start");
 }
 
 /* Opens the journal, which keeps the meshes on the disk. Sets *made to true if the store is new, so

@@ -36,8 +36,8 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     if (now->damaged_keys > 0 && before->damaged_keys == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
                      "the store in %s has %llu damaged records of requests with an "
-                     "Idempotency-Key: such a request is refused if it is sent again, or is done a "
-                     "second time if its key cannot be read",
+                     "Idempotency-Key: if such a request is sent again, it is refused or, if its "
+                     "key cannot be read, done a second time",
                      folder, (unsigned long long)now->damaged_keys);
     }
     if (now->status == ST_FAILED && before->status != ST_FAILED) {
@@ -80,7 +80,9 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
     if (srv_healthcheck(parts->url, message, sizeof message)) {
         srv_notify("WATCHDOG=1");
     } else {
-        srv_log_tell(parts->log, SRV_LEVEL_WARNING, "the daemon asked itself for /livez, and %s",
+        srv_log_tell(parts->log, SRV_LEVEL_WARNING,
+                     "the watchdog is not notified, because the daemon does not answer its own "
+                     "request for /livez: %s",
                      message);
     }
 }

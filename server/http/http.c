@@ -13,8 +13,9 @@
 #include <string.h>
 #include <sys/socket.h>
 
-_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES,
-               "headers of the largest allowed size must leave space in the buffer");
+_Static_assert(
+    SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES,
+    "the buffer of a connection must have space beside headers of the largest allowed size");
 
 /* --- callbacks of libmicrohttpd --- */
 
@@ -231,12 +232,15 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     const bool counts = options->address_connections != 0;
     http->peers = counts ? srv_peers_new(most) : NULL;
     if (http->deadlines == NULL || http->streams == NULL || (counts && http->peers == NULL)) {
-        snprintf(message, size, "no memory or threads to start");
+        snprintf(message, size,
+                 "there is not enough memory, or there are not enough threads, to start");
         http_free(http);
         return NULL;
     }
     if (!srv_buffers_reserve(most)) {
-        snprintf(message, size, "no address space for %zu connections", options->max_sockets);
+        snprintf(message, size,
+                 "the process has not enough address space for the buffers of %zu connections",
+                 options->max_sockets);
         http_free(http);
         return NULL;
     }

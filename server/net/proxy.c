@@ -330,7 +330,7 @@ const char *srv_forwarding_end(const srv_forwarding *told, char address[SRV_ADDR
         return "Forwarded is not a list of elements such as for=192.0.2.1;proto=https";
     }
     if (b->malformed) {
-        return "X-Forwarded-For has something that is not an address in the place of the client's "
+        return "X-Forwarded-For has, in the place of the client's address, a text that is not an "
                "address";
     }
     if (told->no_scheme) {
