@@ -174,7 +174,7 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
                 "FROM sqlite_schema WHERE name = 'kept_by_time') "
                 "WHERE name = 'sqlite_autoindex_mesh_1'");
-    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "the file itself is damaged");
+    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "the database file itself is damaged");
     assert_non_null(strstr(output, "cube: DAMAGED: record 3 is missing"));
     assert_non_null(strstr(output, "1 meshes whole, 2 not"));
     folder_write(folder, "hedge.db", (const unsigned char *)"nothing", 7);

@@ -72,7 +72,7 @@ export class Flag {
 // A choice of yes or no that may be left out.
 export class Whether extends Choice {
     constructor() {
-        super([['', 'as it is'], ['yes', 'yes'], ['no', 'no']], '');
+        super([['', 'unchanged'], ['yes', 'yes'], ['no', 'no']], '');
     }
 
     read() {
@@ -104,7 +104,7 @@ export class Color extends Text {
         }
         if (numbers.length < 3 || numbers.length > this.#most) {
             const count = this.#most > 3 ? 'three or four' : 'three';
-            throw slip(this.#name, 'Not a colour', `${this.#name} is ${count} numbers.`);
+            throw slip(this.#name, 'Not a colour', `${this.#name} must be ${count} numbers.`);
         }
         return numbers;
     }
@@ -202,7 +202,7 @@ export class Numeral {
             throw slip(
                 this.#name,
                 'Not a number',
-                `${this.#name}: this is not a number.`,
+                `${this.#name} must be a number.`,
             );
         }
         return this.node.value === '' ? undefined : Number(this.node.value);

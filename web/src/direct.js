@@ -8,8 +8,8 @@ const CLICK_PIXELS = 4;
 
 const HINTS = {
     move: 'Drag to move the selection.',
-    extrude: 'Drag to extrude, or click.',
-    inset: 'Drag to inset, or click.',
+    extrude: 'Drag to extrude, or click for a default distance.',
+    inset: 'Drag to inset, or click for a default amount.',
 };
 
 export class Direct {

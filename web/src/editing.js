@@ -147,7 +147,7 @@ export class Editing {
             return null;
         }
         if (isDear) {
-            return 'No preview: it may take long on a mesh of this size.';
+            return 'No preview: this operation may take long on a mesh of this size.';
         }
         try {
             return wordsOf(await api.tryEdit(mesh, operation, signal));
@@ -172,7 +172,7 @@ export class Editing {
             const { revision, history } = this.#session.shown;
             const isFinal = history.entries[0]?.undoable === false;
             const end = isFinal ? ' This edit cannot be undone.' : '';
-            this.#toasts.tell(operation.op, `Done: this is revision ${revision}.${end}`);
+            this.#toasts.tell(operation.op, `Done: the mesh is now at revision ${revision}.${end}`);
         } finally {
             this.#work.end();
         }

@@ -191,7 +191,7 @@ function shrink(gesture, factor) {
         return linesOfFace(geometry, id, (point) => add(point, add(middle, point, -1), factor));
     });
     const operation = { op, faces: idsOf(gesture), factor };
-    return { operation, lines, text: `${textOf([100 * factor])} % of the way` };
+    return { operation, lines, text: `${textOf([100 * factor])} % of the way to the middle` };
 }
 
 // Returns lines that show how a face moves if its corners p move to place(p): its edges at the new

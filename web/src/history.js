@@ -99,7 +99,7 @@ export class History {
             {
                 type: 'button',
                 className: 'entry',
-                title: `Undo all since revision ${revision}`,
+                title: `Undo all edits since revision ${revision}`,
                 disabled: !this.#isEnabled,
                 onclick: () => {
                     this.#hasFocus = true;

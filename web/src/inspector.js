@@ -158,7 +158,7 @@ function plainValue(value) {
 
 function hintFor(selection) {
     if (selection.length === 0) {
-        return 'Click the mesh to pick an element. Shift picks several.';
+        return 'Click the mesh to pick an element. Shift and click picks several.';
     }
     const others = selection.slice(0, -1);
     return others.length === 0

@@ -246,7 +246,7 @@ function endLevels() {
 }
 
 function tellStale() {
-    toasts.tell('Back to the mesh', 'The mesh was changed, so these levels are out of date.');
+    toasts.tell('Back to the mesh', 'The mesh was changed, so the levels of detail are outdated.');
 }
 
 // Reads the list of meshes again, and shows a hint if there are none. Returns the ids in its first

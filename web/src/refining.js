@@ -15,8 +15,8 @@ const LONGEST = 0.5;
 const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
 
 const HINTS = {
-    waiting: 'The server is computing the levels.',
-    shown: 'You cannot pick or edit meanwhile.',
+    waiting: 'The server is computing the levels of detail.',
+    shown: 'You cannot pick or edit while levels of detail are shown.',
 };
 
 export class Refining {

@@ -27,7 +27,7 @@ export class SignIn {
         const who = byId('who');
         who.hidden = name === null;
         who.textContent = `${name} (${role})`;
-        const meshes = prefixes.length > 0 ? `; meshes ${prefixes.join(', ')}\u2026` : '';
+        const meshes = prefixes.length > 0 ? `; only meshes ${prefixes.join(', ')}\u2026` : '';
         who.title = `${ROLES[role] ?? role}${meshes}. Click to use another token`;
         document.body.classList.toggle('looks-only', !this.mayEdit);
         this.onChange();
