@@ -26,7 +26,7 @@ typedef struct report {
     size_t broken;
     he_thresholds thresholds;
     he_defects defects;
-    bool meets; /* the client wants self-intersections to be searched for */
+    bool meets; /* the client wants a search for faces that intersect */
     bool complete;
 } report;
 

@@ -2,8 +2,8 @@
  *
  * The macros make rows such as list_vertices, get_vertex and list_vertex_faces. `one` and `many`
  * are the singular and plural name of the kind, `what` is the name of a relation in
- * core/query/adjacency.h. The table in routes.c includes ELEMENT_ROWS; the macros use the header
- * `next_page`, which routes.c defines. */
+ * core/query/adjacency.h. The table in routes.c includes ELEMENT_ROWS. The macros name `next_page`,
+ * the description of the response header Link, which routes.c defines. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 

@@ -305,8 +305,9 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
                      false);
     }
     if (tagged) {
-        /* A dry run makes no state that an ETag could name, and an answer 204 without a body
-         * (api_publish) may not know the state. So such answers do not always have an ETag. */
+        /* A dry run makes no state of the mesh that an ETag could name, and an answer 204 that
+         * replaces another answer (api_publish) may be sent when the state is not known. So such
+         * answers do not always have an ETag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Identifies the state that the answer shows.", always);
     }

@@ -36,8 +36,10 @@ struct api_document_in {
     size_t part; /* how many numbers of the present vertex or face were read */
     double point[3];
 
-    api_attributes_in *attributes; /* reads the attributes; NULL if the document has none so far */
-    api_members *gathering; /* where the present member is gathered; NULL: it is not gathered */
+    /* Reads the member "attributes"; NULL if the document has had none so far. */
+    api_attributes_in *attributes;
+    /* Collects the text of the present member; NULL: the member is not collected. */
+    api_members *gathering;
     api_members materials, rest;
     api_document document; /* the members of `rest`, parsed */
     api_in root;
@@ -101,8 +103,8 @@ static bool point(api_document_in *in, size_t depth)
     return false;
 }
 
-/* Refuses what stands before the next byte; `depth` says whether the list of vertices or faces, an
- * item of it or a number is refused (see point). */
+/* Refuses the bytes just before the next byte of the lexer; `depth` says whether the list of
+ * vertices or faces, an item of the list or a number of the item is refused (see point). */
 static bool refuse_in(api_document_in *in, size_t depth, int code, const char *text)
 {
     api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), code, "%s", text);
@@ -127,7 +129,7 @@ static bool refuse_fault(api_document_in *in)
         return refuse(in, API_MALFORMED_JSON, "extra text follows the mesh document");
     }
     if (x->fault == HE_FAULT_ITEM) {
-        x->frames[x->depth - 1].index++; /* the fault is where the next item should be */
+        x->frames[x->depth - 1].index++; /* the fault is in the place of the next vertex or face */
     }
     /* A bad number is refused at the byte where it ends, as numbers with a bad value are. */
     bool number = x->fault == HE_FAULT_NUMBER || x->fault == HE_FAULT_NOT_FINITE;
@@ -288,7 +290,7 @@ static bool gather(api_document_in *in, api_members *to)
     return api_members_begin(to, &in->lexer, in->problem);
 }
 
-/* Begins a member of the document. The lexer has passed its name and the colon. */
+/* Begins a member of the document. The lexer has passed the member's name and the colon. */
 static bool open_member(api_document_in *in)
 {
     const he_lexer_frame *object = &in->lexer.frames[0];

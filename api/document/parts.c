@@ -200,7 +200,8 @@ static api_parts_step take(api_exchange *x, api_parts *p, const char *bytes, siz
         return API_PARTS_BYTES;
     }
     if (is_wanted(p, &one->kind)) {
-        return API_PARTS_MORE; /* a second mesh file: the body is refused at its end */
+        /* This is a second mesh file, so the body is refused when it has ended. */
+        return API_PARTS_MORE;
     }
     api_text_add(&one->bytes, bytes, length);
     if (one->bytes.failed) {

@@ -32,7 +32,8 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
     return true;
 }
 
-/* The counts of a mesh. Some must be computed from the content and are only in its summary. */
+/* The counts of a mesh. Some of them must be computed from the content of the mesh, so only the
+ * summary of one mesh has them, and not a list of meshes. */
 typedef struct counts {
     uint64_t vertices, halfedges, edges, faces;
     bool computed;
@@ -281,9 +282,10 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
         return;
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
-        /* Without the summary its length is unknown, so it is unknown whether GET would compress
-         * the answer. HEAD is answered as if GET would not. The ETag of the uncompressed answer is
-         * as good as that of the compressed answer in every precondition. */
+        /* Without the summary the length of the answer is unknown, and so is whether GET would
+         * compress the answer. HEAD is answered as if GET would not compress it. In every
+         * precondition the ETag of the uncompressed answer counts as much as that of the compressed
+         * answer. */
         x->codings.best = API_IDENTITY;
         const api_stream nothing = {.length = -1, .read = read_nothing};
         api_answer_stream(x, 200, "application/json", &nothing);

@@ -37,8 +37,8 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 /* Writes the members of a summary (id, name, revision, counts and so on) into an object that the
  * caller has begun. */
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
-/* Writes what the card of a mesh has: id, name, revision, some counts, and the damage of a damaged
- * mesh. */
+/* Writes what the card of a mesh (the description that the store keeps of each mesh) has: id, name,
+ * revision, some counts, and the damage of a damaged mesh. */
 void api_write_brief(api_out *out, const st_card *card);
 
 /* The handler of GET /v1/meshes/{mesh}, which answers 200 with the summary, from the cache if

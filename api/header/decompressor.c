@@ -25,7 +25,8 @@ struct api_decompressor {
     size_t turn; /* bytes decompressed in this call of api_decompressor_feed */
     bool inside; /* a gzip member or zstd frame has begun and not ended */
     api_decompressor_room *room;
-    /* Place of the decoder among those that can be evicted; NULL: it has none. */
+    /* The place of this decoder in the list of decoders that can be evicted; NULL: it has none and
+     * cannot be evicted. */
     api_decompressor_place *place;
     api_compression_memory memory;
     z_stream zlib;
@@ -53,8 +54,9 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
 
 enum { EMPTY, BUSY, WAITING, TAKING, GONE };
 
-/* Finds a place for a zstd decoder among the decoders that can be evicted. Decoders of gzip need
- * little memory and get no place. If no place is free, this decoder cannot be evicted. */
+/* Finds a place for a zstd decoder in the list of decoders that can be evicted to free their
+ * memory. Decoders of gzip need little memory and get no place. If no place is free, this decoder
+ * cannot be evicted. */
 static void find_place(api_decompressor *u)
 {
     for (size_t i = 0; u->place == NULL && i < API_DECOMPRESS_PLACES; i++) {
@@ -99,7 +101,8 @@ static void leave(api_decompressor *u, size_t bytes)
     }
 }
 
-/* Returns the share of this body in all compressed bytes that have arrived since it began. */
+/* Returns which share of all compressed bytes that have arrived since this body began belong to
+ * this body. */
 static double part_of(const api_decompressor_room *room, const api_decompressor_place *place)
 {
     uint64_t all = atomic_load(&room->arrived) - atomic_load(&place->began);

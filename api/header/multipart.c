@@ -20,14 +20,14 @@ struct api_multipart {
     state state;
     uint64_t seen;             /* number of bytes read so far */
     char delimiter[DELIMITER]; /* CR, LF, "--" and the boundary */
-    /* length: the length of `delimiter`. matched: how many of its bytes equal the bytes that were
-     * read last. */
+    /* length: the length of `delimiter`. matched: how many bytes at the beginning of `delimiter`
+     * equal the bytes that were read last. */
     size_t length, matched;
-    /* How many of the `matched` bytes cannot be content of a part, because they end the line before
-     * the content. */
+    /* How many of the `matched` bytes belong to the end of the line before the content of a part,
+     * so that they cannot be content of the part. */
     size_t implied;
     bool inside;      /* the content of a part is being read */
-    char close;       /* the last byte read after a delimiter; 0: none yet */
+    char close;       /* the last byte that was read after a delimiter; 0: none was read */
     size_t parts;     /* number of parts begun */
     uint64_t head_at; /* offset in the body of the headers of the present part */
     size_t head_length;

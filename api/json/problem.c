@@ -313,8 +313,9 @@ static void write_report(const api_problem *problem, api_out *out)
     api_out_key_u64(out, "total", report->total);
 }
 
-/* Replaces HE_NO_MEMORY by API_MEMORY_BUDGET if the memory budget is used up. Functions that run
- * out of memory cannot tell the two apart, but the client should know. */
+/* Replaces HE_NO_MEMORY by API_MEMORY_BUDGET if the memory budget is used up: a function that runs
+ * out of memory does not know whether the budget or the machine's memory is the reason, but the
+ * client should. */
 static int named_code(int code)
 {
     return code == HE_NO_MEMORY && st_memory_was_over_budget() ? API_MEMORY_BUDGET : code;

@@ -299,8 +299,9 @@ bool api_problem_set_core(api_problem *problem, const he_error *err);
 /* Fills the problem from a refusal of core about the path; elements that do not exist give the
  * status 404 or 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Fills the problem sent instead of an answer whose content did not become durable; `wait` has the
- * reason. `changed` says that the request itself made the change that was lost. */
+/* Fills the problem that is sent instead of an answer if a change that the answer shows did not
+ * become durable; `wait` has the reason. `changed` says that the request itself made the change
+ * that was lost. */
 bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

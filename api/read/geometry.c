@@ -20,7 +20,7 @@ typedef struct geometry {
     api_rows rows;
 } geometry;
 
-/* What came of the attempt to answer with the slots that are kept with the mesh. */
+/* The result of the attempt to answer with the slots that are kept with the mesh. */
 typedef enum geometry_step {
     TAKEN,   /* the rows to send were chosen (`rows` of geometry) */
     MISSING, /* no slots are kept */
@@ -275,8 +275,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Sets the ETag of the answer if the kept slots show it, so that If-None-Match is answered 304
- * before a job is made. */
+/* Sets the ETag of the answer if the slots that are kept with the mesh show it, so that a matching
+ * If-None-Match is answered 304 before a job is made. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);

@@ -118,8 +118,8 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
-/* Refuses a request to a mesh whose changes were lost. While the store cannot write, a write is
- * refused with the reason for that. */
+/* Refuses a request to a mesh whose changes were lost. If the store cannot write now, a write is
+ * refused with the reason of that. */
 static bool fail_lost(api_exchange *x)
 {
     st_health health;
@@ -510,7 +510,7 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
     api_coding coding;
     const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
     /* A job never answers 304: its client asked for the result, and the mesh may have got the ETag
-     * in its request after the request was sent. */
+     * in If-None-Match only after the request was sent. */
     if (none == NULL || x->phase == API_PHASE_JOB ||
         !api_etag_listed(none, etag, &x->codings, &coding)) {
         api_answer_header(x, "ETag", etag);

@@ -101,7 +101,7 @@ struct api_exchange {
     /* Position in the journal of the record of the Idempotency-Key, for which the answer waits; 0:
      * none. */
     uint64_t noted;
-    const char *own_job;  /* id of the job that does the work of this exchange; NULL: none */
+    const char *own_job;  /* id of the job that does the work of this exchange; NULL: no job does */
     api_coding coding_in; /* content coding of the body */
     api_codings codings;  /* content codings that the answer may have */
 
@@ -127,14 +127,16 @@ struct api_exchange {
      * be durable (`shown` in api_answer). */
     bool shows_all;
     uint64_t since; /* the journal was durable up to this position when the exchange began */
-    st_write write; /* the write to the mesh; a claim outlives the handler that began it */
+    /* The write to the mesh; if it is a claim (api_write_claim), it outlives the handler that began
+     * it. */
+    st_write write;
     /* What the handler reads: at first a copy of the route's members `reads`, `cost`, `tag` and
      * `run`. */
     api_reading reading;
     const he_mesh *content; /* the mesh that the handler may read while it runs; NULL: none */
     /* The snapshot that owns `content`; NULL: `content` is read under the shared lock. */
     st_snapshot *snapshot;
-    bool keeps; /* `snapshot` must be kept until the exchange is freed */
+    bool keeps; /* `snapshot` is needed until the exchange is freed */
 
     /* --- the handler's state, which `free_state` frees with the exchange --- */
     void *state;
@@ -191,8 +193,8 @@ st_cause api_cause(const api_exchange *x);
  * a cursor at the body's expected_revision, or NULL. api_write_commit or st_write_abort ends the
  * write. On failure returns false with the problem filled and without holding a lock. */
 bool api_write_begin(api_exchange *x, const api_in *expected);
-/* Begins x->write as a claim, for a long edit that works on a copy without the mesh's lock
- * (store/write.h). The exchange ends the claim if the handler did not. */
+/* Begins x->write as a claim, which reserves the mesh for a long edit that works on a copy without
+ * the mesh's lock (store/write.h). The exchange ends the claim if the handler did not. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
 /* Commits x->write. From then on the client gets at least 204, even if the answer fails
  * (api_publish). Returns false with the problem filled and nothing changed if the journal has no

@@ -113,8 +113,8 @@ static bool varies(const api_exchange *x)
            route->produces[1] != NULL && !(route->flags & API_FIXED);
 }
 
-/* Ends the claim on the mesh before the answer is sent, so that the client can write again as soon
- * as it has the answer. */
+/* Ends the claim on the mesh (store/write.h) before the answer is sent, so that the client can
+ * write to the mesh again as soon as it has the answer. */
 static void end_claim(api_exchange *x)
 {
     if (x->write.claimed) {
@@ -141,8 +141,9 @@ static st_shown shown(const api_exchange *x)
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
-    /* Failures of the server itself depend on no mesh. They wait for nothing: if they waited for a
-     * journal that cannot be written, the client would get that loss instead of this failure. */
+    /* Failures of the server itself depend on no mesh, so their answers wait for nothing: if they
+     * waited for a journal that cannot be written, the client would be told of the lost changes
+     * instead of this failure. */
     if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
         return (st_shown){.position = 0};
     }
@@ -151,8 +152,8 @@ static st_shown shown(const api_exchange *x)
         one.position = x->noted > one.position ? x->noted : one.position;
         return one;
     }
-    /* What a write has read from other meshes comes before the write in the journal, so waiting for
-     * the write's own position is enough. */
+    /* A write may have read other meshes. Their changes come before the write in the journal, so
+     * waiting for the position of the write itself is enough. */
     if (x->published != 0 && x->has_info && x->info.position != 0) {
         return (st_shown){.position = x->info.position, .since = x->since};
     }
@@ -215,7 +216,7 @@ static api_step finish(api_exchange *x)
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
-    /* This call may set x->noted, which shown() reads, so it comes first. */
+    /* api_idempotency_settle may set x->noted, which shown() reads, so it is called first. */
     api_idempotency_settle(x);
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;

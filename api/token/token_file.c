@@ -310,8 +310,8 @@ static void met_free(met *m)
     he_mem_free(m->nexts);
 }
 
-/* Returns an earlier token of the list whose member of `size` bytes at `offset` equals that of the
- * last token. If there is none, adds the last token to the table and returns NULL. */
+/* Returns an earlier token of the list that is equal to the last token in the member of `size`
+ * bytes at `offset`. If there is none, adds the last token to the table and returns NULL. */
 static const api_token *met_find(met *m, const api_token_list *list, size_t offset, size_t size)
 {
     uint32_t last = (uint32_t)list->count - 1;

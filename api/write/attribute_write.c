@@ -364,8 +364,8 @@ static void put(api_exchange *x, writing *w)
     publish(x, w, is_new ? "attribute_create" : "attribute_replace", is_new ? 201 : 200, good);
 }
 
-/* Adds a large column to a copy of the mesh, under a claim, so that the mesh is not locked while
- * the change is written to the disk. */
+/* Adds a large column to a copy of the mesh, under a claim (store/write.h): the mesh is reserved,
+ * but not locked, while the change is written to the disk. */
 static void put_claimed(api_exchange *x)
 {
     he_error err = {0};

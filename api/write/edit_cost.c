@@ -180,7 +180,8 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
 /* Vertices and faces with fewer half-edges are not kept in the cache (api_hubs). */
 enum { HUB = 256 };
 
-/* Returns what the function `steps` returns, but keeps high degrees in a cache. */
+/* Returns what the function `steps` returns, and remembers high numbers of half-edges in a
+ * cache. */
 static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most,
                           api_hubs *hubs)
 {
