@@ -16,11 +16,11 @@
  * COST is counted in steps (base/budget.h), because a question of forty bytes may concern the whole
  * mesh and a request may hold thousands. Walks and relations are charged API_HALFEDGE_STEPS for
  * each half-edge that they visit. Spatial searches are charged for each box, triangle and pair that
- * they visit, while they run. On a worker the budget is small. When it is used up, the request
- * starts again on the job pool with API_MAX_STEPS, or with the steps of one pass over the mesh if
- * those are more. A job has API_JOB_TIMES as many steps. A request that needs more is refused
- * (limit_exceeded), unless the client accepts a job. A question may take more steps than are left,
- * by at most one pass over the mesh. If such passes take longer than the client will wait
+ * they visit, while they run. On a worker thread the budget is small. When it is used up, the
+ * request starts again on the job pool with API_MAX_STEPS, or with the steps of one pass over the
+ * mesh if those are more. A job has API_JOB_TIMES as many steps. A request that needs more is
+ * refused (limit_exceeded), unless the client accepts a job. A question may take more steps than
+ * are left, by at most one pass over the mesh. If such passes take longer than the client will wait
  * (API_PATIENCE), the request starts again as a job. */
 #ifndef HE_API_ASK_QUESTION_H
 #define HE_API_ASK_QUESTION_H
@@ -109,9 +109,9 @@ bool api_asker_waits(api_asker *a, double seconds);
  * takes the steps for visited half-edges from the budget. */
 uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
-/* Ends a request that needs more steps than are left. Sets a->spent on a worker or if the client
- * accepts a job; else fills the problem with limit_exceeded. Always returns false. `in` is NULL for
- * a request without a body. */
+/* Ends a request that needs more steps than are left. Sets a->spent on a worker thread or if the
+ * client accepts a job; else fills the problem with limit_exceeded. Always returns false. `in` is
+ * NULL for a request without a body. */
 bool api_asker_exceed(api_asker *a, const api_in *in);
 /* Fills the problem from a refusal of core, with the JSON pointer of `in`. Always returns false. */
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err);

@@ -48,8 +48,8 @@ static bool is_working(const api_exchange *x)
 /* --- using and making slots --- */
 
 /* Brings the slots up to date with the revision in x->info. Returns HE_LIMIT if that takes too long
- * for a worker. Returns HE_UNSUPPORTED if the slots must be made anew, because the history does not
- * reach back or because an update would take about as long. */
+ * for a worker thread. Returns HE_UNSUPPORTED if the slots must be made anew, because the history
+ * does not reach back or because an update would take about as long. */
 static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, const he_mesh *mesh,
                                he_error *err)
 {

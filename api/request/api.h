@@ -81,7 +81,7 @@ typedef struct api_answer {
      * never blocks on a lock for long. */
     const char *bytes;
     int64_t length; /* -1: unknown, with `read` only */
-    bool slow;      /* `read` computes for milliseconds: do not call it on a worker */
+    bool slow;      /* `read` computes for milliseconds: do not call it on a worker thread */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
     /* The body if it has no known end, such as an event stream; then `bytes` and `read` are NULL.

@@ -56,8 +56,8 @@ struct api_service {
     api_decompressor_room decompressing; /* counts the memory of all decoders of request bodies */
 };
 
-/* How far an exchange is: it receives the body on a worker, works on a thread that may block, works
- * in a job, or is answered. It only moves forward. */
+/* How far an exchange is: it receives the body on a worker thread, works on a thread that may
+ * block, works in a job, or is answered. It only moves forward. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
 enum { API_LOCATION = 512 }; /* the most bytes that a percent-encoded path of this API has */
@@ -222,14 +222,14 @@ void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly
 double api_patience(const api_exchange *x);
 /* Returns true if work that takes this many seconds must become a job. */
 bool api_wants_job(const api_exchange *x, double seconds);
-/* Returns true if work on `amount` elements or bytes must move from a worker to a thread that may
- * block, because `amount` exceeds `threshold`. Returns false in api_work, which is on such a
- * thread. */
+/* Returns true if work on `amount` elements or bytes must move from a worker thread to a thread
+ * that may block, because `amount` exceeds `threshold`. Returns false in api_work, which is on such
+ * a thread. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
 /* Returns the number of all ids of vertices, half-edges and faces, including deleted elements,
  * which is the cost of work on the whole mesh. */
 uint64_t api_elements_of(const he_mesh *mesh);
-/* Returns true if work on the whole mesh must move from a worker to a thread that may block.
+/* Returns true if work on the whole mesh must move from a worker thread to a thread that may block.
  * Returns false in api_work, which is on such a thread. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 

@@ -51,14 +51,15 @@ typedef enum api_reads {
      * which is released before the handler runs and begins a write (exchange.h). */
     API_READS_BEFORE,
     API_READS_LOCKED, /* the content under the shared lock: for short work */
-    /* API_READS_LOCKED on a worker, else API_READS_SNAPSHOT, so that writers need not wait. */
+    /* API_READS_LOCKED on a worker thread, else API_READS_SNAPSHOT, so that writers need not
+     * wait. */
     API_READS_VIEW,
     API_READS_SNAPSHOT /* an immutable snapshot of the content */
 } api_reads;
 
 /* What the work of a handler costs. With more than API_COSTLY_ELEMENTS elements it moves from the
- * worker to a thread that may block. If it takes more seconds than the client will wait, it becomes
- * a job, provided that the route has API_LONG. */
+ * worker thread to a thread that may block. If it takes more seconds than the client will wait, it
+ * becomes a job, provided that the route has API_LONG. */
 typedef struct api_cost {
     uint64_t elements;
     double seconds; /* estimated duration; 0: not estimated */

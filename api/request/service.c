@@ -557,8 +557,8 @@ static bool parse_body(api_exchange *x)
     return x->has_root;
 }
 
-/* Resets a reading request that took too long for a worker, so that it starts again on a thread
- * that may block. */
+/* Resets a reading request that took too long for a worker thread, so that it starts again on a
+ * thread that may block. */
 static void begin_anew(api_exchange *x)
 {
     drop_answer(x);
@@ -619,7 +619,7 @@ static void go_on(api_exchange *x)
 }
 
 /* Loads the mesh and handles the request as if the mesh had been in memory. This thread may block,
- * so it also does the work that a worker would defer, except the work of a job. */
+ * so it also does the work that a worker thread would defer, except the work of a job. */
 static void load_and_go_on(api_exchange *x)
 {
     if (api_answer_from_card(x) || !api_load_mesh(x)) {

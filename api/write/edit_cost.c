@@ -12,7 +12,7 @@ void api_edit_cost_clear(api_edit_cost *cost)
 }
 
 /* Adds one id to the elements that an edit visits. Ids beyond API_COSTLY_ELEMENTS are not
- * collected: it is then known that the edit is too costly for a worker. */
+ * collected: it is then known that the edit is too costly for a worker thread. */
 static he_status gather(api_edit_cost *cost, const he_param *param, uint32_t id, he_error *err)
 {
     he_ids *lists = (param->flags & HE_REACHES) != 0 ? cost->reached : cost->named;

@@ -550,7 +550,7 @@ static void run_claimed(api_exchange *x)
 }
 
 /* Starts a list again that was rolled back. If it changes too many rows, it claims the mesh and
- * works on a copy; else it moves from a worker to the job pool, or from there to a job. */
+ * works on a copy; else it moves from a worker thread to the job pool, or from there to a job. */
 static void go_on_elsewhere(api_exchange *x, edits *e)
 {
     bool on_worker = x->phase == API_PHASE_BODY;

@@ -9,7 +9,7 @@
 enum {
     /* How many threads the pool has beside those for jobs, so that short tasks find one. */
     SHORT_THREADS = 2,
-    /* Most pieces of answers that may wait for a thread; workers make further pieces. */
+    /* Most pieces of answers that may wait for a thread; worker threads make further pieces. */
     MAKER_QUEUE = 1024
 };
 

@@ -67,8 +67,8 @@ static void tell_systemd(const srv_parts *parts)
     srv_notify(text);
 }
 
-/* Notifies systemd's watchdog twice within its timeout, if a worker still answers requests; *fed is
- * the time when a worker was last asked. */
+/* Notifies systemd's watchdog twice within its timeout, if a worker thread still answers requests;
+ * *fed is the time when a worker was last asked. */
 static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 {
     const uint64_t patience = srv_notify_watchdog();

@@ -176,8 +176,8 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
          * requests are found before by http_syntax.h. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
-        /* libmicrohttpd divides this limit by the number of workers, but one worker may get all
-         * connections, so the limit is multiplied by that number. */
+        /* libmicrohttpd divides this limit by the number of worker threads, but one worker may get
+         * all connections, so the limit is multiplied by that number. */
         {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
         {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
         {MHD_OPTION_LISTEN_BACKLOG_SIZE, SRV_BACKLOG, NULL},
@@ -226,8 +226,8 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     api_set_connection_limit(http->options.deadlines.metrics, options->deadlines.max_connections);
     http->deadlines = srv_deadlines_new(&http->options.deadlines);
     http->streams = srv_streams_new(options->heartbeat_micros);
-    /* Each worker may have a buffer for one more connection, which is not counted yet or is not
-     * counted any more. */
+    /* Each worker thread may have a buffer for one more connection, which is not counted yet or is
+     * not counted any more. */
     const size_t most = options->max_sockets + options->workers;
     const bool counts = options->address_connections != 0;
     http->peers = counts ? srv_peers_new(most) : NULL;
@@ -272,7 +272,7 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     }
     /* From now on accept_policy refuses all new connections. MHD_quiesce_daemon cannot be used to
      * stop accepting: it removes the listening socket from the workers' epoll sets while the
-     * workers may do that, too, and the library aborts if both try. */
+     * worker threads may do that, too, and the library aborts if both try. */
     atomic_store(&http->stopping, true);
     st_waits_stop(st_store_waits(http->options.store));
     srv_streams_stop(http->streams);

@@ -189,9 +189,9 @@ static bool is_streamed(const srv_request *r)
 }
 
 /* Decides whether other threads make the pieces of an answer. Making a piece takes up to a
- * millisecond. If there are only a few downloads, the worker makes the pieces itself, which is
- * faster than passing them through the pool; a thousand downloads would keep it from other work for
- * a second. */
+ * millisecond. If there are only a few downloads, the worker thread makes the pieces itself, which
+ * is faster than passing them through the pool; a thousand downloads would keep it from other work
+ * for a second. */
 static bool is_made_ahead(srv_request *r)
 {
     size_t others = atomic_fetch_add(&r->http->downloads, 1);

@@ -34,10 +34,10 @@
  * In the stages HEAD and BODY a connection is also closed if the client has closed its side, so
  * that the request can never become complete.
  *
- * Closing a connection costs the workers time, because they clean up. If a thousand slow clients
- * connected at the same time, other clients must not be delayed when they are closed: so at most
- * SRV_CLOSES connections are closed at once, and the next ones a hundredth of a second later. The
- * lock of the list of connections is held for at most SRV_CLOSES closes or SRV_LOOKS checks.
+ * Closing a connection costs the worker threads time, because they clean up. If a thousand slow
+ * clients connected at the same time, other clients must not be delayed when they are closed: so at
+ * most SRV_CLOSES connections are closed at once, and the next ones a hundredth of a second later.
+ * The lock of the list of connections is held for at most SRV_CLOSES closes or SRV_LOOKS checks.
  *
  * The module also drains connections that were answered before their body was read: closing a
  * socket with unread data resets it, and a reset can discard the answer before the client has read
@@ -77,8 +77,8 @@ typedef struct srv_deadlines srv_deadlines;
 
 enum { SRV_CLOSES = 16, SRV_LOOKS = 64 };
 
-/* One open connection. The worker that serves the connection sets its stage; the thread of this
- * module reads the stage. */
+/* One open connection. The worker thread that serves the connection sets its stage; the thread of
+ * this module reads the stage. */
 typedef struct srv_connection {
     struct srv_connection *next, *previous;
     int socket;
@@ -97,7 +97,7 @@ typedef struct srv_connection {
     uint32_t of_peer;    /* the peer's entry, which srv_peers_enter returned for the connection */
     _Atomic bool beyond; /* whether the peer's address has more connections than allowed */
     uint32_t buffer;     /* number of the connection's buffer in http_buffer.h */
-    /* The members from here on are used only by the worker that serves the connection. */
+    /* The members from here on are used only by the worker thread that serves the connection. */
     srv_syntax syntax;
     uint64_t requests; /* number of requests of the connection that libmicrohttpd has begun */
     /* Whether the socket's send buffer has SRV_SEND_BUFFER bytes rather than

@@ -15,7 +15,8 @@ enum {
     /* Most bytes of a refused body that are skipped; if more are to come, the connection is
      * closed. */
     SWALLOW = 256 * 1024,
-    /* Microseconds that a worker spends on a read before the read moves to the pool of threads. */
+    /* Microseconds that a worker thread spends on a read before the read moves to the pool of
+     * threads. */
     WORKER_MICROS = 20000
 };
 
@@ -39,8 +40,8 @@ static bool begin_wait(srv_request *r, srv_state why)
     return allowed;
 }
 
-/* Suspends and resumes the connection, so that the worker serves its other connections before it
- * returns to this one. */
+/* Suspends and resumes the connection, so that the worker thread serves its other connections
+ * before it returns to this one. */
 static bool give_way(srv_request *r)
 {
     srv_timing_enter(&r->timing, SRV_PART_QUEUE);
@@ -96,8 +97,8 @@ static void detach(srv_request *r)
     }
 }
 
-/* Returns true if the worker may continue a request that only reads, and false if it has spent
- * WORKER_MICROS on it, because the worker's other connections are waiting. */
+/* Returns true if the worker thread may continue a request that only reads, and false if it has
+ * spent WORKER_MICROS on it, because the worker's other connections are waiting. */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -138,7 +139,7 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
-    /* The request now waits until a worker continues with it. */
+    /* The request now waits until a worker thread continues with it. */
     srv_timing_enter(&r->timing, SRV_PART_QUEUE);
     MHD_resume_connection(r->connection);
 }

@@ -1,8 +1,8 @@
 /* http_producer.h - lets other threads make the pieces of an answer that is slow to make.
  *
- * While a piece is made, the connection is suspended and the worker serves other connections; while
- * a piece is sent, no further piece is made. The threads are not those of the pool for long work,
- * because a download would have to wait behind that work.
+ * While a piece is made, the connection is suspended and the worker thread serves other
+ * connections; while a piece is sent, no further piece is made. The threads are not those of the
+ * pool for long work, because a download would have to wait behind that work.
  *
  *     srv_producer_take --- returns bytes, the end or a failure: the caller sends that
  *        ^      `------- returns SRV_PRODUCER_WAIT: the caller suspends the connection, then calls

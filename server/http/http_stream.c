@@ -252,7 +252,7 @@ int64_t srv_stream_read(srv_stream *stream, char *buffer, size_t size)
 }
 
 /* Leaves a stream to the thread of this module until there is something to send. If the source has
- * called wake while the worker read from the stream, the stream is resumed at once. */
+ * called wake while the worker thread read from the stream, the stream is resumed at once. */
 void srv_stream_aside(srv_stream *stream)
 {
     srv_streams *streams = stream->streams;

@@ -88,10 +88,10 @@ static void write_dropped(srv_log *log, uint64_t dropped)
     write_all(log, line, (size_t)length);
 }
 
-/* Waits until there are entries in the ring. Because waking the log's thread takes a worker longer
- * than adding a record, the thread is woken by the first record and then waits for more records
- * before it writes them. The caller holds the lock. Returns false when everything is written and
- * the log ends. */
+/* Waits until there are entries in the ring. Because waking the log's thread takes a worker thread
+ * longer than adding a record, the thread is woken by the first record and then waits for more
+ * records before it writes them. The caller holds the lock. Returns false when everything is
+ * written and the log ends. */
 static bool wait_for_entries(srv_log *log)
 {
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
