@@ -60,7 +60,8 @@ static void stay_open(void *self)
     (void)self;
 }
 
-/* Prints the damage of a mesh, and passes what is left of it to `each`. */
+/* Prints the damage of a mesh, and passes the undamaged state that is left of the mesh to
+ * `each`. */
 static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage, visit *each,
                           void *context)
 {
@@ -158,9 +159,9 @@ static void say_fault(void *context, const char *what)
     printf("%s: DAMAGED: %s\n", path, what);
 }
 
-/* Opens a store, passes each of its meshes to `each`, and prints how many succeeded; `done` is the
- * word for that. A damaged file is read as far as possible. Returns the exit status of the
- * process. */
+/* Opens a store, passes each of its meshes to `each`, and prints for how many that succeeded;
+ * `done` is the word for success, such as "written". A damaged file is read as far as possible.
+ * Returns the exit status of the process. */
 static int look(const char *path, visit *each, void *context, const char *done)
 {
     st_sqlite_opened out;

@@ -7,9 +7,11 @@
 #include "server/version.h"
 
 enum {
-    /* How many threads the pool has beside those for jobs, so that short tasks find one. */
+    /* How many threads the pool has in addition to those for jobs, so that a short task always
+     * finds a thread. */
     SHORT_THREADS = 2,
-    /* Most pieces of answers that may wait for a thread; worker threads make further pieces. */
+    /* The largest number of pieces of answers that may wait for a thread; further pieces are made
+     * by the worker threads themselves. */
     MAKER_QUEUE = 1024
 };
 

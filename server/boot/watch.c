@@ -16,8 +16,8 @@ static uint64_t processor_micros(void)
 }
 
 /* Logs that the disk is full, that it has space again, or that it failed. If the disk was full for
- * a while between two checks, that is logged, too; if it was full at both checks, it is not logged
- * that it had space between them. */
+ * a while between two checks, that is logged, too. If it was full at both checks, but had space
+ * between them, that is not logged. */
 static void tell_health(srv_log *log, const st_health *before, const st_health *now,
                         const char *folder)
 {

@@ -95,8 +95,9 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         }
         api_count(api_metrics_of(http->options.service), API_COUNT_OPENED);
         if (c == NULL || !srv_recv_watch(c)) {
-            /* The bytes of this connection could not be checked (http_recv.h), so it is not served:
-             * its socket is shut down, and libmicrohttpd sees the end of the stream at once. */
+            /* The bytes of this connection cannot be checked (http_recv.h), so the connection is
+             * not served: its socket is shut down, and libmicrohttpd sees the end of the stream at
+             * once. */
             shutdown(fd, SHUT_RDWR);
         }
     } else {

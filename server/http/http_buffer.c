@@ -22,7 +22,7 @@ enum {
     LOOK_MILLIS = 500,
     AT_ONCE = 32, /* most buffers whose pages are returned in one check */
     KEPT = 64,    /* number of free buffers that keep their pages for the next connections */
-    LANES = 64    /* largest number of worker threads that --workers allows */
+    LANES = 64    /* the largest number of worker threads that --workers allows */
 };
 
 /* The states of a buffer. FREE: it belongs to no connection. USED: its connection has a request.
@@ -297,8 +297,8 @@ typedef int (*unmap_function)(void *, size_t);
  * yet, so that they must not be instrumented. */
 #define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
 
-/* Returns the function of this name that this program's definition hides: the C library's, or a
- * sanitizer's if there is one. *kept remembers it. */
+/* Returns the function that a function with this name in this program hides: the function of the C
+ * library or, if there is one, of a sanitizer. *kept remembers the result. */
 static void *next_definition(_Atomic(void *) *kept, const char *name)
 {
     void *found = atomic_load_explicit(kept, memory_order_acquire);

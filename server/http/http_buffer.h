@@ -39,7 +39,7 @@ enum { SRV_NO_BUFFER = UINT32_MAX };
 bool srv_buffers_reserve(size_t most);
 
 /* Returns the number of the buffer that this thread took last, or SRV_NO_BUFFER if it took none
- * since the last call. It belongs to the connection that libmicrohttpd reports next. */
+ * since the last call. The buffer belongs to the connection that libmicrohttpd reports next. */
 uint32_t srv_buffer_taken(void);
 
 /* Say that the connection of a buffer has become idle at `now`, in microseconds of the monotonic

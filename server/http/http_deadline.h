@@ -103,21 +103,29 @@ typedef struct srv_connection {
     /* Whether the socket's send buffer has SRV_SEND_BUFFER bytes rather than
      * SRV_FIRST_SEND_BUFFER. */
     bool widened;
-    /* Whether the kernel reports with each read if there is more to read: http_recv.h. */
+    /* Whether the kernel reports with each read whether there is more to read: http_recv.h. */
     bool tells_end;
     bool may_have_ended; /* the client's stream may have ended after the bytes of the last read */
-    bool counts_sent;    /* `sent` is used, because a Unix socket does not report bytes sent */
-    /* Number of bytes sent, if they are counted; the checking thread reads it, too. */
+    /* `sent` is counted, because the connection is a Unix socket, for which the kernel does not
+     * report how many bytes were sent. */
+    bool counts_sent;
+    /* Number of bytes that were sent, if they are counted. The thread that checks connections reads
+     * it, too. */
     _Atomic uint64_t sent;
     /* The members from here on are used only by the thread that checks connections, except
      * `peer`. */
     /* Number of bytes that the client had received at the last check. */
     uint64_t acked;
-    uint64_t window, window_acked; /* time and `acked` when measuring the rate began; 0: not yet */
-    uint64_t taken;  /* `since` of an IDLE stage in which all of the answer was read; 0: none */
-    uint64_t kept;   /* number of the answer's bytes in the kernel's buffer at the last check */
-    bool late;       /* whether the connection was counted as closed for being too slow */
-    uint64_t closed; /* `since` of the stage in which the client closed its side; 0: none */
+    /* The time, and the value of `acked`, when the present measurement of the rate began; 0: no
+     * measurement. */
+    uint64_t window, window_acked;
+    /* The value of `since` for an IDLE stage in which the client has read all of the last answer;
+     * 0: none. */
+    uint64_t taken;
+    uint64_t kept; /* number of the answer's bytes in the kernel's buffer at the last check */
+    bool late;     /* whether the connection was counted as closed for being too slow */
+    /* The value of `since` for the stage in which the client closed its side; 0: it has not. */
+    uint64_t closed;
     uint64_t closed_bytes;       /* `bytes` when `closed` was set */
     char peer[SRV_ADDRESS_TEXT]; /* the peer's address, without a port */
 } srv_connection;

@@ -168,7 +168,8 @@ static bool begin_work(srv_request *r)
 /* --- reading --- */
 
 /* Returns true if the request is malformed (http_syntax.h), and fills `problem`, which may be NULL.
- * libmicrohttpd has then parsed an ending of the request that the client did not send. */
+ * In that case libmicrohttpd has parsed an end of the request that the client did not send (rule S3
+ * of http_syntax.h). */
 static bool is_faulty(const srv_request *r, api_problem *problem)
 {
     return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);

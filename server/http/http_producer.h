@@ -29,7 +29,7 @@ typedef struct srv_producer {
     /* The last piece; NULL if memory was out: then srv_producer_take calls `read` itself. */
     char *piece;
     size_t from, to;
-    int64_t last; /* the last result of `read`, the answer's source: 0 or -1 at the end */
+    int64_t last; /* the last result of the function `read` of the answer; 0 or -1 at the end */
     bool begun;
 } srv_producer;
 

@@ -66,7 +66,7 @@ static void ready_due(srv_streams *streams)
 }
 
 /* Marks the streams whose clients have closed their side. The caller holds the lock, under which a
- * stream is also removed from the epoll set; so the streams that epoll reports still exist. */
+ * stream is also removed from the epoll set; so every stream that epoll reports still exists. */
 static void ready_gone(srv_streams *streams)
 {
     struct epoll_event events[GONE_AT_ONCE];

@@ -21,7 +21,7 @@ enum {
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,
     MOST_ENTRIES = 8192,
-    RING_SHARE = 64 /* the ring takes the memory budget divided by this */
+    RING_SHARE = 64 /* the ring may take a part of the memory budget: the budget divided by this */
 };
 
 /* One entry of the ring: a line of the daemon itself, or the record of a request. */
