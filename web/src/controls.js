@@ -2,7 +2,7 @@
 //
 //   node      the element for the form
 //   main      the element that its label belongs to, and that gets the focus first
-//   isSaid    whether the control has a value
+//   isSaid    whether the user has given a value
 //   clear()   removes the value
 //   read()    returns the value, undefined if there is none; throws a Problem for a mistake
 //
@@ -286,9 +286,10 @@ export class Vector {
     }
 }
 
-// A control with simple fields and, for values that those cannot express, a text area; a button
-// switches between the two. `easy` is the control with the fields, `write()` returns its value as
-// text, and `parse(text)` returns the value that a text means.
+// A control that consists of another control with simple fields and, for values that these fields
+// cannot express, of a text area; a button switches between the two. `easy` is the control with the
+// fields, `write()` returns the value of the fields as text, and `parse(text)` returns the value
+// that a text means.
 export class WithText {
     node;
     #easy;
@@ -298,7 +299,8 @@ export class WithText {
     #write;
     #labels;
 
-    // `labels` are the two labels of the button: while fields are shown, while the text is shown.
+    // `labels` are the two labels of the button: the first is shown while the fields are shown, the
+    // second while the text area is shown.
     constructor(easy, { name, placeholder, write, parse, labels }) {
         [this.#easy, this.#parse, this.#write, this.#labels] = [easy, parse, write, labels];
         this.#text = make('textarea', {

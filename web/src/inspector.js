@@ -25,7 +25,7 @@ const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'F
 // If a member has more ids than this, the further ids are shown after a click on a button.
 const MOST = 16;
 
-// The number of digits of a measure, few enough for three measures to fit into a line.
+// The number of digits with which a measure is shown: so few that three measures fit into a line.
 const DIGITS = 5;
 
 export class Inspector {

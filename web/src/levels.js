@@ -229,7 +229,8 @@ export class Levels {
     }
 }
 
-// Records which blocks of an array are outdated in graphics memory, among those that are shown.
+// Records which blocks of texels of an array have changed since they were uploaded to graphics
+// memory, among those that are shown.
 class Changes {
     #blocks;
     #shown = 0; // number of texels shown at the last call of take(); later ones may be outdated

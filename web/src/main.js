@@ -236,8 +236,8 @@ function showWhatMayBeDone() {
     history.setEnabled(ready);
 }
 
-// Ends the showing of levels of detail. Called when another mesh or revision is shown, to which
-// these levels do not belong.
+// Ends the showing of levels of detail. It is called when another mesh or revision is shown, to
+// which the levels do not belong.
 function endLevels() {
     refining.end();
     if (session.loading === null) {

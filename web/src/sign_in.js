@@ -19,8 +19,8 @@ export class SignIn {
         this.onChange = onChange;
     }
 
-    // Asks the server what the present token allows. If the server requires a token and has none
-    // that is valid, the user is asked for one.
+    // Asks the server what the token of this page allows. If the server requires a token and the
+    // page has no valid one, the user is asked for one.
     async start() {
         const { name, role, prefixes } = await api.getToken();
         this.mayEdit = role !== 'read';

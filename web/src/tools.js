@@ -17,7 +17,7 @@ import {
     readField,
 } from './fields.js';
 
-// By kind of element: the function that returns the ids of those elements of this kind to which a
+// The function, by kind of element, that returns the ids of those elements of this kind to which a
 // selected element of another kind refers.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
@@ -178,7 +178,8 @@ export class Tools {
             );
     }
 
-    // Marks the field that the pointer of a problem refers to as wrong; '' marks none.
+    // Marks the field to which the pointer of a problem refers as wrong; if the pointer is '', no
+    // field is marked.
     mark(pointer) {
         for (const field of this.#fields.values()) {
             const isWrong = isAbout(field, pointer);
@@ -291,8 +292,8 @@ export class Tools {
         return isOther ? [make('p', { className: 'or' }, 'or'), field.row] : [field.row];
     }
 
-    // Returns an element with a control and a button after which a click in the view fills the
-    // control.
+    // Returns an element with a control and a button: after a click on the button, a click in the
+    // view fills the control.
     #pickable(param, control) {
         const armed = { param, control };
         armed.button = make(
