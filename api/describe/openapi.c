@@ -134,8 +134,8 @@ static void write_files_schema(api_out *out)
     api_out_raw(out, schema, sizeof schema - 1);
 }
 
-/* Writes the schema of a glTF document, with the members that the reader requires. If it allowed
- * any object, generated client code would accept any object as a mesh document, too. */
+/* Writes the schema of a glTF document, with the members that the reader requires. If the schema
+ * allowed any object, generated client code would accept any object as a mesh document, too. */
 static void write_gltf_schema(api_out *out)
 {
     static const char schema[] =

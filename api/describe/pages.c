@@ -143,8 +143,8 @@ void api_problem_get(api_exchange *x)
     api_answer_text(x, 200, "text/html; charset=utf-8");
 }
 
-/* Answers with the document that is kept in `place`. The first request for the document makes it
- * with the function `write`. */
+/* Answers with the document that is kept in `place`. If no request has needed the document before,
+ * it is made with the function `write`. */
 static void answer_document(api_exchange *x, _Atomic(api_kept *) *place,
                             void (*write)(api_out *out, const api_options *options))
 {

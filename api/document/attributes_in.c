@@ -18,7 +18,8 @@ enum {
     IN_ROW
 };
 
-/* One attribute that was read: a column that has no rows yet, and the values for its rows. */
+/* One attribute that was read: a column whose rows are not filled yet, and the values for these
+ * rows. */
 typedef struct item {
     he_column *column;
     unsigned char *values;
@@ -34,7 +35,7 @@ struct api_attributes_in {
     /* --- members about the attribute that is being read --- */
     api_members head; /* the text of all members but "values" */
     bool has_values;
-    /* has_words: true or false is among the values. has_numbers: a number is among them. */
+    /* has_words: the values include true or false. has_numbers: the values include a number. */
     bool has_words, has_numbers;
     double *numbers;
     size_t number_count, number_capacity;
@@ -242,8 +243,9 @@ static bool read_head(api_attributes_in *in, const api_in *root, item *out)
     return api_read_column(root, (he_kind)domain, name, &out->column);
 }
 
-/* Puts the path of the attribute before the pointer of a refusal. The members other than "values"
- * are parsed as a separate document, so pointers into them begin at the attribute's object. */
+/* Puts the JSON pointer of the attribute before the JSON pointer of a refusal. The members other
+ * than "values" are parsed as a separate document, so pointers into them begin at the attribute's
+ * object. */
 static void prefix_pointer(api_attributes_in *in)
 {
     char inner[API_PROBLEM_POINTER];

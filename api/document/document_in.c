@@ -131,7 +131,8 @@ static bool refuse_fault(api_document_in *in)
     if (x->fault == HE_FAULT_ITEM) {
         x->frames[x->depth - 1].index++; /* the fault is in the place of the next vertex or face */
     }
-    /* A bad number is refused at the byte where it ends, as numbers with a bad value are. */
+    /* A malformed number is refused at the byte where it ends, like a number whose value is not
+     * allowed. */
     bool number = x->fault == HE_FAULT_NUMBER || x->fault == HE_FAULT_NOT_FINITE;
     api_json_refuse_fault(x, number ? he_lexer_place(x) : x->fault_place, in->problem);
     bool list = in->member == VERTICES || in->member == FACES;
@@ -315,8 +316,8 @@ static bool open_member(api_document_in *in)
 
 /* --- handling tokens --- */
 
-/* Refuses the value that the lexer reads next if it may not stand there. Sets `*taken` if the value
- * was read at once. */
+/* Refuses the value that the lexer reads next if such a value may not stand there. Sets `*taken` if
+ * the value was read at once. */
 static bool expect(api_document_in *in, bool *taken)
 {
     switch (in->member) {
@@ -353,8 +354,8 @@ static bool take(api_document_in *in, he_token token)
     return true;
 }
 
-/* Handles one token, or several vertices or faces at once; `*cut` is set when the piece has been
- * read to its end. */
+/* Handles one token, or several vertices or faces at once. Sets `*cut` when the piece has been read
+ * to its end. */
 static bool step(api_document_in *in, bool *cut)
 {
     bool taken = false, done;

@@ -200,8 +200,9 @@ static uint64_t count_places(const api_document_out *out, he_kind domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* Returns the row, in the column of an attribute, of the element that is number i of its kind in
- * the document; HE_NONE if it is deleted. Deleted vertices and faces keep their numbers. */
+/* Returns the row in an attribute's column that holds the value of element number `i` of the
+ * document; HE_NONE if that element is deleted. Vertices and faces are counted with the deleted
+ * ones. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {

@@ -12,7 +12,8 @@
 
 /* The members gathered so far. The caller initializes `what`, `most` and `values_most`. */
 typedef struct api_members {
-    const char *what; /* names the members when they are refused, such as "materials" */
+    /* What the members are called in the message of a refusal, such as "materials". */
+    const char *what;
     size_t most, values_most;
 
     api_text text;

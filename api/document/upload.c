@@ -38,7 +38,7 @@ typedef struct upload {
     api_document_in *document;
     he_reader *reader;
     const he_format *format; /* the format that `reader` reads */
-    api_parts *parts;        /* reads a multipart body; NULL for another body */
+    api_parts *parts;        /* reads a multipart body; NULL if the body is not multipart */
     char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
@@ -155,7 +155,8 @@ static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
     return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
 }
 
-/* Chooses a reader by the first bytes of the body, which have arrived, and passes them to it. */
+/* Chooses a reader by the first bytes of the body, which have arrived, and passes these bytes to
+ * the reader. */
 static bool choose(api_exchange *x, upload *u)
 {
     size_t blank = 0;
@@ -229,8 +230,8 @@ static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t len
     return false;
 }
 
-/* Ends a multipart body: reads the mesh file if only now it is known which file that is, and passes
- * the other files to the reader. */
+/* Ends a multipart body. If it is known only now which file is the mesh file, reads that file.
+ * Passes the other files to the reader. */
 static bool end_parts(api_exchange *x, upload *u)
 {
     api_parts_piece late;

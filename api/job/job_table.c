@@ -365,7 +365,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    /* `about` is read without the lock: it is released only when the job ends. */
+    /* `about` is read without the lock, because it is released only when the job ends. */
     tell_listeners(j->about, &facts);
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);

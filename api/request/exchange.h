@@ -77,7 +77,7 @@ struct api_exchange {
     uint32_t id;  /* {id} in the path */
     const char *code;      /* {code} in the path */
     const char *attribute; /* {name} in the path */
-    const char *job_id;    /* {job} in the path, which may be any text */
+    const char *job_id;    /* the text that stands for {job} in the path; it was not checked */
     /* The client's token, with a reference held; NULL: the route is open, or the server has no
      * tokens. */
     api_token *token;

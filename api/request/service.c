@@ -135,7 +135,8 @@ static void end_given_up(api_exchange *x)
 }
 
 /* Returns what must be durable before the answer is sent. An answer that is not about one mesh
- * alone may show whether other meshes exist, and so may a refusal. */
+ * alone, and also a refusal, may show whether other meshes exist; so it waits for the changes of
+ * all meshes. */
 static st_shown shown(const api_exchange *x)
 {
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {

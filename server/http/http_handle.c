@@ -226,9 +226,10 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
     return srv_admit(http->options.policy, head, framing, &r->client, &r->refusal);
 }
 
-/* Begins the exchange of a request. The exchange borrows the values of headers from libmicrohttpd,
- * which keeps them until the request has completed, or from r->joined. By then the exchange has
- * been freed, or has become a job with copies of the values. */
+/* Begins the exchange of a request. The exchange borrows the values of the headers: from
+ * libmicrohttpd, which keeps them until the request has completed, or from r->joined, which has the
+ * headers that were joined from several lines. By then the exchange has been freed, or has become a
+ * job with copies of the values. */
 static void begin_exchange(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     api_request asked = {

@@ -49,8 +49,8 @@ void srv_streams_free(srv_streams *streams);
  * the client closes its side, or -1. */
 void srv_stream_begin(srv_streams *streams, srv_stream *stream, const api_source *source,
                       int socket, void (*resume)(srv_stream *stream));
-/* Ends a stream, before its storage and its socket are freed; it must not be aside. Does nothing if
- * the stream was not begun. */
+/* Ends a stream, before its storage and its socket are freed. The stream must not be in the hands
+ * of this module's thread (srv_stream_aside). Does nothing if the stream was not begun. */
 void srv_stream_end(srv_stream *stream);
 /* Reads bytes to send, like the member `read` of api_source; returns -1 also if the client has
  * closed its side. After API_READ_WAIT the caller must suspend the connection, call

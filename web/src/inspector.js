@@ -3,7 +3,7 @@
 
 import { formatMeasure, make } from './dom.js';
 
-// The members of an element whose values are ids of elements, and the kind of those elements.
+// The members of an element that are ids of other elements, and the kind of these other elements.
 const LINKS = {
     vertex: 'vertex',
     vertices: 'vertex',
@@ -49,8 +49,8 @@ export class Inspector {
         this.#heirOf = heirOf;
     }
 
-    // Shows the element that was selected last, its neighbours, and selected elements that were
-    // deleted meanwhile, see selection.js.
+    // Shows the element that was selected last, its neighbours, and the selected elements that
+    // other edits have deleted, see selection.js.
     show({ chosen: selection, around, gone }) {
         const last = selection.at(-1);
         this.#gone.hidden = gone.length === 0;

@@ -42,7 +42,8 @@ export class Live {
         this.#on = on;
     }
 
-    // Opens the stream. The promise resolves when it is open, if opening fails, or after PATIENCE.
+    // Opens the stream. The promise resolves when the stream is open, when opening it fails, or
+    // after PATIENCE milliseconds.
     open() {
         return new Promise((resolve) => {
             const timer = setTimeout(() => {

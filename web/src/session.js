@@ -122,8 +122,8 @@ export class Session {
         return followed;
     }
 
-    // If events may have been missed, fetches what they would have reported. While the mesh is
-    // still being opened, does nothing: open() calls this again at its end.
+    // If events may have been missed, fetches the changes that these events would have reported.
+    // While the mesh is still being opened, does nothing: open() calls this again at its end.
     #catchUp(followed) {
         if (followed.hasMissed && followed === this.#followed) {
             followed.hasMissed = false;

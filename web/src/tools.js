@@ -80,7 +80,8 @@ export class Tools {
     }
 
     // Fills the form with the selected elements, {kind, id, element} each, in the order of
-    // selection. If these are the elements of the last call, text that the user has typed stays.
+    // selection. If the last call had the same elements, the text that the user has typed into the
+    // form stays.
     setSelection(selection) {
         const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
@@ -258,8 +259,8 @@ export class Tools {
         this.#touch();
     }
 
-    // Returns the rows of a parameter in the form; `isOther`: the parameter is an alternative to
-    // one before it.
+    // Returns the rows of a parameter in the form; `isOther` says that the parameter is an
+    // alternative to the parameter before it.
     #rows(param, isOther) {
         const { name, doc } = param;
         const id = `param-${name}`;
