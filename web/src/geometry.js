@@ -207,8 +207,8 @@ function setFirst(geometry, face, triangle) {
     }
     const isOf = (at) => at >= 0 && faceOf(triangles, at) === face && isLive(triangles, at);
     let first = geometry.firstOf[face] - 1;
-    // The entry of firstOf is still right if the triangle that it names and the triangle just before
-    // `triangle` both belong to the face; otherwise the first triangle must be searched.
+    // The entry of firstOf is still right if the triangle that it names and the triangle just
+    // before `triangle` both belong to the face; otherwise the first triangle must be searched.
     if (first < 0 || first >= triangle || !isOf(first) || !isOf(triangle - 1)) {
         for (first = triangle; isOf(first - 1); first--);
     }
