@@ -69,15 +69,17 @@ enum {
 enum {
     API_DEFAULT_PAGE = 1000, /* items per page if the request does not say how many */
     API_MAX_PAGE = 10000,
-    API_MAX_PAGE_BYTES = 1 << 26, /* a page of elements ends with the item that passes this size */
-    API_MAX_OPS = 65536,          /* operations per edit list */
+    /* A page of elements ends with the item with which it becomes larger than this. */
+    API_MAX_PAGE_BYTES = 1 << 26,
+    API_MAX_OPS = 65536, /* operations per edit list */
     /* Limits of the work that the operations of one edit list may do; the operation that would
      * exceed a limit is refused. API_MAX_EDITS_ELEMENTS counts the ids that operations name, plus
      * all elements of the mesh for each operation on the whole mesh. API_MAX_EDITS_ROWS counts the
      * rows of the delta, the record of changed elements (16 bytes each). */
     API_MAX_EDITS_ELEMENTS = 1 << 26,
     API_MAX_EDITS_ROWS = 1 << 26,
-    /* How often a cached degree is used before it is counted again (edit_cost.h). */
+    /* How many times a cached degree is used before the half-edges are counted again
+     * (edit_cost.h). */
     API_HUB_USES = 256,
     API_MAX_IDS = 1 << 24,     /* ids per list, including the ids that references expand to */
     API_MAX_NAMED_MESHES = 16, /* meshes that one request may name besides its own */
@@ -158,9 +160,10 @@ enum {
      * a copy, without the mesh's lock, while other writes are refused or wait. On a smaller mesh it
      * holds the lock for a few milliseconds. */
     API_CLAIM_ELEMENTS = 200000,
-    /* A list of more operations also claims the mesh (works on a copy without the lock). A list
-     * that turns out to change more rows than API_LOCKED_ROWS is started again with a claim: the
-     * lock must not be held while a megabyte or more of its changes is encoded for the journal. */
+    /* A list of more operations than this also claims the mesh, that is, works on a copy without
+     * the lock. A list that turns out to change more rows than API_LOCKED_ROWS is started again
+     * with a claim: the lock must not be held while a megabyte or more of its changes is encoded
+     * for the journal. */
     API_CLAIM_EDITS = 4096,
     API_LOCKED_ROWS = 1 << 17,
     /* Jobs per page of the list of jobs if the request does not say how many. */

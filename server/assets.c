@@ -59,8 +59,8 @@ static const char *media_type(const char *name)
     return "application/octet-stream";
 }
 
-/* Returns true if a name ends in -HASH.suffix, as bundlers write it: eight or more letters and
- * digits, with only capitals or hexadecimal digits. */
+/* Returns true if a file name ends in -HASH.SUFFIX, as bundlers write it: the hash has eight or
+ * more letters and digits, and its letters are all capitals, or all between a and f. */
 static bool carries_hash(const char *name)
 {
     const char *dot = strchr(name, '.');

@@ -13,7 +13,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* The largest total number of times that all list options together may be given. */
+/* The largest number of values that all options of the kind list may get together. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
 /* The values of the options --log and --log-format, in the order in which the table of options

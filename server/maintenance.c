@@ -60,7 +60,8 @@ static void stay_open(void *self)
     (void)self;
 }
 
-/* Prints the damage of a mesh, and passes what is left of it to `each`. */
+/* Prints the damage of a mesh, and passes the undamaged state that is left of the mesh to
+ * `each`. */
 static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage, visit *each,
                           void *context)
 {
@@ -95,7 +96,8 @@ static bool visit_in(st_store *store, const st_card *card, visit *each, void *co
         printf("%s: WRITTEN BY A NEWER RELEASE: %s\n", card->id, damage);
     } else if (status != ST_ABSENT) {
         printf("%s: NOT READ: %s\n", card->id,
-               status == ST_FAILED ? "the disk reported an error" : "there is no memory for it");
+               status == ST_FAILED ? "a read of the disk failed"
+                                   : "not enough memory for this mesh");
     }
     st_release(mesh);
     return good;
@@ -157,9 +159,9 @@ static void say_fault(void *context, const char *what)
     printf("%s: DAMAGED: %s\n", path, what);
 }
 
-/* Opens a store, passes each of its meshes to `each`, and prints how many succeeded; `done` is the
- * word for that. A damaged file is read as far as possible. Returns the exit status of the
- * process. */
+/* Opens a store, passes each of its meshes to `each`, and prints for how many that succeeded;
+ * `done` is the word for success, such as "written". A damaged file is read as far as possible.
+ * Returns the exit status of the process. */
 static int look(const char *path, visit *each, void *context, const char *done)
 {
     st_sqlite_opened out;
@@ -176,7 +178,7 @@ static int look(const char *path, visit *each, void *context, const char *done)
     if (faults > 0 && there > reached) {
         printf(", %" PRIu64 " cannot be found", there - reached);
     }
-    printf(faults > 0 ? "; the file itself is damaged\n" : "\n");
+    printf(faults > 0 ? "; the database file itself is damaged\n" : "\n");
     if (!all) {
         return fail("not all meshes could be listed, because the list cannot be read to its end");
     }
@@ -189,7 +191,7 @@ static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *co
 {
     (void)context;
     printf("%s: %s, revision %" PRIu64 ", %u vertices, %u faces\n", info->id,
-           whole ? "whole" : "undamaged only up to here", info->revision,
+           whole ? "whole" : "only an earlier state is undamaged", info->revision,
            (unsigned)he_mesh_vertices(content), (unsigned)he_mesh_faces(content));
     return true;
 }
@@ -277,8 +279,8 @@ int srv_maintenance_run(const srv_config *config)
         return look(config->verified, say_whole, NULL, "whole");
     }
     if (folder == NULL) {
-        return fail(
-            "a store in memory keeps nothing on the disk: name a store with --store sqlite:DIR");
+        return fail("a store in memory keeps nothing on the disk: give the folder of a store with "
+                    "--store sqlite:DIR");
     }
     return config->backup != NULL    ? backup(folder, config->backup)
            : config->restore != NULL ? restore(folder, config->restore)

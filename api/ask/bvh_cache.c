@@ -2,9 +2,9 @@
 
 #include <stdatomic.h>
 
-/* An entry for a tree of boxes that is being made, is ready, or could not be made. While it is
- * being made, `bvh` and `abandoned` are not set; then one of them is set, with the lock of
- * st_derived_begin held. */
+/* The entry for the tree of boxes of a mesh, in which requests find the faces near a ray or a
+ * point. The tree is being made, is ready, or could not be made. While it is being made, `bvh` is
+ * NULL and `abandoned` is false; then one of them is set, under the lock of st_derived_begin. */
 typedef struct api_bvh {
     /* Number of users: 1 while the entry is kept with the mesh, and 1 for each request that uses
      * the tree. */
@@ -53,9 +53,10 @@ static bool must_be_made(const api_bvh *tree)
     return tree->bvh == NULL && !tree->abandoned;
 }
 
-/* Returns the entry that `place` of the mesh keeps, if it is for the revision that is asked about;
- * else a new entry for a tree that the caller must make. The caller holds the lock of `place`.
- * Returns NULL when memory is out, or if the request must start again (a->spent). */
+/* Returns the entry that is kept with the mesh in `place`, if the entry is for the revision that
+ * the request is about; otherwise a new entry for a tree that the caller must make. The caller
+ * holds the lock of `place`. Returns NULL when memory is out, or if the request must start again on
+ * another thread (then a->spent is set). */
 static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh **dropped,
                      bool *made_here)
 {
@@ -79,7 +80,8 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
     api_bvh *tree = tree_new(a);
     if (tree == NULL) {
         he_error err = {0};
-        (void)he_fail_plain(&err, HE_NO_MEMORY, "no memory for a tree of boxes");
+        (void)he_fail_plain(&err, HE_NO_MEMORY,
+                            "no memory for the search tree of the mesh's faces");
         api_asker_refuse(a, in, &err);
     } else if (kept == NULL || kept->revision < a->revision) {
         hold(tree);
@@ -90,8 +92,8 @@ static api_bvh *take(api_asker *a, const api_in *in, st_derived *place, api_bvh 
     return tree;
 }
 
-/* Returns the entry that is kept with the mesh, if it is for the revision that is asked about.
- * Otherwise returns a new entry, which replaces an entry for an earlier revision, and sets
+/* Returns the entry that is kept with the mesh, if it is for the revision that the request is
+ * about. Otherwise returns a new entry, which replaces an entry for an earlier revision, and sets
  * `*made_here`: the caller must make the tree. */
 static api_bvh *find(api_asker *a, const api_in *in, bool *made_here)
 {

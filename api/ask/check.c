@@ -15,7 +15,8 @@
 /* How many broken invariants, and how many defects of each code, the report lists; those beyond
  * this number are only counted. */
 enum { NAMED = API_PROBLEM_ELEMENTS };
-static_assert((int)NAMED == HE_DEFECTS_LISTED, "the OpenAPI document names one limit for both");
+static_assert((int)NAMED == HE_DEFECTS_LISTED,
+              "the OpenAPI document states one limit for the listed broken invariants and defects");
 
 /* The progress (0 to 1) of a check when only the search for self-intersections is left to do. */
 static const double FOUND = 0.2;
@@ -25,7 +26,7 @@ typedef struct report {
     size_t broken;
     he_thresholds thresholds;
     he_defects defects;
-    bool meets; /* the client wants self-intersections to be searched for */
+    bool meets; /* the client wants a search for faces that intersect */
     bool complete;
 } report;
 

@@ -33,7 +33,7 @@ typedef struct measure {
     const char *name;
     unsigned components;
     enum { PLAIN, WEIGHTS, CREASE } option;
-    /* Measures one element; NULL: `many` measures a single element, too. */
+    /* Measures one element; NULL: `many` is called for a single element, too. */
     he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
     /* Measures many elements. NULL: they are measured one by one. */
     he_status (*many)(const he_mesh *m, const selection *of, const options *o, double *out,
@@ -47,8 +47,8 @@ static void put(he_vec3 v, double *out)
     out[2] = v.z;
 }
 
-/* Copies the entries of live elements from `rows`, which has an entry for each id, to `out` without
- * gaps. */
+/* Copies the values of live elements from `rows`, which has a value for each id, also of a deleted
+ * element, to `out` without gaps. */
 static void compress(const he_mesh *m, he_kind kind, const he_vec3 *rows, double *out)
 {
     for (uint32_t id = 0; id < he_mesh_issued(m, kind); id++) {
@@ -188,7 +188,7 @@ static he_status dihedrals(const he_mesh *m, const selection *of, const options 
     uint32_t issued = he_mesh_issued(m, HE_EDGE);
     double *rows = he_mem_array(NULL, (size_t)issued + 1, sizeof *rows);
     if (rows == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedrals of a mesh");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedral angles of a mesh");
     }
     he_status status = he_edge_dihedrals(m, o->progress, rows, err);
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {

@@ -6,7 +6,8 @@
 
 #include <string.h>
 
-/* The cost of reading the shortest question and writing its answer, in half-edges visited. */
+/* The cost of reading the shortest question and writing its answer. The unit of costs is the visit
+ * of one half-edge. */
 enum { QUESTION_COST = 4 };
 
 enum {
@@ -26,8 +27,8 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-/* Runs the function `answer` with a budget of steps. Returns true if the request must start again
- * on another thread. */
+/* Runs the function `answer` with a budget of computing steps. Returns true if the budget is used
+ * up, so that the request must start again on another thread. */
 static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,
@@ -82,8 +83,8 @@ bool api_asker_exceed(api_asker *a, const api_in *in)
         a->x->is_job = is_job;
         return false;
     }
-    const char *limit = "\"%s\" needs more than what is left of the %llu computing steps that a %s "
-                        "may take on this mesh%s";
+    const char *limit = "\"%s\" would exceed the %llu computing steps that all questions of a %s "
+                        "together may take on this mesh%s";
     const char *what = a->x->phase == API_PHASE_JOB ? "job" : "request";
     const char *hint =
         may_be_job ? "; a job may take more: send the header Prefer: respond-async" : "";

@@ -16,11 +16,11 @@
  * COST is counted in steps (base/budget.h), because a question of forty bytes may concern the whole
  * mesh and a request may hold thousands. Walks and relations are charged API_HALFEDGE_STEPS for
  * each half-edge that they visit. Spatial searches are charged for each box, triangle and pair that
- * they visit, while they run. On a worker the budget is small. When it is used up, the request
- * starts again on the job pool with API_MAX_STEPS, or with the steps of one pass over the mesh if
- * those are more. A job has API_JOB_TIMES as many steps. A request that needs more is refused
- * (limit_exceeded), unless the client accepts a job. A question may take more steps than are left,
- * by at most one pass over the mesh. If such passes take longer than the client will wait
+ * they visit, while they run. On a worker thread the budget is small. When it is used up, the
+ * request starts again on the job pool with API_MAX_STEPS, or with the steps of one pass over the
+ * mesh if those are more. A job has API_JOB_TIMES as many steps. A request that needs more is
+ * refused (limit_exceeded), unless the client accepts a job. A question may take more steps than
+ * are left, by at most one pass over the mesh. If such passes take longer than the client will wait
  * (API_PATIENCE), the request starts again as a job. */
 #ifndef HE_API_ASK_QUESTION_H
 #define HE_API_ASK_QUESTION_H
@@ -38,24 +38,25 @@ typedef struct api_asker {
     uint64_t revision;
     api_out *out;
     api_arena *arena;
-    /* steps that are left; charging steps also polls the progress of the exchange */
+    /* the computing steps that are left; charging steps also polls the progress of the exchange */
     he_budget budget;
     const char *asked; /* name of the current question, for the message of a refusal */
-    /* The request runs on a worker: its budget is small, and a request that needs more moves to the
-     * job pool. */
+    /* The request runs on a worker thread, which must not compute for long: the budget is small,
+     * and a request that needs more moves to the job pool. */
     bool on_worker;
     bool reads_only; /* only the body is read: nothing is searched or written */
     bool spent; /* the budget is used up: the request starts again on the job pool or as a job */
-    double seconds; /* estimated duration of the work announced by api_asker_waits */
-    /* The search for intersections that gets additional steps (API_MEET_STEPS) is done. */
+    double seconds; /* estimated duration of the work announced by api_asker_waits, in seconds */
+    /* The search for intersections that gets additional steps (API_MEET_STEPS) was made; further
+     * searches of the request get none. */
     bool has_met;
     he_ids first, second;
     struct api_bvh *tree; /* the tree of boxes (bvh_cache.h); NULL until a question needs it */
 } api_asker;
 
-/* Calls the function `answer` with the mesh in x->content of the exchange. `answer` writes to
- * x->out and answers, or fills the problem, or sets `spent` of the asker; then the request starts
- * again on another thread. */
+/* Calls the function `answer`, which finds the mesh in x->content of the exchange. `answer` writes
+ * to x->out and answers; or it fills the problem; or it sets the member `spent` of the asker, and
+ * the request starts again on another thread. */
 void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 /* Checks the body before a job is made, so that a mistake is reported at once: calls the function
  * `answer` with an asker that only reads the body (`reads_only` is set) and may look up ids in the
@@ -104,13 +105,13 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
 /* Announces work on the whole mesh that takes `seconds`. Returns false, with a->spent set, if all
  * announced work takes longer than the client will wait; the request then starts again as a job. */
 bool api_asker_waits(api_asker *a, double seconds);
-/* Returns how many half-edges may still be visited. api_asker_pay charges for visited
- * half-edges. */
+/* Returns how many half-edges may still be visited with the steps that are left. api_asker_pay
+ * takes the steps for visited half-edges from the budget. */
 uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
-/* Ends a request that needs more steps than are left. Sets a->spent on a worker or if the client
- * accepts a job; else fills the problem with limit_exceeded. Always returns false. `in` is NULL for
- * a request without a body. */
+/* Ends a request that needs more steps than are left. Sets a->spent on a worker thread or if the
+ * client accepts a job; else fills the problem with limit_exceeded. Always returns false. `in` is
+ * NULL for a request without a body. */
 bool api_asker_exceed(api_asker *a, const api_in *in);
 /* Fills the problem from a refusal of core, with the JSON pointer of `in`. Always returns false. */
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err);

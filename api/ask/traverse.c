@@ -190,7 +190,7 @@ static uint64_t most_of_flood(const api_asker *a)
     return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
 }
 
-/* Walks breadth first: fills the asker's list `first` with elements and its list `second` with
+/* Walks breadth first: fills the list a->first with the ids of the elements and a->second with
  * their depths. `question` is the walk, for the JSON pointer of a refusal. */
 static bool flood(api_asker *a, const api_in *question, const he_breadth_first *asked)
 {

@@ -2,8 +2,8 @@
  *
  * The macros make rows such as list_vertices, get_vertex and list_vertex_faces. `one` and `many`
  * are the singular and plural name of the kind, `what` is the name of a relation in
- * core/query/adjacency.h. The table in routes.c includes ELEMENT_ROWS; the macros use the header
- * `next_page`, which routes.c defines. */
+ * core/query/adjacency.h. The table in routes.c includes ELEMENT_ROWS. The macros name `next_page`,
+ * the description of the response header Link, which routes.c defines. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 
@@ -42,7 +42,9 @@
         .statuses = {200, 304, 410}, .response = one "_" what, .summary = (title), .doc = (text) \
     }
 
-#define AROUND "They are listed counter-clockwise from the stored half-edge, each once."
+#define AROUND                                                                                \
+    "They are listed counter-clockwise, each once, beginning at the half-edge in the member " \
+    "`halfedge`."
 
 /* All rows about elements, in the order that they have in the table of routes. */
 #define ELEMENT_ROWS                                                                              \
@@ -60,16 +62,17 @@
                   "The vertices at the other ends of the edges of the vertex. " AROUND),          \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "outgoing", "Half-edges that leave a vertex",  \
                   "The half-edges whose origin is the vertex. " AROUND),                          \
-        ADJACENCY(                                                                                \
-            HE_VERTEX, "vertex", "vertices", "incoming", "Half-edges that arrive at a vertex",    \
-            "The half-edges whose target is the vertex, in the order of their twins. " AROUND),   \
+        ADJACENCY(HE_VERTEX, "vertex", "vertices", "incoming",                                    \
+                  "Half-edges that arrive at a vertex",                                           \
+                  "The half-edges whose target is the vertex: the twins of those that leave it, " \
+                  "in the same order. " AROUND),                                                  \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "edges", "Edges of a vertex",                  \
                   "The edges that end at the vertex. " AROUND),                                   \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "faces", "Faces around a vertex",              \
                   "The faces that have the vertex as a corner; holes are left out. " AROUND),     \
         ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "loop", "The loop of a half-edge",        \
-                  "The half-edges around its face or hole, beginning with the half-edge itself, " \
-                  "each the next of the one before."),                                            \
+                  "The half-edges around the face or hole that is on the left of the half-edge: " \
+                  "first the half-edge itself, then each `next` in turn."),                       \
         ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "ring", "The ring of a half-edge",        \
                   "The half-edges with the same origin, counter-clockwise, beginning with the "   \
                   "half-edge itself."),                                                           \

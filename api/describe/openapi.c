@@ -134,8 +134,8 @@ static void write_files_schema(api_out *out)
     api_out_raw(out, schema, sizeof schema - 1);
 }
 
-/* Writes the schema of a glTF document, with the members that the reader requires. If it allowed
- * any object, generated client code would accept any object as a mesh document, too. */
+/* Writes the schema of a glTF document, with the members that the reader requires. If the schema
+ * allowed any object, generated client code would accept any object as a mesh document, too. */
 static void write_gltf_schema(api_out *out)
 {
     static const char schema[] =
@@ -305,8 +305,9 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
                      false);
     }
     if (tagged) {
-        /* A dry run makes no state that an ETag could name, and an answer 204 without a body
-         * (api_publish) may not know the state. So such answers do not always have an ETag. */
+        /* A dry run makes no state of the mesh that an ETag could name, and an answer 204 that
+         * replaces another answer (api_publish) may be sent when the state is not known. So such
+         * answers do not always have an ETag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Identifies the state that the answer shows.", always);
     }
@@ -314,9 +315,10 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
         write_header(out, "Location", "The path of the new mesh.", true);
     }
     if (route->flags & (API_IDEMPOTENCY_KEY | API_IDEMPOTENCY_KEY_NEW)) {
-        write_header(out, "Idempotency-Replayed",
-                     "true: the answer to the first request with this Idempotency-Key is repeated.",
-                     false);
+        write_header(
+            out, "Idempotency-Replayed",
+            "true: this is the stored answer to an earlier request with this Idempotency-Key.",
+            false);
     }
     for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
         write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
@@ -335,13 +337,13 @@ static const char *const job_media[] = {"application/json", NULL};
 static void write_success(api_out *out, const api_examples *examples, const api_route *route,
                           int status)
 {
-    const char *what =
-        status == 201 ? "Created. The answer has no body and no ETag if memory ran out afterwards, "
-                        "or if it repeats an answer (Idempotency-Key) that was not kept."
-        : status == 202 ? "Not finished yet: the answer is a job."
-        : status == 204 ? "Done. The answer has no body."
-        : status == 304 ? "The client's copy is up to date."
-                        : "Success.";
+    const char *what = status == 201 ? "Created. The answer has no body and no ETag if memory ran "
+                                       "out after the mesh was created, or if the request repeats "
+                                       "an Idempotency-Key whose first answer was not kept."
+                       : status == 202 ? "Not finished yet: the answer is a job."
+                       : status == 204 ? "Done. The answer has no body."
+                       : status == 304 ? "The client's copy is up to date."
+                                       : "Success.";
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
@@ -372,14 +374,17 @@ typedef struct refusal {
 } refusal;
 
 static const refusal headed_problems[] = {
-    {401, "unauthorized", "WWW-Authenticate", "Bearer, and what is wrong with the token.", true},
+    {401, "unauthorized", "WWW-Authenticate",
+     "The scheme Bearer, with an error code if the request has an invalid token.", true},
     {403, "forbidden", "WWW-Authenticate",
-     "Bearer with the role that the request needs, if the token lacks it.", false},
+     "The scheme Bearer, with the role that the request needs, if the token does not have this "
+     "role.",
+     false},
     {405, "not_allowed", "Allow", "The methods that the path supports.", true},
     {409, "conflict", "Retry-After",
-     "Seconds after which the request may be sent again, if waiting helps.", false},
+     "The number of seconds after which the request may be sent again, if waiting helps.", false},
     {415, "unsupported", "Accept-Encoding",
-     "The supported content codings, if the one of the body is not supported.", false},
+     "The supported content codings, if the content coding of the body is not supported.", false},
     {429, "limited", "Retry-After", "Seconds.", true},
     {503, "unavailable", "Retry-After", "Seconds.", true},
 };
@@ -444,14 +449,14 @@ static void write_header_parameters(api_out *out, const api_route *route)
         write_header_parameter(out, "If-Match",
                                "The ETag of the state that the request is meant for.");
         write_header_parameter(out, "If-None-Match",
-                               "The ETag of a state in which the request must not be done, or *: "
-                               "only if there is no mesh yet.");
+                               "The ETag of a state in which the request must not be done; or *: "
+                               "the request is done only if the mesh does not exist yet.");
     }
     if (route->body_kind != API_BODY_NONE) {
         write_header_parameter(out, "Content-Encoding",
-                               "gzip, or zstd with windows up to 8 MiB, and only one of them. "
-                               "Decompressed, the body may not exceed the limit of an uncompressed "
-                               "one nor, past 1 MiB, 100 times its compressed size.");
+                               "gzip or zstd, but not both; the window of zstd may be at most 8 "
+                               "MiB. The decompressed body may not exceed the limit of an "
+                               "uncompressed body nor, past 1 MiB, 100 times its compressed size.");
     }
     if (is_stream(route)) {
         write_header_parameter(

@@ -171,8 +171,8 @@ void api_operations_write(api_out *out)
 
 /* --- schemas of operations --- */
 
-/* Members that an operation may have besides its parameters: "as" if it is in a list of operations,
- * the others if it is the only operation of a request. */
+/* Members that an operation may have besides its parameters: the first, "as", if the operation is
+ * in a list of operations, the others if it is the only operation of a request. */
 static const struct {
     const char *name, *json;
 } beside[] = {

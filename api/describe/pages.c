@@ -114,7 +114,8 @@ void api_index_get(api_exchange *x)
 void api_page_get(api_exchange *x)
 {
     const api_options *options = &x->service->options;
-    /* The raw path is looked up, without decoding, because paths of assets contain no escapes. */
+    /* The path is looked up as it was received, without decoding, because paths of assets contain
+     * no percent escapes. */
     const api_asset *asset =
         options->asset == NULL ? NULL : options->asset(options->asset_context, x->request.path);
     if (asset == NULL) {
@@ -142,8 +143,8 @@ void api_problem_get(api_exchange *x)
     api_answer_text(x, 200, "text/html; charset=utf-8");
 }
 
-/* Answers with the document that is kept in `place`. The first request for the document makes it
- * with the function `write`. */
+/* Answers with the document that is kept in `place`. If no request has needed the document before,
+ * it is made with the function `write`. */
 static void answer_document(api_exchange *x, _Atomic(api_kept *) *place,
                             void (*write)(api_out *out, const api_options *options))
 {
@@ -156,8 +157,8 @@ static void answer_document(api_exchange *x, _Atomic(api_kept *) *place,
             api_fail_memory(x);
             return;
         }
-        /* If another thread was faster, `found` now points to the document that it made, which is
-         * used. */
+        /* If another thread was faster, `found` now points to the document that the other thread
+         * made; that document is sent. */
         if (atomic_compare_exchange_strong(place, &found, made)) {
             found = made;
         } else {

@@ -14,7 +14,7 @@ static const char *const compressions[] = {"meshopt", NULL};
 static const char *const connections[] = {"vertex", "edge", NULL};
 
 const api_parameter api_parameter_limit = {
-    "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "The most items in a page."};
+    "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "The largest number of items in a page."};
 const api_parameter api_parameter_cursor = {
     "cursor", API_PARAM_TEXT, 0, API_MAX_URI, NULL, "The value of `next` in the previous page."};
 const api_parameter api_parameter_revision = {
@@ -37,13 +37,14 @@ const api_parameter api_parameter_base_faces = {
     NULL,
     "How many faces the coarsest mesh should have; it has more if it cannot be simplified that "
     "far. Default: 0."};
-const api_parameter api_parameter_most_error = {"max_error",
-                                                API_PARAM_NUMBER,
-                                                0,
-                                                DBL_MAX,
-                                                NULL,
-                                                "The largest error of the coarsest mesh, measured "
-                                                "as by the operation decimate. Default: no limit."};
+const api_parameter api_parameter_most_error = {
+    "max_error",
+    API_PARAM_NUMBER,
+    0,
+    DBL_MAX,
+    NULL,
+    "The largest error of the coarsest mesh, measured as the operation decimate measures it. "
+    "Default: no limit."};
 const api_parameter api_parameter_boundary_weight = {
     "boundary_weight",
     API_PARAM_NUMBER,
@@ -52,14 +53,17 @@ const api_parameter api_parameter_boundary_weight = {
     NULL,
     "Weight of boundary and feature edges relative to faces, as in the operation decimate."};
 const api_parameter api_parameter_most_splits = {
-    "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "The most vertex splits to send."};
+    "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "The largest number of vertex splits to send."};
 const api_parameter api_parameter_layout = {
     "layout",      API_PARAM_U64, 1,
     API_MAX_EXACT, NULL,          "The layout of the arrays that the client has."};
-const api_parameter api_parameter_turning = {
-    "cw", API_PARAM_FLAG,
-    0,    0,
-    NULL, "true: clockwise. The first element stays first, the others come in reverse order."};
+const api_parameter api_parameter_turning = {"cw",
+                                             API_PARAM_FLAG,
+                                             0,
+                                             0,
+                                             NULL,
+                                             "true: list the elements clockwise. The first element "
+                                             "stays first, the others are in reverse order."};
 const api_parameter api_parameter_last_seen = {
     "since", API_PARAM_TEXT, 0,
     64,      NULL,           "Begin after this event (its id) or after this revision."};
@@ -107,8 +111,12 @@ const api_parameter api_parameter_tolerance = {
     0,           DBL_MAX,
     NULL,        "The largest distance between vertices that weld merges. Default: 0."};
 const api_parameter api_parameter_hole_edges = {
-    "hole_edges",  API_PARAM_U64, 3,
-    API_MAX_EXACT, NULL,          "The most edges of a hole that fill closes. Default: 16."};
+    "hole_edges",
+    API_PARAM_U64,
+    3,
+    API_MAX_EXACT,
+    NULL,
+    "The largest number of edges of a hole that fill closes. Default: 16."};
 const api_parameter api_parameter_identity = {
     "id",        API_PARAM_TEXT, 0,
     API_MAX_URI, NULL,           "The id for the new mesh. Default: the server chooses one."};
@@ -137,9 +145,9 @@ const api_parameter api_parameter_merge = {
     0,
     DBL_MAX,
     NULL,
-    "Vertices no farther apart than this count as in the same place, edges no longer as without "
-    "length, faces no wider as without area. Default: 1e-9 of the diagonal of the bounding box of "
-    "the edges."};
+    "Vertices no farther apart than this count as being in the same place, edges no longer than "
+    "this as having no length, and faces no wider than this as having no area. Default: 1e-9 of "
+    "the diagonal of the bounding box of the edges."};
 const api_parameter api_parameter_flat = {
     "flat",
     API_PARAM_NUMBER,
@@ -154,16 +162,16 @@ const api_parameter api_parameter_small = {
     0,
     DBL_MAX,
     NULL,
-    "Components whose bounding box has no longer diagonal than this count as small. Default: 1e-2 "
-    "of the diagonal of the bounding box of the edges."};
+    "Components count as small if the diagonal of their bounding box is at most this long. "
+    "Default: 1e-2 of the diagonal of the bounding box of the edges."};
 const api_parameter api_parameter_dry_run = {
     "dry_run",
     API_PARAM_FLAG,
     0,
     0,
     NULL,
-    "true: change nothing, and answer as if the change had been made. If the body is JSON, dry_run "
-    "is a member of it."};
+    "true: change nothing, and answer as if the change had been made. In a JSON body, use the "
+    "member dry_run instead of this parameter."};
 const api_parameter api_parameter_rule = {
     "rule",
     API_PARAM_CHOICE,

@@ -13,8 +13,8 @@ static const api_told_header next_page = {"Link", "A link to the next page, if t
 static const api_told_header disposition = {"Content-Disposition", "A name for the file."};
 static const api_told_header ranges = {
     "Accept-Ranges", "`none`: Range is ignored, because a file is generated while it is sent."};
-static const api_told_header warnings = {"Export-Warnings",
-                                         "What the file lacks, because its format cannot hold it."};
+static const api_told_header warnings = {
+    "Export-Warnings", "What is missing in the file because its format cannot hold it."};
 
 /* --- the table of routes --- */
 
@@ -231,10 +231,10 @@ static const api_route routes[] = {
      .statuses = {200, 304, 410},
      .response = "material_list",
      .summary = "List the materials",
-     .doc = "A face names its material in the attribute `material`; the label \"\" is none. The "
-            "operations `material_set` and `material_delete` change materials. Colours are linear, "
-            "as in glTF; those of an OBJ file's library are taken and written as linear too, as "
-            "Blender does."},
+     .doc = "A face names its material in the attribute `material`; the label \"\" means that it "
+            "has none. The operations `material_set` and `material_delete` change materials. "
+            "Colours are linear, as in glTF. The colours in the material library of an OBJ file "
+            "are read and written as linear values, too, as Blender does."},
 
     /* attributes */
     {.method = "GET",
@@ -290,8 +290,8 @@ static const api_route routes[] = {
      .summary = "Create an attribute, or replace it",
      .doc = "Writes the whole attribute: values for all elements, one value for all, or the "
             "default. As application/octet-stream: values as GET gives them, described by the "
-            "query parameters; the values of deleted elements are ignored. One revision, which can "
-            "be undone."},
+            "query parameters; the values of deleted elements are ignored. The change is one "
+            "revision, which can be undone."},
     {.method = "PATCH",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "update_attribute",
@@ -307,8 +307,8 @@ static const api_route routes[] = {
      .request = "attribute_patch",
      .response = "attribute_written",
      .summary = "Write values by ids",
-     .doc = "A value for each id, or one for all. One revision, which can be undone; no revision "
-            "if nothing changes."},
+     .doc = "Writes a value for each id, or one value for all ids. The change is one revision, "
+            "which can be undone; there is no new revision if no value changes."},
     {.method = "DELETE",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "delete_attribute",
@@ -436,8 +436,8 @@ static const api_route routes[] = {
      .request = "edit",
      .response = "edited",
      .summary = "Edit a mesh",
-     .doc = "One operation, or a list of them that is applied completely or not at all. It makes "
-            "one revision and one undo step."},
+     .doc = "The body is one operation, or a list of operations that is applied completely or not "
+            "at all. It makes one revision and one undo step."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/edits",
      .name = "list_edits",
@@ -614,9 +614,9 @@ static const api_route routes[] = {
      .statuses = {200, 409},
      .response = "reloaded",
      .summary = "Read the file of tokens again",
-     .doc = "Does the same as SIGHUP. Tokens that are no longer in the file are not accepted any "
-            "more, and their event streams end with `bye`. If the file is wrong, the tokens stay "
-            "as they are and the problem names the line."},
+     .doc = "Does what the signal SIGHUP does. Tokens that are no longer in the file are not "
+            "accepted any more, and their event streams end with `bye`. If the file is wrong, the "
+            "tokens stay as they are and the problem names the line."},
 
     {.method = "POST",
      .path = "/v1/admin/backup",
@@ -628,9 +628,9 @@ static const api_route routes[] = {
      .headers = {&disposition},
      .statuses = {200, 202, 409},
      .summary = "Back up the store",
-     .doc =
-         "Makes a file for `hedged --restore`. It is a job unless the client waits; its result is "
-         "the file. The server keeps one backup at a time: DELETE the job when it is fetched."},
+     .doc = "Makes a file for `hedged --restore`. The request becomes a job, unless the client "
+            "waits; the file is the job's result. The server keeps one backup at a time: DELETE "
+            "the job after you have fetched the file."},
 
     /* descriptions of the API */
     {.method = "GET",
@@ -668,7 +668,7 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "health",
      .summary = "Is the process alive?",
-     .doc = "It answers even if the store has failed."},
+     .doc = "The answer is 200 even if the store has failed."},
     {.method = "GET",
      .path = "/readyz",
      .name = "get_readiness",
@@ -679,11 +679,12 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "readiness",
      .summary = "Does the server take requests?",
-     .doc = "503 `not_ready` while it starts or stops, and 503 `store_failed` after a write or a "
-            "sync of the disk failed: then no changes are accepted until it is restarted. If the "
-            "disk is full, the answer is 200 with `\"store\": \"full\"`, because reads continue "
-            "and meshes can be deleted. If memory is full, that is, no mesh can leave it and new "
-            "ones are refused, the answer is 200 with `\"memory\": \"full\"`."},
+     .doc = "The answer is 503 `not_ready` while the server starts or stops, and 503 "
+            "`store_failed` after a write or a sync of the disk failed: then no changes are "
+            "accepted until the server is restarted. If the disk is full, the answer is 200 with "
+            "`\"store\": \"full\"`, because reads continue and meshes can be deleted. If memory is "
+            "full, that is, no mesh can be removed from memory and new meshes are refused, the "
+            "answer is 200 with `\"memory\": \"full\"`."},
     {.method = "GET",
      .path = "/metrics",
      .name = "get_metrics",
@@ -693,9 +694,9 @@ static const api_route routes[] = {
      .produces = plain,
      .statuses = {200},
      .summary = "Metrics",
-     .doc = "In the text format of Prometheus, version 0.0.4; hedged(8) lists the metrics. If the "
-            "server needs tokens, it needs one with the role metrics or admin. It never waits for "
-            "the disk or for a thread."},
+     .doc = "The metrics are in the text format of Prometheus, version 0.0.4; hedged(8) lists "
+            "them. If the server needs tokens, the request needs one with the role metrics or "
+            "admin. The answer never waits for the disk or for a thread."},
     {.method = "GET",
      .path = "/version",
      .name = "get_version",
@@ -706,7 +707,7 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "version",
      .summary = "Version of the server",
-     .doc = "Its name and its version, as in `info` of this document."},
+     .doc = "The server's name and version, as in `info` of this document."},
     {.method = "GET",
      .path = "/v1",
      .name = "get_index",
@@ -728,7 +729,8 @@ static const api_route routes[] = {
      .produces = html,
      .statuses = {200},
      .summary = "What a problem means",
-     .doc = "A page that explains the code of a problem. `type` of a problem links to it."},
+     .doc = "A page that explains the code of a problem. The member `type` of a problem links to "
+            "this page."},
     {.method = "GET",
      .path = "/",
      .name = "get_viewer",

@@ -51,8 +51,8 @@ const api_member api_answer_members[] = {
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
     {"mesh_page", "listeners", "count", OPTIONAL,
-     "Clients of the whole server that listen to events of meshes. This member and the next two "
-     "are missing for tokens with prefixes."},
+     "How many clients of the whole server listen to events of meshes. This member and the next "
+     "two are missing for tokens with prefixes."},
     {"mesh_page", "memory_bytes", "count", OPTIONAL, "Memory that the whole server uses."},
     {"mesh_page", "memory_budget", "count", OPTIONAL,
      "Memory that the server may use; 0: no limit."},
@@ -73,7 +73,8 @@ const api_member api_answer_members[] = {
 
     {"repair", "repair", "#repair_name", REQUIRED, NULL},
     {"repair", "count", "count", REQUIRED,
-     "How many vertices or faces were removed, faces turned, or elements made."},
+     "How many vertices or faces the repair removed, how many faces it turned, or how many "
+     "elements it made."},
     {"repair", "gone", "*id", OPTIONAL,
      "The first 100 elements that were removed, numbered from 0 as in the body."},
     {"repair", "into", "*id", OPTIONAL,
@@ -100,7 +101,7 @@ const api_member api_answer_members[] = {
     {"repair", "moved", "count", OPTIONAL,
      "weld: how many values of vertices became values of corners, because merged vertices had "
      "different ones."},
-    {"repair", "hole_edges", "count", OPTIONAL, "fill: the largest number of edges that was used."},
+    {"repair", "hole_edges", "count", OPTIONAL, "fill: the parameter `hole_edges` that was used."},
 
     {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
 
@@ -143,7 +144,8 @@ const api_member api_answer_members[] = {
      "The corners, counter-clockwise from the origin of `halfedge`."},
     {"face", "halfedges", "*id", REQUIRED, NULL},
     {"face", "area", "number", REQUIRED, "The length of the vector area (Newell's method)."},
-    {"face", "normal", "point", REQUIRED, "A zero vector if the face has no area."},
+    {"face", "normal", "point", REQUIRED,
+     "The unit normal; a zero vector if the face has no area."},
     {"face", "centroid", "point", REQUIRED, NULL},
     {"face", "attributes", "#values_by_name", OPTIONAL,
      "Values by the name of the attribute, if the mesh has any."},
@@ -190,11 +192,11 @@ const api_member api_answer_members[] = {
     {"attribute_written", "revision", "count", REQUIRED, NULL},
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was changed."},
     {"attribute_written", "attribute", "#attribute_info", OPTIONAL,
-     "The attribute; missing if it was deleted."},
+     "The attribute as it is now; missing if it was deleted."},
     {"attribute_written", "created", "#sets", REQUIRED, "Always empty."},
     {"attribute_written", "deleted", "#sets", REQUIRED, "Always empty."},
     {"attribute_written", "modified", "#sets", REQUIRED,
-     "Empty if the whole attribute was created or deleted."},
+     "The elements whose values changed; empty if the whole attribute was created or deleted."},
     {"attribute_written", "parents", "#parents", REQUIRED, "Always empty."},
     {"attribute_written", "merged", "#merged", REQUIRED, "Always empty."},
     {"attribute_written", "undoable", "flag", OPTIONAL,
@@ -218,7 +220,8 @@ const api_member api_answer_members[] = {
     {"face_page", "next", "text?", REQUIRED, "The cursor of the next page."},
 
     {"adjacency", "revision", "count", OPTIONAL,
-     "Missing if the answer is one of several in `results`, which have a common revision."},
+     "The revision; missing if the answer is one of several in `results`, which all have one "
+     "revision."},
     {"adjacency", "of", "#of", REQUIRED, NULL},
     {"adjacency", "relation", "text", REQUIRED, NULL},
     {"adjacency", "ids", "*id", REQUIRED, NULL},
@@ -253,7 +256,7 @@ const api_member api_answer_members[] = {
     {"defect", "id", "id", REQUIRED, NULL},
     {"defect", "detail", "text", REQUIRED, NULL},
     {"defect", "other", "id", OPTIONAL,
-     "The other vertex in the same place, or the other face that it intersects."},
+     "The other vertex in the same place, or the other face, which this face intersects."},
     {"defect", "value", "number", OPTIONAL,
      "The measured distance, length, width, diagonal or volume."},
 
@@ -281,18 +284,20 @@ const api_member api_answer_members[] = {
     {"sets", "faces", "*id", REQUIRED, NULL},
 
     {"parents", "vertices", "*#pair", OPTIONAL,
-     "Pairs: the new element, and the element that it comes from."},
+     "Pairs: the id of the new element, and the id of the element that it was made from."},
     {"parents", "edges", "*#pair", OPTIONAL, NULL},
     {"parents", "faces", "*#pair", OPTIONAL, NULL},
 
     {"merged", "vertices", "*#pair", OPTIONAL,
-     "Pairs: the element that was removed, and the one that it was merged into."},
+     "Pairs: the id of the element that was removed, and the id of the element that it was merged "
+     "into."},
     {"merged", "edges", "*#pair", OPTIONAL, NULL},
     {"merged", "faces", "*#pair", OPTIONAL, NULL},
 
     {"edited", "revision", "count", REQUIRED, NULL},
     {"edited", "dry_run", "flag", OPTIONAL,
-     "Nothing was changed: the answer shows the revision and ids that the edit would give."},
+     "True for a dry run: nothing was changed, and the answer shows the revision and the ids that "
+     "the edit would give."},
     {"edited", "results", "*#done", REQUIRED,
      "One object for each operation: `op` and its results."},
     {"edited", "created", "#sets", REQUIRED, NULL},
@@ -302,8 +307,9 @@ const api_member api_answer_members[] = {
     {"edited", "parents", "#parents", REQUIRED, NULL},
     {"edited", "merged", "#merged", REQUIRED, NULL},
     {"edited", "replaced", "flag", OPTIONAL,
-     "The whole content was replaced, and the sets are empty. After compact all ids are new, and "
-     "`results` maps the old ones to them; otherwise ids keep their meaning."},
+     "True if the whole content was replaced; then `created`, `deleted` and `modified` are empty. "
+     "After compact all ids are new, and `results` maps the old ids to the new ones; otherwise ids "
+     "keep their meaning."},
     {"edited", "undoable", "flag", OPTIONAL,
      "Present only if false: the edit is larger than the undo budget, or is a compact, so that "
      "neither this edit nor an earlier one can be undone."},
@@ -335,26 +341,30 @@ const api_member api_answer_members[] = {
     {"measured", "revision", "count", REQUIRED, NULL},
     {"measured", "of", "#of", REQUIRED, NULL},
     {"measured", "measure", "#measure_name", REQUIRED, NULL},
-    {"measured", "value", "#measured_value", REQUIRED, "Null if the element has no such value."},
+    {"measured", "value", "#measured_value", REQUIRED,
+     "The measured value; null if the element has none."},
 
     {"measured_many", "measure", "#measure_name", REQUIRED, NULL},
     {"measured_many", "components", "count", REQUIRED, "1, or 3 for a vector."},
     {"measured_many", "values", "*#measured_value", REQUIRED, "One value for each element."},
 
     {"share", "vertex", "id", REQUIRED, NULL},
-    {"share", "weight", "number", REQUIRED, "Above 0; the weights of one point add up to 1."},
+    {"share", "weight", "number", REQUIRED,
+     "The vertex's weight, above 0; the weights of one point add up to 1."},
 
     {"place", "face", "id", REQUIRED,
-     "The face that was hit or is nearest; if there are several, the one with the lowest id."},
+     "The face that the ray hits, or the nearest face; if there are several, the one with the "
+     "lowest id."},
     {"place", "distance", "number", REQUIRED, NULL},
     {"place", "point", "point", REQUIRED, NULL},
     {"place", "barycentric", "+#share", REQUIRED,
      "The barycentric coordinates of the point in a triangle of the face: 3 vertices, 2 for a "
      "point on an edge, 1 for a point at a vertex."},
 
-    {"ray_hit", "hit", "#place?", REQUIRED, "Null if the ray hits nothing."},
+    {"ray_hit", "hit", "#place?", REQUIRED, "The first hit; null if the ray hits nothing."},
 
-    {"nearest", "closest", "#place?", REQUIRED, "Null if no face is near enough."},
+    {"nearest", "closest", "#place?", REQUIRED,
+     "The nearest point of the mesh; null if no face is near enough."},
 
     {"intersections", "pairs", "*#pair", REQUIRED,
      "Pairs of faces, the lower id first, in ascending order."},
@@ -370,7 +380,8 @@ const api_member api_answer_members[] = {
     {"walked_path", "walk", "=path", REQUIRED, NULL},
     {"walked_path", "from", "#of_halfedge", REQUIRED, NULL},
     {"walked_path", "path", "+#step_name", REQUIRED, "The steps that the request gave."},
-    {"walked_path", "repeat", "count", OPTIONAL, "How often the request asked to take the steps."},
+    {"walked_path", "repeat", "count", OPTIONAL,
+     "How many times the request asked to take the steps."},
     {"walked_path", "until", "#until_name", OPTIONAL, "Where the request asked to stop."},
     {"walked_path", "halfedges", "*id", REQUIRED,
      "The half-edges of the path, from the first to the last."},
@@ -428,8 +439,8 @@ const api_member api_answer_members[] = {
     {"delta", "base", "count", REQUIRED, "The revision before the change."},
     {"delta", "revision", "count", REQUIRED, NULL},
     {"delta", "stale", "flag", OPTIONAL,
-     "True if the change is longer than 64 KiB: the event then has only `base` and `revision` "
-     "beside this, and the client must fetch the mesh again."},
+     "True if the change is longer than 64 KiB: besides this member the event then has only `base` "
+     "and `revision`, and the client must fetch the mesh again."},
     {"delta", "action", "#action", OPTIONAL, NULL},
     {"delta", "created", "#sets", OPTIONAL, NULL},
     {"delta", "deleted", "#sets", OPTIONAL, NULL},
@@ -482,7 +493,7 @@ const api_member api_answer_members[] = {
     {"mesh_event_resync", "event", "=resync", REQUIRED, NULL},
     {"mesh_event_resync", "id", "text", REQUIRED,
      "The id to send in Last-Event-ID when the client connects again."},
-    {"mesh_event_resync", "data", "#resync", REQUIRED, "Events were left out."},
+    {"mesh_event_resync", "data", "#resync", REQUIRED, "Tells that events were left out."},
 
     {"mesh_event_bye", "event", "=bye", REQUIRED, NULL},
     {"mesh_event_bye", "data", "#bye", REQUIRED, "The stream ends."},
@@ -553,7 +564,8 @@ const api_member api_answer_members[] = {
     {"problem", "detail", "text", REQUIRED, NULL},
     {"problem", "code", "text", REQUIRED,
      "A name for programs, which stays the same in later releases."},
-    {"problem", "pointer", "text", OPTIONAL, "JSON pointer into the body."},
+    {"problem", "pointer", "text", OPTIONAL,
+     "A JSON pointer (RFC 6901) to the wrong value in the body."},
     {"problem", "role", "#role_name", OPTIONAL, "The role that the token would need."},
     {"problem", "element", "#problem_element", OPTIONAL, NULL},
     {"problem", "elements", "*#problem_element", OPTIONAL,
@@ -573,7 +585,8 @@ const api_member api_request_members[] = {
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL,
      "For each face the indices of its vertices, counter-clockwise; the first vertex is 0."},
-    {"document", "attributes", "*#document_attribute", OPTIONAL, "Attributes of any domain."},
+    {"document", "attributes", "*#document_attribute", OPTIONAL,
+     "Attributes of vertices, half-edges, edges, faces or the mesh."},
     {"document", "materials", "*#material", OPTIONAL,
      "A face names its material in the attribute `material`."},
 
@@ -594,15 +607,16 @@ const api_member api_request_members[] = {
     {"document_attribute", "default", "#value", OPTIONAL, NULL},
     {"document_attribute", "labels", "+#label", OPTIONAL, NULL},
     {"document_attribute", "values", "*#value", OPTIONAL,
-     "One value for each element, or none at all. Edges are in the order in which the sides of the "
-     "faces first use them; half-edges are in the order of their edges, and of the two the one of "
-     "the earlier face comes first."},
+     "One value for each element, or an empty list. Edges are in the order in which the sides of "
+     "the faces first use them. Half-edges are in the order of their edges; of the two half-edges "
+     "of an edge, the one of the earlier face comes first."},
 
     {"attribute", "type", "#type_name", REQUIRED, NULL},
     {"attribute", "components", "count", OPTIONAL,
      "How many numbers one value has, from 1 to 16. Default: 1."},
     {"attribute", "rule", "#rule_name", OPTIONAL,
-     "Default: interpolate for float and double, copy for others."},
+     "How edits choose the value of a new element. Default: interpolate for float and double, copy "
+     "for other types."},
     {"attribute", "default", "#value", OPTIONAL, "Default: 0 or false."},
     {"attribute", "labels", "+#label", OPTIONAL,
      "Only for uint32: the texts to which the values are indices."},
@@ -649,12 +663,12 @@ const api_member api_request_members[] = {
     {"measure_query", "weights", "#weights", OPTIONAL,
      "For normals of vertices: how the normals of faces are weighted. Default: angle."},
     {"measure_query", "crease", "number", OPTIONAL,
-     "For normals of half-edges, and required for them: edges with a larger angle, in radians from "
-     "0 to pi, stay sharp."},
+     "Only for normals of half-edges, which need it: an angle in radians, from 0 to pi. Edges with "
+     "a larger angle between the normals of their faces stay sharp."},
 
     {"ray", "origin", "point", REQUIRED, NULL},
     {"ray", "direction", "point", REQUIRED,
-     "The direction of the ray. The length of this vector does not matter, but must not be zero."},
+     "The direction of the ray: a vector of any length except zero."},
     {"ray", "max", "number", OPTIONAL, "How far the ray reaches. Default: no limit."},
 
     {"ray_query", "ray", "#ray", REQUIRED, NULL},
@@ -662,7 +676,8 @@ const api_member api_request_members[] = {
     {"closest_query", "closest", "point", REQUIRED, NULL},
     {"closest_query", "max", "number", OPTIONAL, "How far to search. Default: no limit."},
 
-    {"pair_limit", "limit", "count", OPTIONAL, "The most pairs to list. Default: 100."},
+    {"pair_limit", "limit", "count", OPTIONAL,
+     "The largest number of pairs to list. Default: 100."},
 
     {"intersections_query", "self_intersections", "#pair_limit", REQUIRED,
      "Find pairs of faces that share a point which is not a corner of both."},
@@ -673,7 +688,7 @@ const api_member api_request_members[] = {
     {"walk_path", "from", "#of_halfedge", REQUIRED, NULL},
     {"walk_path", "path", "+#step_name", REQUIRED, "The steps to take in turn."},
     {"walk_path", "repeat", "count", OPTIONAL,
-     "How often to take the steps. Default: once, or without limit if `until` is given."},
+     "How many times to take the steps. Default: once; without limit if `until` is given."},
     {"walk_path", "until", "#until_name", OPTIONAL,
      "Where to stop: back at the first half-edge, or at the boundary."},
 
@@ -687,7 +702,7 @@ const api_member api_request_members[] = {
     {"walk_breadth_first", "walk", "=breadth_first", REQUIRED, NULL},
     {"walk_breadth_first", "from", "#of", REQUIRED, "A vertex or a face."},
     {"walk_breadth_first", "depth", "count", OPTIONAL, "The largest distance. Default: no limit."},
-    {"walk_breadth_first", "limit", "count", OPTIONAL, "The most elements to list."},
+    {"walk_breadth_first", "limit", "count", OPTIONAL, "The largest number of elements to list."},
 
     {"walk_shortest_path", "walk", "=shortest_path", REQUIRED, NULL},
     {"walk_shortest_path", "from", "#of_vertex", REQUIRED, NULL},

@@ -332,8 +332,8 @@ static void write_type(api_out *out, const char *type, size_t length, const char
     api_out_object_end(out);
 }
 
-/* Returns member `i` of the schema whose rows begin at `rows`, or of its table `record` if that is
- * not NULL. After the last member, returns a row whose schema is NULL. */
+/* Returns member `i` of the schema whose rows begin at `rows`; if the table `record` is not NULL,
+ * member `i` of that table instead. After the last member, returns a row whose schema is NULL. */
 static api_member member_at(const api_member *rows, const api_record *record, size_t i)
 {
     if (record != NULL) {
@@ -397,7 +397,8 @@ static void write_reference_schema(api_out *out, const char *member, const char 
     api_out_object_end(out);
 }
 
-/* Writes the schema of the answer about one relation, such as vertex_faces. */
+/* Writes the schema of the answer to a question about one relation: vertex_faces, for example, for
+ * the faces around a vertex. */
 static void write_adjacency_schema(api_out *out, const he_relation *relation)
 {
     static const char *const required[] = {"revision", "of", "relation", "ids", NULL};

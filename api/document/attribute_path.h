@@ -6,7 +6,7 @@
 #include "api/request/exchange.h"
 #include "mesh/column.h"
 
-/* The name of the positions of vertices, which no other attribute may have. */
+/* The name that stands for the positions of vertices; no attribute may have it. */
 #define API_POSITION "position"
 
 /* Finds the attribute that the request's path names. Returns NULL with no_such_attribute if there

@@ -18,7 +18,8 @@ enum {
     IN_ROW
 };
 
-/* One attribute that was read: a column that has no rows yet, and the values for its rows. */
+/* One attribute that was read: a column whose rows are not filled yet, and the values for these
+ * rows. */
 typedef struct item {
     he_column *column;
     unsigned char *values;
@@ -34,7 +35,7 @@ struct api_attributes_in {
     /* --- members about the attribute that is being read --- */
     api_members head; /* the text of all members but "values" */
     bool has_values;
-    /* has_words: true or false is among the values. has_numbers: a number is among them. */
+    /* has_words: the values include true or false. has_numbers: the values include a number. */
     bool has_words, has_numbers;
     double *numbers;
     size_t number_count, number_capacity;
@@ -47,7 +48,7 @@ api_attributes_in *api_attributes_in_new(void)
 {
     api_attributes_in *in = he_mem_zero(1, sizeof *in);
     if (in != NULL) {
-        in->head.what = "the members besides the values";
+        in->head.what = "all members of the attribute except \"values\"";
         in->head.most = API_MAX_EDITS;
         in->head.values_most = API_MAX_EDITS_VALUES;
     }
@@ -193,9 +194,10 @@ static bool pack(api_attributes_in *in, item *out)
                             "the values do not have as many components as \"components\" says");
     }
     if (words ? in->has_numbers : in->has_words) {
-        return refuse_value(in, 0, API_WRONG_TYPE,
-                            words ? "values of a bool must be true or false"
-                                  : "only an attribute of type bool has the values true and false");
+        return refuse_value(
+            in, 0, API_WRONG_TYPE,
+            words ? "values of a bool must be true or false"
+                  : "only an attribute of type bool may have the values true and false");
     }
     out->values = he_mem_array(NULL, in->number_count + 1, size);
     if (out->values == NULL) {
@@ -241,8 +243,9 @@ static bool read_head(api_attributes_in *in, const api_in *root, item *out)
     return api_read_column(root, (he_kind)domain, name, &out->column);
 }
 
-/* Puts the path of the attribute before the pointer of a refusal. The members other than "values"
- * are parsed as a separate document, so pointers into them begin at the attribute's object. */
+/* Puts the JSON pointer of the attribute before the JSON pointer of a refusal. The members other
+ * than "values" are parsed as a separate document, so pointers into them begin at the attribute's
+ * object. */
 static void prefix_pointer(api_attributes_in *in)
 {
     char inner[API_PROBLEM_POINTER];
@@ -414,8 +417,8 @@ bool api_attributes_in_repaired(const api_attributes_in *in, api_problem *proble
         const item *one = &in->items[i];
         if (goes_with_edges(one)) {
             api_problem_set(problem, HE_UNSUPPORTED,
-                            "the repairs change edges, so values of %s would be lost: leave out "
-                            "the repairs or the attribute",
+                            "the repairs change edges, so the attribute's values of %s would be "
+                            "lost: leave out the repairs or the attribute",
                             he_kind_plural(one->column->domain));
             api_problem_set_pointer(problem, "/attributes/%zu/values", i);
             return false;

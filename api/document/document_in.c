@@ -36,17 +36,21 @@ struct api_document_in {
     size_t part; /* how many numbers of the present vertex or face were read */
     double point[3];
 
-    api_attributes_in *attributes; /* reads the attributes; NULL if the document has none so far */
-    api_members *gathering; /* where the present member is gathered; NULL: it is not gathered */
+    /* Reads the member "attributes"; NULL if the document has had none so far. */
+    api_attributes_in *attributes;
+    /* Collects the text of the present member; NULL: the member is not collected. */
+    api_members *gathering;
     api_members materials, rest;
     api_document document; /* the members of `rest`, parsed */
     api_in root;
 };
 
-_Static_assert((int)API_MAX_DOCUMENT_NUMBER <= (int)HE_JSON_CARRY,
-               "a number of the largest size must fit where pieces of the body are joined");
-_Static_assert(2 * (int)API_MAX_KEY <= (int)HE_JSON_NAMES,
-               "the name of a member must fit where pieces of the body are joined");
+_Static_assert(
+    (int)API_MAX_DOCUMENT_NUMBER <= (int)HE_JSON_CARRY,
+    "the buffer that joins a number cut by two pieces of the body must hold the longest number");
+_Static_assert(
+    2 * (int)API_MAX_KEY <= (int)HE_JSON_NAMES,
+    "the buffer that joins a name cut by two pieces of the body must hold the longest name");
 
 api_document_in *api_document_in_new(const he_limits *limits)
 {
@@ -57,7 +61,7 @@ api_document_in *api_document_in_new(const he_limits *limits)
         in->lexer.depth_most = API_MAX_DEPTH;
         in->lexer.number_most = API_MAX_DOCUMENT_NUMBER;
         in->lexer.name_most = API_MAX_KEY;
-        in->rest = (api_members){.what = "members besides vertices and faces",
+        in->rest = (api_members){.what = "the members other than \"vertices\" and \"faces\"",
                                  .most = API_MAX_CONTROL,
                                  .values_most = API_MAX_CONTROL_VALUES};
         in->materials = (api_members){
@@ -99,8 +103,8 @@ static bool point(api_document_in *in, size_t depth)
     return false;
 }
 
-/* Refuses what stands before the next byte; `depth` says whether the list of vertices or faces, an
- * item of it or a number is refused (see point). */
+/* Refuses the bytes just before the next byte of the lexer; `depth` says whether the list of
+ * vertices or faces, an item of the list or a number of the item is refused (see point). */
 static bool refuse_in(api_document_in *in, size_t depth, int code, const char *text)
 {
     api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), code, "%s", text);
@@ -125,9 +129,10 @@ static bool refuse_fault(api_document_in *in)
         return refuse(in, API_MALFORMED_JSON, "extra text follows the mesh document");
     }
     if (x->fault == HE_FAULT_ITEM) {
-        x->frames[x->depth - 1].index++; /* the fault is where the next item should be */
+        x->frames[x->depth - 1].index++; /* the fault is in the place of the next vertex or face */
     }
-    /* A bad number is refused at the byte where it ends, as numbers with a bad value are. */
+    /* A malformed number is refused at the byte where it ends, like a number whose value is not
+     * allowed. */
     bool number = x->fault == HE_FAULT_NUMBER || x->fault == HE_FAULT_NOT_FINITE;
     api_json_refuse_fault(x, number ? he_lexer_place(x) : x->fault_place, in->problem);
     bool list = in->member == VERTICES || in->member == FACES;
@@ -143,7 +148,7 @@ static bool add_vertex(api_document_in *in, const double *values, size_t count)
     he_error err;
     if (count != 3) {
         api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), HE_BAD_VALUE,
-                           "a vertex must have three coordinates, and this one has %zu", count);
+                           "a vertex must have three coordinates, but this vertex has %zu", count);
         return point(in, IN_LIST);
     }
     he_vec3 position = {values[0], values[1], values[2]};
@@ -205,7 +210,7 @@ static bool add_value(api_document_in *in, double value)
     }
     if (in->part == 3) {
         return refuse_in(in, IN_LIST, HE_BAD_VALUE,
-                         "a vertex must have three coordinates, but this one has more");
+                         "a vertex must have three coordinates, but this vertex has more");
     }
     in->point[in->part++] = value;
     return true;
@@ -286,7 +291,7 @@ static bool gather(api_document_in *in, api_members *to)
     return api_members_begin(to, &in->lexer, in->problem);
 }
 
-/* Begins a member of the document. The lexer has passed its name and the colon. */
+/* Begins a member of the document. The lexer has passed the member's name and the colon. */
 static bool open_member(api_document_in *in)
 {
     const he_lexer_frame *object = &in->lexer.frames[0];
@@ -311,8 +316,8 @@ static bool open_member(api_document_in *in)
 
 /* --- handling tokens --- */
 
-/* Refuses the value that the lexer reads next if it may not stand there. Sets `*taken` if the value
- * was read at once. */
+/* Refuses the value that the lexer reads next if such a value may not stand there. Sets `*taken` if
+ * the value was read at once. */
 static bool expect(api_document_in *in, bool *taken)
 {
     switch (in->member) {
@@ -349,8 +354,8 @@ static bool take(api_document_in *in, he_token token)
     return true;
 }
 
-/* Handles one token, or several vertices or faces at once; `*cut` is set when the piece has been
- * read to its end. */
+/* Handles one token, or several vertices or faces at once. Sets `*cut` when the piece has been read
+ * to its end. */
 static bool step(api_document_in *in, bool *cut)
 {
     bool taken = false, done;
@@ -401,7 +406,7 @@ bool api_document_in_end(api_document_in *in, api_problem *problem)
 {
     in->problem = problem;
     if (in->lexer.state != HE_JSON_DONE) {
-        return refuse(in, API_MALFORMED_JSON, "the body ends before the mesh document does");
+        return refuse(in, API_MALFORMED_JSON, "the body ends before the mesh document is complete");
     }
     return read_materials(in, problem) &&
            api_members_parse(&in->rest, &in->document, &in->root, problem);

@@ -31,15 +31,16 @@ struct api_document_out {
      * list. */
     uint32_t *edges;
     size_t column; /* index of the attribute that is being written */
-    bool begun;    /* the attribute's other members, which precede its values, were written */
+    bool begun;    /* the attribute's members before "values" were written */
     phase phase;
-    uint32_t next; /* next vertex or face, or next value of an attribute */
+    uint32_t next; /* id of the next vertex or face, or index of the next value of an attribute */
     bool listed;   /* the present list has an item already */
     /* While faces are written: a face is begun, and `corner` is its next corner. While attributes
      * are written: the present attribute has a value already. */
     bool open;
     he_halfedge corner;
-    size_t begin, end; /* what the server has not read yet of `buffer` or `text` */
+    /* Positions of the bytes in `buffer` or `text` that the server has not read yet. */
+    size_t begin, end;
     char buffer[BUFFER];
 };
 
@@ -191,16 +192,17 @@ static size_t next_column(const he_mesh *mesh, size_t from)
     return from;
 }
 
-/* Returns how many positions row_at must be called for to find all values of an attribute.
- * Positions of vertices and faces include deleted elements. */
+/* Returns for how many positions row_at must be called to find all values of an attribute. For
+ * vertices and faces, deleted elements have positions, too. */
 static uint64_t count_places(const api_document_out *out, he_kind domain)
 {
     return domain == HE_EDGE || domain == HE_HALFEDGE ? he_mesh_count(out->mesh, domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* Returns the row, in the column of an attribute, of the element that is number i of its kind in
- * the document; HE_NONE if it is deleted. Deleted vertices and faces keep their numbers. */
+/* Returns the row in an attribute's column that holds the value of element number `i` of the
+ * document; HE_NONE if that element is deleted. Vertices and faces are counted with the deleted
+ * ones. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {

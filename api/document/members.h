@@ -12,13 +12,15 @@
 
 /* The members gathered so far. The caller initializes `what`, `most` and `values_most`. */
 typedef struct api_members {
-    const char *what; /* names the members when they are refused, such as "materials" */
+    /* What the members are called in the message of a refusal, such as "materials". */
+    const char *what;
     size_t most, values_most;
 
     api_text text;
     size_t values;
     /* --- about the member that is being gathered --- */
-    /* First byte to append, in the lexer's present piece; NULL: the beginning of that piece. */
+    /* First byte of the lexer's present piece that is still to be appended; NULL: the first byte of
+     * the piece. */
     const char *from;
     size_t depth, name_most;
 } api_members;
@@ -30,7 +32,7 @@ void api_members_empty(api_members *m);
 /* Begins to gather a member, and appends its name. The lexer must have passed the colon after the
  * name. */
 bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem);
-/* Gathers the value of the member; `*done` is false if the piece ended before the value did. */
+/* Appends the value of the member; `*done` is false if the piece ended before the value did. */
 bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *problem);
 /* Parses all members that were gathered, as one object. */
 bool api_members_parse(api_members *m, api_document *out, api_in *root, api_problem *problem);

@@ -11,8 +11,8 @@ enum { SNIFF_BYTES = 512 };
 typedef struct part {
     char *name;
     api_part_kind kind; /* what the name or the media type of the file says about its format */
-    /* The content. Empty for a file that was known to be the mesh file when it began, because its
-     * bytes were passed on. */
+    /* The content of the file. It is empty if the file was known to be the mesh file when it began,
+     * because its bytes were passed on. */
     api_text bytes;
 } part;
 
@@ -112,10 +112,11 @@ static bool refuse(api_exchange *x, const api_parts *p)
                         "choose with ?format=",
                         names);
     }
-    return api_fail(x, API_UNCLEAR_PARTS,
-                    "none of the files is %s%s, judged by name, media type and first bytes: %s",
-                    p->wanted == NULL ? "in a format that the server reads" : "in the format ",
-                    p->wanted == NULL ? "" : p->wanted, names);
+    return api_fail(
+        x, API_UNCLEAR_PARTS,
+        "none of the files is %s%s, as far as their names, media types and first bytes show: %s",
+        p->wanted == NULL ? "in a format that the server reads" : "in the format ",
+        p->wanted == NULL ? "" : p->wanted, names);
 }
 
 /* Returns true for a file that belongs to another file and is no mesh itself, such as a texture. */
@@ -199,7 +200,8 @@ static api_parts_step take(api_exchange *x, api_parts *p, const char *bytes, siz
         return API_PARTS_BYTES;
     }
     if (is_wanted(p, &one->kind)) {
-        return API_PARTS_MORE; /* a second mesh file: the body is refused at its end */
+        /* This is a second mesh file: the body is refused when all of it was read. */
+        return API_PARTS_MORE;
     }
     api_text_add(&one->bytes, bytes, length);
     if (one->bytes.failed) {

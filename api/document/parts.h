@@ -21,8 +21,8 @@ typedef struct api_parts api_parts;
 
 /* How a file is read: by the reader of a format, or as a mesh document. */
 typedef struct api_part_kind {
-    bool is_mesh;            /* it is a mesh file: a mesh document or of a known format */
-    const he_format *format; /* the format of the file; NULL: it is a mesh document */
+    bool is_mesh; /* the file is a mesh file: a mesh document, or a file of a known format */
+    const he_format *format; /* the format of the file; NULL: the file is a mesh document */
 } api_part_kind;
 
 typedef enum api_parts_step {
@@ -38,8 +38,8 @@ typedef struct api_parts_piece {
     size_t length;
 } api_parts_piece;
 
-/* Makes a reader of the exchange's body. Returns NULL with the problem filled if its Content-Type
- * is wrong or memory is out. */
+/* Makes a reader of the exchange's body. Returns NULL with the problem filled if the Content-Type
+ * of the body is wrong or memory is out. */
 api_parts *api_parts_new(api_exchange *x);
 void api_parts_free(api_parts *parts);
 /* Reads the body from *at, at most to `end`, and moves *at past the bytes that it has read. */

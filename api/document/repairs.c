@@ -18,7 +18,8 @@ bool api_repairs_read(api_exchange *x, he_repair_plan *plan)
     for (size_t i = 0; i < sizeof needs / sizeof *needs; i++) {
         if (api_param_text(x, needs[i].name) != NULL &&
             (plan->which & he_repair_bit(needs[i].of)) == 0) {
-            return api_fail(x, API_BAD_PARAMETER, "\"%s\" needs repair=%s, which is not given",
+            return api_fail(x, API_BAD_PARAMETER,
+                            "\"%s\" has no effect without repair=%s, which is not given",
                             needs[i].name, he_repair_names[needs[i].of]);
         }
     }

@@ -32,7 +32,8 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
     return true;
 }
 
-/* The counts of a mesh. Some must be computed from the content and are only in its summary. */
+/* The counts of a mesh. Some of them must be computed from the content of the mesh, so only the
+ * summary of one mesh has them, and not a list of meshes. */
 typedef struct counts {
     uint64_t vertices, halfedges, edges, faces;
     bool computed;
@@ -84,7 +85,8 @@ static const api_field item_fields[] = {
     API_FIELD("revision", "count", st_card, revision, .required = true),
     API_FIELD_MADE("counts", "#counts", write_brief_counts, .required = true),
     API_FIELD("damage", "text", st_card, damage, .zero_is_none = true,
-              .doc = "What is damaged on the disk. The mesh can only be deleted or replaced."),
+              .doc = "Present only if the mesh is damaged: says what is damaged on the disk. The "
+                     "mesh can only be deleted or replaced."),
 };
 const api_record api_mesh_item_record = {"mesh_item", item_fields,
                                          sizeof item_fields / sizeof *item_fields};
@@ -140,15 +142,16 @@ static const api_field summary_fields[] = {
     API_FIELD_MADE("counts", "#counts", write_counts, .required = true),
     API_FIELD("euler", "integer", whole, euler, .required = true,
               .doc = "V - E + F, where V counts only vertices that have an edge."),
-    API_FIELD("genus", "integer?", whole, genus, .required = true,
-              .known = API_KNOWN(whole, has_genus),
-              .doc = "Null if the mesh has a bow-tie, for which there is no genus."),
+    API_FIELD(
+        "genus", "integer?", whole, genus, .required = true, .known = API_KNOWN(whole, has_genus),
+        .doc = "The genus; null if the mesh has a bow-tie, because the genus is then not defined."),
     API_FIELD("closed", "flag", whole, closed, .required = true,
               .doc = "True if the mesh has no boundary and at least one face."),
     API_FIELD("manifold", "flag", whole, manifold, .required = true,
               .doc = "True if the mesh has no bow-tie and at least one face."),
     API_FIELD_MADE("degrees", "#degrees", write_degrees, .required = true,
-                   .doc = "For each number of corners, how many faces have it."),
+                   .doc =
+                       "For each number of corners: how many faces have this number of corners."),
     API_FIELD_MADE("bbox", "#box?", write_box, .required = true,
                    .known = API_KNOWN(whole, has_box)),
     API_FIELD("area", "number", whole, area, .required = true),
@@ -279,9 +282,10 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
         return;
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
-        /* Without the summary its length is unknown, so it is unknown whether GET would compress
-         * the answer. HEAD is answered as if GET would not. The ETag of the uncompressed answer is
-         * as good as that of the compressed answer in every precondition. */
+        /* Without the summary the length of the answer is unknown, and so is whether GET would
+         * compress the answer. HEAD is answered as if GET would not compress it. In every
+         * precondition the ETag of the uncompressed answer counts as much as that of the compressed
+         * answer. */
         x->codings.best = API_IDENTITY;
         const api_stream nothing = {.length = -1, .read = read_nothing};
         api_answer_stream(x, 200, "application/json", &nothing);

@@ -37,19 +37,20 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 /* Writes the members of a summary (id, name, revision, counts and so on) into an object that the
  * caller has begun. */
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
-/* Writes what the card of a mesh has: id, name, revision, some counts, and the damage of a damaged
- * mesh. */
+/* Writes what the card of a mesh (the description that the store keeps of each mesh) has: id, name,
+ * revision, some counts, and the damage of a damaged mesh. */
 void api_write_brief(api_out *out, const st_card *card);
 
 /* The handler of GET /v1/meshes/{mesh}, which answers 200 with the summary, from the cache if
- * possible, and the function that estimates its cost. */
+ * possible, and the function that estimates the cost of that handler. */
 void api_summary_get(api_exchange *x);
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 /* Handles GET and HEAD of a mesh that is not in memory. Answers 304 if the client has the present
  * summary. Answers HEAD if the client accepts an uncompressed answer; the headers are those of such
  * an answer, even if GET would compress it. HEAD does not notice that stored content is damaged. */
 void api_summary_cold(api_exchange *x, st_cold *cold);
-/* Answers a write with the summary of the mesh. The handler of the write calls it. */
+/* Answers a request that has written to the mesh with the summary of the mesh. The handler of the
+ * request calls it. */
 void api_answer_summary(api_exchange *x);
 /* Answers `status` with a summary of the mesh that x->info describes. The summary was computed
  * before the mesh was stored, so this needs no lock. `extra` (may be NULL) writes more members into

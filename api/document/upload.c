@@ -33,12 +33,12 @@ typedef struct attribute {
 
 typedef struct upload {
     he_limits limits;
-    /* The reader of the body is `document` or `reader`; both are NULL until the first bytes have
-     * shown the format. */
+    /* The reader of the body is one of `document` and `reader`; both are NULL until the first bytes
+     * have shown the format of the body. */
     api_document_in *document;
     he_reader *reader;
     const he_format *format; /* the format that `reader` reads */
-    api_parts *parts;        /* reads a multipart body; NULL for another body */
+    api_parts *parts;        /* reads a multipart body; NULL if the body is not multipart */
     char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
@@ -55,7 +55,7 @@ typedef struct upload {
     attribute *attributes;
     size_t attribute_count;
     he_ids bowties;
-    uint64_t seams;      /* number of edges that the repair weld would join */
+    uint64_t seams;      /* number of edges that would be joined by the repair weld */
     uint64_t isolated;   /* number of vertices without a face */
     he_ids isolated_ids; /* ids of the first vertices without a face */
 } upload;
@@ -107,7 +107,7 @@ bool api_upload_begin(api_exchange *x)
     }
     const char *name = api_param_text(x, "format");
     if (name == NULL && strcmp(x->media_in, "application/octet-stream") == 0) {
-        return true; /* the first bytes will show the format */
+        return true; /* the first bytes of the body will show the format */
     }
     if (strcmp(name != NULL ? name : x->media_in, name != NULL ? "json" : "application/json") ==
         0) {
@@ -155,7 +155,8 @@ static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
     return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
 }
 
-/* Chooses a reader by the first bytes of the body, which have arrived, and passes them to it. */
+/* Chooses a reader by the first bytes of the body, which have arrived, and passes these bytes to
+ * the reader. */
 static bool choose(api_exchange *x, upload *u)
 {
     size_t blank = 0;
@@ -229,8 +230,8 @@ static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t len
     return false;
 }
 
-/* Ends a multipart body: reads the mesh file if only now it is known which file that is, and passes
- * the other files to the reader. */
+/* Ends a multipart body. If it is known only now which file is the mesh file, reads that file.
+ * Passes the other files to the reader. */
 static bool end_parts(api_exchange *x, upload *u)
 {
     api_parts_piece late;
@@ -497,10 +498,11 @@ static void note_edges(upload *u, const he_mesh *mesh)
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
         he_warnings_add(
             &u->import.warnings,
-            &(he_occurrence){.code = "edge_count",
-                             .text = "ignored, because it is wrong: the number of edges",
-                             .place = HE_PLACE_LINE,
-                             .at = import->edges_line});
+            &(he_occurrence){
+                .code = "edge_count",
+                .text = "the number of edges in the header of the file is wrong, and is ignored",
+                .place = HE_PLACE_LINE,
+                .at = import->edges_line});
     }
 }
 
@@ -589,17 +591,17 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
 typedef struct shown_warning {
     const char *code, *detail;
     uint64_t count;
-    uint64_t at; /* line or byte of the first occurrence */
+    uint64_t at; /* line or byte where the warning first occurred */
     bool has_line, has_byte, has_lines, has_bytes, has_vertices;
-    /* `warnings` are the warnings of the reader of the file, with the places where they occurred;
-     * this one has the index `warning`. */
+    /* All warnings of the reader of the file, with the places where they occurred; `warning` is the
+     * index of the shown one. */
     const he_warnings *warnings;
     size_t warning;
     const uint32_t *vertices;
     size_t named; /* number of ids in `vertices` */
 } shown_warning;
 
-/* Writes the lines or bytes where a warning occurred, as far as they were kept. */
+/* Writes the lines or bytes where a warning occurred, as far as they were recorded. */
 static void write_spots(api_out *out, const void *value)
 {
     const shown_warning *w = value;
@@ -634,7 +636,8 @@ static const api_field warning_fields[] = {
                    .doc = "The bytes where it occurred, if the body is binary; at most 100 for all "
                           "warnings together."),
     API_FIELD_MADE("vertices", "*id", write_warned, .known = API_KNOWN(shown_warning, has_vertices),
-                   .doc = "For bowtie and isolated_vertices: the first 100 of these vertices."),
+                   .doc = "For the warnings bowtie and isolated_vertices: the first 100 vertices "
+                          "that they are about."),
 };
 const api_record api_warning_record = {"warning", warning_fields,
                                        sizeof warning_fields / sizeof *warning_fields};
@@ -679,8 +682,9 @@ static void write_vertices(api_out *out, const upload *u, shown_warning value, c
     api_record_write(out, &api_warning_record, &value);
 }
 
-/* Writes a warning about open seams. Seams are left by programs that write a vertex several times,
- * once for each combination of attribute values of its corners. */
+/* Writes a warning about open seams: edges that lie in one place but are not connected. Programs
+ * that write a vertex several times, once for each combination of attribute values of its corners,
+ * leave such seams. */
 static void write_seams(api_out *out, const upload *u)
 {
     const shown_warning value = {.code = "open_seams",

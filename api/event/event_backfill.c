@@ -26,7 +26,7 @@ struct api_backfill {
     /* Number of users: 1 for the listener, and 1 for a task that is queued or running. */
     unsigned uses;
     bool working, waiting;
-    /* Wakes the listener; NULL if the listener has freed the backfill. */
+    /* Wakes the listener when events are ready; NULL if the listener has freed the backfill. */
     void (*wake)(void *context);
     void *context;
 };

@@ -1,9 +1,9 @@
 /* event_backfill.h - events that a listener has missed, made from the history of the mesh.
  *
  * Tasks on the job pool step through the revisions with a cursor (store/history_cursor.h) and make
- * one event for each, in batches. A batch is begun when the listener has taken the one before, so a
- * listener needs memory for a copy of the mesh and for one batch, however many events it missed. At
- * most API_MAX_BACKFILLS backfills run at once. */
+ * one event for each, in batches. The next batch is begun when the listener has taken the last one,
+ * so a listener needs memory for a copy of the mesh and for one batch, however many events it
+ * missed. At most API_MAX_BACKFILLS backfills run at once. */
 #ifndef HE_API_EVENT_EVENT_BACKFILL_H
 #define HE_API_EVENT_EVENT_BACKFILL_H
 

@@ -38,7 +38,7 @@ typedef struct stream {
     bool listens;
     uint64_t incarnation;
     api_backfill *missed; /* makes the missed events; NULL if there are none, or all were sent */
-    uint64_t caught_up;   /* the last revision of the events that `missed` makes */
+    uint64_t caught_up;   /* the revision of the last of the missed events */
     api_text text;        /* bytes to send before anything else */
     size_t sent;
     bool finishing; /* the server is stopping */
@@ -67,7 +67,7 @@ static size_t copy_text(stream *s, char *buffer, size_t size)
     return length;
 }
 
-enum { IN_TEXT = -3 }; /* result of reading: the bytes to send are in `text` */
+enum { IN_TEXT = -3 }; /* a result of read_missed: the bytes to send are in `text` of the stream */
 
 /* Reads missed events. If they cannot be made, the event `resync` is sent instead. */
 static int64_t read_missed(stream *s)

@@ -117,8 +117,8 @@ void api_event_stale(api_text *text, const st_mesh_info *info)
     api_text_clear(&data);
 }
 
-/* Returns the elements that a delta changed: those that `change` has already, else those that it
- * finds and puts into `found`. Returns NULL if the delta is too large or memory is out. */
+/* Returns the elements that a delta changed: the sets in `change` if they were computed already;
+ * otherwise computes them into `found`. Returns NULL if the delta is too large or memory is out. */
 static const he_changes *changes_of(const st_change *change, he_changes *found)
 {
     if (change->delta->count > API_MAX_EVENT_ROWS) {

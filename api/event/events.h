@@ -24,8 +24,9 @@
 /* A comment in the format text/event-stream, sent to keep an idle connection open. */
 #define API_EVENT_IDLE ":\n\n"
 
-/* Appends the opening message. `place` is false if the stream begins with earlier revisions: then
- * the message has no id, and the first id is that of the first event. */
+/* Appends the opening message. `place` is false if the stream begins with revisions before the
+ * present one: then the opening message has no id, and the first id that the client gets is that of
+ * the first event. */
 void api_event_begin(api_text *text, const st_mesh_info *info, bool place);
 
 /* Appends an event that describes the change that led to info->revision. Of `change` it reads the
@@ -36,10 +37,10 @@ void api_event_edit(api_text *text, const st_mesh_info *info, const st_change *c
 void api_event_stale(api_text *text, const st_mesh_info *info);
 void api_event_metadata(api_text *text, const st_mesh_info *info);
 /* Appends a `resync`, which tells the listener to fetch the mesh again. Reasons: "replaced" (the
- * whole content, or a compact), "gap" (the listener was too slow and the history does not reach
- * back), "busy" (too many backfills), "incarnation" and "future" (the position that the client sent
- * belongs to another mesh, or is later than the present one), "lost" (the newest changes could not
- * be made durable; the stream ends). */
+ * whole content, or a compact), "gap" (the listener was too slow, and the history no longer has the
+ * revisions that it missed), "busy" (too many backfills), "incarnation" (the position that the
+ * client sent belongs to another mesh that had this id), "future" (that position is later than the
+ * present one), "lost" (the newest changes could not be made durable; the stream ends). */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
 /* Appends a message with this event name and this data. */
 void api_event_add(api_text *text, const char *name, const api_text *data);

@@ -11,13 +11,13 @@ enum { LEVEL = 1, GZIP_MEMORY = 8 };
 struct api_compressor {
     api_coding coding;
     api_plain plain;
-    size_t used; /* how many of plain.bytes were copied to `in` */
+    size_t used; /* how many bytes of the body in plain.bytes were copied to `in` */
     z_stream zlib;
     ZSTD_CCtx *zstd;
     bool begun; /* the compressor was started */
     bool as_it_is;
     bool read;  /* the whole body was read: what is not compressed yet is in `in` */
-    bool ended; /* all of the output was returned */
+    bool ended; /* all bytes of the output were returned to the caller */
     bool failed;
     size_t from, to;
     /* The bytes `from` to `to` were read and are not compressed yet. The array has one byte more

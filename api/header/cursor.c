@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Writes a cursor. The text is "vertices.INCARNATION.REVISION.POSITION", with the incarnation in
- * hexadecimal digits. */
+/* Writes a cursor. The text is "vertices.INCARNATION.REVISION.POSITION". The incarnation, a random
+ * number that is new for each mesh that is created under an id, is in hexadecimal digits. */
 void api_cursor_write(const char *collection, const st_mesh_info *info, uint64_t position,
                       char out[API_CURSOR])
 {

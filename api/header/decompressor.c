@@ -25,7 +25,8 @@ struct api_decompressor {
     size_t turn; /* bytes decompressed in this call of api_decompressor_feed */
     bool inside; /* a gzip member or zstd frame has begun and not ended */
     api_decompressor_room *room;
-    /* Place of the decoder among those that can be evicted; NULL: it has none. */
+    /* The place of this decoder in the list of decoders that can be evicted; NULL: it has none and
+     * cannot be evicted. */
     api_decompressor_place *place;
     api_compression_memory memory;
     z_stream zlib;
@@ -43,8 +44,8 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
 {
     return u->memory.refused
                ? api_problem_set(problem, API_TOO_MANY_CODED,
-                                 "the bodies that are decompressed at the same time would take "
-                                 "more than %zu bytes of memory with this one",
+                                 "decompressing this body together with the others that are "
+                                 "arriving would take more than %zu bytes of memory",
                                  u->memory.most)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory to decompress the body");
 }
@@ -53,8 +54,9 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
 
 enum { EMPTY, BUSY, WAITING, TAKING, GONE };
 
-/* Finds a place for a zstd decoder among the decoders that can be evicted. Decoders of gzip need
- * little memory and get no place. If no place is free, this decoder cannot be evicted. */
+/* Finds a place for a zstd decoder in the list of decoders that can be evicted to free their
+ * memory. Decoders of gzip need little memory and get no place. If no place is free, this decoder
+ * cannot be evicted. */
 static void find_place(api_decompressor *u)
 {
     for (size_t i = 0; u->place == NULL && i < API_DECOMPRESS_PLACES; i++) {
@@ -99,7 +101,8 @@ static void leave(api_decompressor *u, size_t bytes)
     }
 }
 
-/* Returns the share of this body in all compressed bytes that have arrived since it began. */
+/* Returns which share of all compressed bytes that have arrived since this body began belong to
+ * this body. */
 static double part_of(const api_decompressor_room *room, const api_decompressor_place *place)
 {
     uint64_t all = atomic_load(&room->arrived) - atomic_load(&place->began);
@@ -240,9 +243,10 @@ static bool refuse_gzip(api_decompressor *u, int status, api_problem *problem)
         return refuse(u, problem, "the bytes are not in gzip format");
     }
     return refuse(u, problem,
-                  status == Z_NEED_DICT ? "a preset dictionary is needed, and none is supported"
-                  : z->msg == NULL      ? "the compressed data is damaged"
-                                        : z->msg);
+                  status == Z_NEED_DICT
+                      ? "the data needs a preset dictionary, which the server does not support"
+                  : z->msg == NULL ? "the compressed data is damaged"
+                                   : z->msg);
 }
 
 static bool feed_gzip(api_decompressor *u, const unsigned char *bytes, size_t length, size_t *used,
@@ -307,7 +311,9 @@ static bool end_frame(api_decompressor *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
     if (!u->skipped && said != ZSTD_CONTENTSIZE_UNKNOWN && said != u->to) {
-        return refuse(u, problem, "the length of the frame differs from the one in its header");
+        return refuse(
+            u, problem,
+            "the length of the decompressed frame differs from the length in the frame's header");
     }
     u->head_length = 0;
     end_part(u);

@@ -36,10 +36,10 @@ typedef struct api_decompressor api_decompressor;
 
 enum { API_DECOMPRESS_PIECE = 32 * 1024, API_DECOMPRESS_PLACES = API_MAX_DECOMPRESSING >> 20 };
 
-/* The place of a decoder that can be evicted. The decoder's request (the owner, below) needs
- * exclusive access while it decompresses; another request (the newcomer), which needs memory, needs
- * it while it evicts the decoder. Each gains exclusive access by changing the state from WAITING to
- * another.
+/* The place of a decoder that can be evicted, that is, whose memory another request may free. The
+ * decoder's request (the owner, below) needs exclusive access while it decompresses; another
+ * request (the newcomer), which needs memory, needs it while it evicts the decoder. Each gains
+ * exclusive access by changing the state from WAITING to another.
  *
  *     EMPTY --owner--> BUSY <--owner--> WAITING --newcomer--> TAKING --newcomer--> GONE
  *       ^--------owner---'                                                          |

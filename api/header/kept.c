@@ -100,8 +100,8 @@ bool api_kept_coded(api_kept *kept, api_coding coding, const char **bytes, size_
         if (made == NULL) {
             return false;
         }
-        /* If another thread was faster, `found` now points to the form that it made, which is
-         * used. */
+        /* If another thread was faster, `found` now points to the form that the other thread made;
+         * that form is sent. */
         if (atomic_compare_exchange_strong(&kept->forms[coding], &found, made)) {
             found = made;
         } else {

@@ -23,7 +23,7 @@ void api_kept_bytes(const api_kept *kept, const char **bytes, size_t *length);
 const char *api_kept_etag(const api_kept *kept);
 /* Sets `bytes` and `length` to the body in a coding other than identity, valid as long as `kept`.
  * The compressed form may be longer than the body. Returns false when memory is out; a later call
- * tries again. */
+ * tries to compress it again. */
 bool api_kept_coded(api_kept *kept, api_coding coding, const char **bytes, size_t *length);
 
 #endif

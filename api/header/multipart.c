@@ -20,14 +20,14 @@ struct api_multipart {
     state state;
     uint64_t seen;             /* number of bytes read so far */
     char delimiter[DELIMITER]; /* CR, LF, "--" and the boundary */
-    /* length: the length of `delimiter`. matched: how many of its bytes equal the bytes that were
-     * read last. */
+    /* length: the length of `delimiter`. matched: how many bytes at the beginning of `delimiter`
+     * equal the bytes that were read last. */
     size_t length, matched;
-    /* How many of the `matched` bytes cannot be content of a part, because they end the line before
-     * the content. */
+    /* How many of the `matched` bytes belong to the end of the line before the content of a part,
+     * so that they cannot be content of the part. */
     size_t implied;
     bool inside;      /* the content of a part is being read */
-    char close;       /* the last byte read after a delimiter; 0: none yet */
+    char close;       /* the last byte that was read after a delimiter; 0: none was read */
     size_t parts;     /* number of parts begun */
     uint64_t head_at; /* offset in the body of the headers of the present part */
     size_t head_length;
@@ -178,10 +178,10 @@ api_multipart *api_multipart_new(const char *content_type, api_problem *problem)
 {
     parameter boundary = {.length = 0};
     if (!find_boundary(content_type, &boundary)) {
-        api_problem_set(
-            problem, API_BAD_HEADER,
-            "the Content-Type multipart/form-data needs one boundary of 1 to %d characters",
-            BOUNDARY);
+        api_problem_set(problem, API_BAD_HEADER,
+                        "the Content-Type multipart/form-data needs exactly one parameter "
+                        "boundary, of 1 to %d characters",
+                        BOUNDARY);
         return NULL;
     }
     api_multipart *m = he_mem_zero(1, sizeof *m);
@@ -237,7 +237,7 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
     found step;
     p = skip_token(p, end);
     if (!is_word(word, p, "form-data")) {
-        return "a Content-Disposition is not form-data";
+        return "the Content-Disposition of a part must be form-data";
     }
     while ((step = next_parameter(&p, end, &next)) == FOUND) {
         bool is_file = is_named(&next, "filename");
@@ -253,7 +253,7 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
         }
         *seen = true;
         if (!is_text(next.value, next.length)) {
-            return "a name is not UTF-8, or has control characters";
+            return "the name of a part or of its file is not UTF-8, or has control characters";
         }
         /* An HTML form sends an empty filename for a file input without a chosen file. */
         if (next.length > 0 && (is_file || !filename || m->name[0] == '\0')) {
@@ -270,7 +270,7 @@ static const char *read_header(api_multipart *m, head *seen, const char *p, cons
 {
     const char *name = p, *stop = skip_token(p, end);
     if (stop == name || stop == end || *stop != ':') {
-        return "a line is not a header";
+        return "a line in the headers of a part is not of the form NAME: VALUE";
     }
     p = skip_blanks(stop + 1, end);
     while (end > p && (end[-1] == ' ' || end[-1] == '\t')) {
@@ -280,7 +280,7 @@ static const char *read_header(api_multipart *m, head *seen, const char *p, cons
     bool type = is_word(name, stop, "Content-Type");
     bool coding = is_word(name, stop, "Content-Transfer-Encoding");
     if ((disposition && seen->disposition) || (type && seen->type) || (coding && seen->coding)) {
-        return "a header is given twice";
+        return "a header of a part is given twice";
     }
     seen->disposition |= disposition;
     seen->type |= type;
@@ -290,7 +290,7 @@ static const char *read_header(api_multipart *m, head *seen, const char *p, cons
         return read_disposition(m, p, end);
     }
     if (type && length >= 10 && strncasecmp(p, "multipart/", 10) == 0) {
-        return "a part is itself multipart";
+        return "a part of the body is itself a multipart body, which is not allowed";
     }
     if (type && (length > API_MAX_PART_NAME || !is_text(p, length))) {
         return "a Content-Type is too long, not UTF-8 or has control characters";
@@ -408,7 +408,8 @@ api_multipart_step api_multipart_next(api_multipart *m, const char **at, const c
         case CLOSE:
             if (!close_delimiter(m, *(*at)++)) {
                 return refuse(problem, m->seen,
-                              "a delimiter is followed by neither \"--\" nor a new line");
+                              "after a delimiter (two hyphens and the boundary) neither \"--\" nor "
+                              "a new line follows");
             }
             break;
         case HEADERS:

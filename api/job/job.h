@@ -33,7 +33,8 @@ typedef struct api_job {
     const char *phase;         /* what the work is doing, such as "writing"; "" before it runs */
     double progress;           /* fraction of the work that is done, 0 to 1; never decreases */
     char mesh[ST_MESH_ID + 1]; /* id of the job's mesh; "" while the mesh has no id */
-    /* Times of these events of the job, in seconds since 1970 UTC; 0: not yet. */
+    /* The times at which the job was submitted, was started and ended, in seconds since 1970 UTC;
+     * 0: not yet. */
     double created, started, finished;
     int status;                      /* HTTP status of the answer; 0: no answer yet */
     char location[API_JOB_LOCATION]; /* value of the answer's header Location; "": none */

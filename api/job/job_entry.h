@@ -22,10 +22,10 @@ typedef struct api_job_entry {
      * restart, this is also the memory of the other strings in `facts`. */
     char *texts;
     api_job_work work; /* work.self is NULL when the work has ended */
-    /* The mesh whose listeners get events of the job; a reference is held. NULL if there is none or
-     * the job has ended. */
+    /* The mesh whose listeners get events of the job, with a reference held. NULL if the job has no
+     * mesh or has ended. */
     st_mesh *about;
-    st_wait wait;      /* waits, after the end of the work, until its result is durable */
+    st_wait wait;      /* waits, after the work has ended, until the result of the job is durable */
     bool changed;      /* the work changed a mesh */
     bool is_kept;      /* the store has a record of the job */
     bool interrupted;  /* the job was queued or running when the server last stopped */
@@ -33,7 +33,7 @@ typedef struct api_job_entry {
     double ended;      /* time of the end, set together with `end` */
     uint64_t noted;    /* position in the journal of the record of the job's end; 0: none */
     st_wait accepted;  /* waits until the record that the job was accepted is durable */
-    uint32_t uses;     /* number of references: from the list, the pool and listeners */
+    uint32_t uses; /* number of references: of the list of jobs, the thread pool and listeners */
     bool listed;
     struct api_job_entry *next, *previous; /* neighbours in the list, in the order of job numbers */
     api_job_listener *waiting;             /* listeners to wake when the job changes */
@@ -41,7 +41,8 @@ typedef struct api_job_entry {
     _Atomic bool stop;
     _Atomic(const char *) phase;
     _Atomic double progress;
-    _Atomic bool awaited; /* a listener waits until `progress` has grown beyond `shown` */
+    /* A listener waits until `progress` is greater than `shown` by enough to send it. */
+    _Atomic bool awaited;
     _Atomic double shown;
 } api_job_entry;
 
@@ -90,8 +91,8 @@ const char *api_job_entry_mesh(const api_job *facts);
 st_status api_job_keep(api_job_entry *job, uint64_t *position);
 /* Deletes the store's record of a job. Fails with the errors of api_job_keep. */
 st_status api_job_forget(const api_job_entry *job);
-/* Loads from the store the jobs of before the restart; those that had not ended are marked as
- * interrupted. Returns false when memory is out or the store cannot be read. */
+/* Loads the jobs that the store recorded before the restart of the server. Jobs that had not ended
+ * are marked as interrupted. Returns false when memory is out or the store cannot be read. */
 bool api_job_restore(api_job_table *table);
 /* Appends a job to the list of its table. */
 void api_job_entry_append(api_job_table *table, api_job_entry *job);

@@ -13,7 +13,7 @@ struct api_job_listener {
     api_text text;      /* the message that is being sent */
     size_t sent;
     bool begun, ended, stopping;
-    /* the job as the last message described it */
+    /* the state of the job that the last message showed */
     api_job_state state;
     const char *phase;
     double progress;

@@ -227,7 +227,7 @@ bool api_job_restore(api_job_table *table)
         return false;
     }
     /* The ends of interrupted jobs are recorded only now, because nothing can be recorded while
-     * jobs are read from the store. At the next restart these jobs are found as ended. */
+     * jobs are read from the store. So at the next restart these jobs are found to have ended. */
     for (api_job_entry *j = table->first; j != NULL; j = j->next) {
         uint64_t position;
         if (j->interrupted) {

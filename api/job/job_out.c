@@ -49,13 +49,13 @@ static void write_body(api_out *out, const void *value)
 
 static const api_field job_fields[] = {
     API_FIELD("id", "text", shown, job.id, .required = true,
-              .doc = "Only the token that started the job may see and cancel it; without tokens, "
-                     "every client that knows the id."),
+              .doc = "The id of the job. Only the token that started the job may see and cancel "
+                     "it; on a server without tokens, every client that knows the id may."),
     API_FIELD("operation", "text", shown, job.operation, .required = true,
               .doc = "The operationId of the request."),
     API_FIELD("state", "#job_state", shown, state, .required = true),
     API_FIELD("phase", "text?", shown, job.phase, .required = true, .zero_is_none = true,
-              .doc = "What the job does now, or did last if it has ended."),
+              .doc = "What the job is doing now or, if it has ended, what it did last."),
     API_FIELD("progress", "number", shown, progress, .required = true,
               .doc = "How much of the work is done, from 0 to 1; it never decreases."),
     API_FIELD("mesh", "text?", shown, job.mesh, .required = true, .zero_is_none = true,

@@ -107,9 +107,9 @@ static api_job_entry *ended_first(const api_job_table *table)
     return found;
 }
 
-/* Drops jobs that have ended: those that are too old, and those that ended first while the table
- * exceeds its limits or lacks space for `room` more jobs. The last answer is kept, however large it
- * is. */
+/* Drops jobs that have ended: those that ended too long ago, and, as long as the table exceeds its
+ * limits or lacks space for `room` more jobs, the job that ended first. The newest answer is kept,
+ * however large it is. */
 static void tidy(api_job_table *table, size_t room)
 {
     double now = st_clock_utc();
@@ -314,7 +314,8 @@ static void resume(st_wait *wait)
         answer_lost(j);
         note_end(j);
         break;
-    case ST_WAIT_STOPPED: /* the server stops, and the changes may still become durable */
+    /* The server stops before it is known whether the changes become durable. */
+    case ST_WAIT_STOPPED:
         answer_lost(j);
         decide_end(j);
         break;
@@ -364,7 +365,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    /* `about` is read without the lock: it is released only when the job ends. */
+    /* `about` is read without the lock, because it is released only when the job ends. */
     tell_listeners(j->about, &facts);
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
@@ -411,7 +412,8 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
 static void stop_if_lost(api_job_entry *j)
 {
     if (j->accepted.end == ST_WAIT_LOST) {
-        atomic_store(&j->stop, true); /* the client will not get the answer 202 */
+        /* The client will not get the answer 202, so it does not know the job. */
+        atomic_store(&j->stop, true);
     }
 }
 

@@ -65,7 +65,7 @@ typedef struct api_job_outcome {
     /* Values of the answer's headers, as in api_job; NULL for a header that the answer does not
      * have. */
     const char *headers[API_JOB_HEADERS];
-    st_shown awaits; /* what must be durable before clients see the end of the job */
+    st_shown awaits; /* what must be durable before clients may see the end of the job */
     bool changed;    /* the work changed a mesh */
 } api_job_outcome;
 
@@ -88,7 +88,9 @@ typedef struct api_job_work {
     /* How many queued and running jobs the token `holder` may have, including this job; 0 is no
      * limit. */
     uint64_t most;
-    bool claims; /* the work has claimed `about` (store/write.h) */
+    /* The work has claimed the mesh `about`: other requests cannot write to the mesh until the work
+     * has ended (store/write.h). */
+    bool claims;
 } api_job_work;
 
 /* Starts a job: takes `work` and describes the job in `out`. `operation` must be a literal; `mesh`

@@ -179,7 +179,9 @@ void api_in_pointer(const api_in *in, char *out, size_t size)
         }
         char *next = add_step(at, end, name);
         if (next == at) {
-            break; /* no space for this step: the result is the pointer of an enclosing value */
+            /* There is no space for this step of the path: the result is the pointer of an
+             * enclosing value. */
+            break;
         }
         at = next;
     }

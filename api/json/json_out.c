@@ -229,8 +229,8 @@ void api_out_id(api_out *out, uint32_t id)
     }
 }
 
-/* The number of ids for which space in the output is reserved at once, and the length of the
- * longest id with its comma. */
+/* The number of ids for which space in the output is reserved at once, and the most bytes that one
+ * id takes with its comma. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
 /* Returns false if writing must stop: memory is out or the work was cancelled. In both cases the
@@ -314,7 +314,7 @@ static void date_of(int64_t day, int64_t *year, int *month, int *date)
 
 void api_out_time(api_out *out, double seconds)
 {
-    /* ISO 8601 has the form written here only for years with four digits. */
+    /* Only years with four digits can be written in this form of ISO 8601. */
     if (!(seconds > -62167219200.0 && seconds < 253402300799.0)) {
         api_out_null(out);
         return;

@@ -27,7 +27,8 @@ typedef struct api_out {
     uint64_t filled;  /* bit d is set if nesting level d has a value already */
     unsigned depth;
     bool keyed; /* a key was written, but not yet its value */
-    /* Asked, while a long list is written, whether to stop; NULL: writing never stops. */
+    /* Called while a long list is written, to ask whether writing must stop; NULL: writing never
+     * stops. */
     struct he_progress *progress;
     unsigned parts; /* number of parts of lists of ids written since `progress` was set */
 } api_out;

@@ -21,8 +21,8 @@ bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, ap
  * pointer of the problem. */
 bool api_json_refuse_at(api_problem *problem, uint64_t place, int code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Refuses the text because of the fault that the lexer found at offset `place`, with the JSON
- * pointer of the value that the lexer is at. */
+/* Refuses the text because of a fault that the lexer found at offset `place`; the problem gets the
+ * JSON pointer of the value at which the lexer stopped. */
 bool api_json_refuse_fault(const he_lexer *x, uint64_t place, api_problem *problem);
 
 #endif

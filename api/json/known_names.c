@@ -75,7 +75,8 @@ size_t api_name_distance(const char *a, const char *b)
 void api_known_names_add(api_known_names *known, const char *name)
 {
     size_t distance = api_name_distance(known->wanted, name);
-    /* "cub" counts as like "cube"; "ab" is too short to be like "cd". */
+    /* The allowed distance grows with the length of the name: "cub" is near enough to "cube", but
+     * "ab" is not near enough to "cd". */
     size_t most = (strlen(known->wanted) + 2) / 4;
     if (distance <= most && (known->nearest == NULL || distance < known->distance)) {
         known->nearest = name;

@@ -22,8 +22,9 @@ enum { API_KNOWN_TEXT = 200 };
  * names are borrowed. */
 typedef struct api_known_names {
     const char *wanted;
-    const char *nearest; /* the existing name that is most like `wanted`; NULL: none is like it */
-    size_t distance;     /* api_name_distance between `wanted` and `nearest` */
+    /* The existing name that is most like `wanted`; NULL: no name is like it. */
+    const char *nearest;
+    size_t distance; /* api_name_distance between `wanted` and `nearest` */
     char list[API_KNOWN_TEXT];
     size_t length;
     size_t left_out;

@@ -30,10 +30,11 @@ static const struct {
 } core_rows[HE_STATUS_COUNT] = {
     [HE_OK] = {200, ""},
     [HE_NO_MEMORY] = {507, "The server had no memory for the request. Nothing was changed."},
-    [HE_IDS_EXHAUSTED] =
-        {507, "Ids have 32 bits and are not reused. The operation `compact` renumbers the mesh."},
-    [HE_LIMIT] = {413, "The request holds more than a configured limit allows; the detail names "
-                       "it."},
+    [HE_IDS_EXHAUSTED] = {507,
+                          "The mesh has used up its ids, which have 32 bits and are not reused. "
+                          "The operation `compact` gives all elements new ids without gaps."},
+    [HE_LIMIT] = {413,
+                  "The request contains more than a limit allows; the detail names the limit."},
     [HE_CANCELLED] = {503, "The request was cancelled before it was done. Nothing was changed."},
     [HE_SYNTAX] = {400, "The file does not follow its format; the detail says where."},
     [HE_BAD_VALUE] = {400, "A number, string or count is not allowed here; the detail gives the "
@@ -50,10 +51,11 @@ static const struct {
                               "off, ply and json, and stl with encoding=ascii, can hold it."},
     [HE_CORRUPT] = {500, "A mesh in the server breaks its own invariants. GET .../check lists "
                          "them."},
-    [HE_NO_SUCH_ELEMENT] = {422, "The id was never issued in this mesh. In a path this is 404, in "
-                                 "a body 422."},
-    [HE_DELETED_ELEMENT] = {422, "The element was deleted; ids are not reused. In a path this is "
-                                 "410, in a body 422."},
+    [HE_NO_SUCH_ELEMENT] = {422, "No element of this mesh ever had the id. The status is 404 if "
+                                 "the id is in the path, and 422 if it is in the body."},
+    [HE_DELETED_ELEMENT] = {422,
+                            "The element with this id was deleted; ids are not reused. The status "
+                            "is 410 if the id is in the path, and 422 if it is in the body."},
     [HE_REPEATED_ELEMENT] = {422, "A list names the same element twice."},
     [HE_TOO_FEW_CORNERS] = {422, "Faces are polygons of three corners or more."},
     [HE_REPEATED_CORNER] = {422, "The corners of a face must be different vertices."},
@@ -74,14 +76,17 @@ static const struct {
         {422, "An element whose bool attribute `locked` is true cannot be deleted; a locked vertex "
               "keeps its position, a locked edge its ends and a locked face its corners. Cutting "
               "the element is allowed. Set the attribute to false to unlock it."},
-    [HE_ISOLATED_VERTEX] = {422, "A vertex without a face has no dual: give it one, or delete it."},
-    [HE_NO_RIM] = {422, "The faces to extrude or inset need an outline, and a whole closed "
-                        "component has none. Leave out a face."},
+    [HE_ISOLATED_VERTEX] = {422, "The dual of a mesh has no face for a vertex without faces: add a "
+                                 "face to the vertex, or delete it."},
+    [HE_NO_RIM] = {422, "The faces to extrude or inset need an outline, and all faces of a closed "
+                        "component together have none. Leave out a face."},
     [HE_RIM_MEETS_ITSELF] =
-        {422, "The outline of the faces may pass each vertex only once. Add the faces between the "
-              "parts that touch, or edit one part after the other."},
-    [HE_NO_NORMAL] = {422, "The normal of a face is derived from its area, and that of several "
-                           "faces from the sum of their areas. Give a vector, or a factor."},
+        {422,
+         "The outline of the faces may pass each vertex only once. If parts of the faces touch at "
+         "a vertex, add the faces between these parts, or edit one part after the other."},
+    [HE_NO_NORMAL] = {422, "Without an area a face has no normal, and the faces to move have no "
+                           "common normal if their vector areas add up to zero. Give a vector or "
+                           "a factor instead of a distance."},
     [HE_NOT_TRIANGLE] =
         {422, "Every face must be a triangle for this operation: use `triangulate` first."},
     [HE_ATTRIBUTE_CLASH] = {422, "Attributes with the same name on the same kind of element must "
@@ -177,7 +182,8 @@ bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool change
     }
     if (!changed) {
         return api_problem_set(problem, API_STORE_LOST,
-                               "the answer would show a change that was lost: %s", wait->reason);
+                               "the answer would show a change that could not be saved: %s",
+                               wait->reason);
     }
     int code = wait->status == ST_FULL ? API_STORE_FULL : API_STORE_FAILED;
     return api_problem_set(problem, code, "the change was lost: %s", wait->reason);
@@ -307,8 +313,9 @@ static void write_report(const api_problem *problem, api_out *out)
     api_out_key_u64(out, "total", report->total);
 }
 
-/* Replaces HE_NO_MEMORY by API_MEMORY_BUDGET if the memory budget is used up. Functions that run
- * out of memory cannot tell the two apart, but the client should know. */
+/* Replaces HE_NO_MEMORY by API_MEMORY_BUDGET if the memory budget is used up: a function that runs
+ * out of memory does not know whether the budget or the machine's memory is the reason, but the
+ * client should. */
 static int named_code(int code)
 {
     return code == HE_NO_MEMORY && st_memory_was_over_budget() ? API_MEMORY_BUDGET : code;

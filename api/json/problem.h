@@ -22,7 +22,7 @@
       "Objects may have only the members that are documented, so that a misspelt one is "          \
       "never ignored. The pointer names the member.")                                              \
     X(DUPLICATE_MEMBER, "duplicate_member", 400, "A member is given twice",                        \
-      "An object may hold each member once. The pointer names the one that is repeated.")          \
+      "An object may have each member only once. The pointer names the repeated member.")          \
     X(MISSING_MEMBER, "missing_member", 400, "A member is missing",                                \
       "The object at the pointer needs a member that it does not have.")                           \
     X(WRONG_TYPE, "wrong_type", 400, "A value has the wrong type",                                 \
@@ -34,14 +34,13 @@
     X(UNKNOWN_OPERATION, "unknown_operation", 400, "No such operation",                            \
       "GET /v1/operations lists the operations by name.")                                          \
     X(CONFLICTING_MEMBERS, "conflicting_members", 400, "Members exclude each other",               \
-      "The object gives two members that are alternatives of one another, such as an element "     \
-      "and its list.")                                                                             \
+      "The object has two members of which it may have only one, such as `face` and `faces`.")     \
     X(BAD_REFERENCE, "bad_reference", 400, "A reference does not name an earlier result",          \
-      "A string such as \"$a.vertex\" stands for a result of an earlier operation of the same "    \
-      "list: that operation carries \"as\":\"a\" and has a result of this name and a fitting "     \
-      "kind.")                                                                                     \
+      "A string such as \"$a.vertex\" stands for the result `vertex` of an earlier operation of "  \
+      "the list, which has the member \"as\":\"a\". There is no such operation, or its result is " \
+      "not of the kind that is needed here.")                                                      \
     X(REPEATED_NAME, "repeated_name", 400, "A name is given twice in one list",                    \
-      "Each \"as\" name may be used for one operation of a list.")                                 \
+      "Two operations of a list may not have the same name in `as`.")                              \
     /* refusals because of the request line and its headers */                                     \
     X(BAD_PATH, "bad_path", 400, "The path is not well formed",                                    \
       "Percent escapes must be two hexadecimal digits and decode to UTF-8 without a null "         \
@@ -55,7 +54,8 @@
     X(BAD_PARAMETER, "bad_parameter", 400, "A query parameter has a bad value",                    \
       "The value does not have the parameter's type, or is out of its range.")                     \
     X(BAD_CURSOR, "bad_cursor", 400, "The cursor does not belong to this collection",              \
-      "Use a cursor exactly as `next` gave it, and with the same list.")                           \
+      "Use a cursor exactly as the member `next` of an answer gave it, and only with the list "    \
+      "that gave it.")                                                                             \
     X(BAD_HEADER, "bad_header", 400, "A header is not well formed",                                \
       "The value of a request header does not follow its syntax.")                                 \
     X(BAD_ID, "bad_id", 400, "This cannot be the id of a mesh",                                    \
@@ -82,26 +82,27 @@
     X(FORBIDDEN, "forbidden", 403, "This is not allowed",                                          \
       "The token is valid, but its role does not allow this. `role` is the role that does: "       \
       "read, write, admin or metrics.")                                                            \
-    X(PREFIX, "prefix", 403, "This token may not use the id",                                      \
-      "The token can create and see only meshes whose ids begin with one of its prefixes. "        \
-      "GET /v1/token lists the prefixes; if no id is given, the server chooses one that "          \
-      "fits.")                                                                                     \
+    X(PREFIX, "prefix", 403, "This token may not use this mesh id",                                \
+      "The token can create and see only meshes whose ids begin with one of its prefixes. GET "    \
+      "/v1/token lists the prefixes. If a request to create a mesh gives no id, the server "       \
+      "chooses an id with such a prefix.")                                                         \
     X(FOREIGN_ORIGIN, "foreign_origin", 403, "The request comes from another site",                \
-      "Changes, and expensive reads, that a browser sends for a page of another origin are "       \
-      "refused.")                                                                                  \
+      "The server refuses changes and expensive reads that a browser sends for a page of another " \
+      "origin.")                                                                                   \
     X(NO_SUCH_ROUTE, "no_such_route", 404, "There is nothing at this path",                        \
       "GET /v1/openapi.json lists every path.")                                                    \
     X(NO_SUCH_MESH, "no_such_mesh", 404, "No such mesh",                                           \
-      "No mesh has this id, or it was deleted. In a body the status is 422.")                      \
+      "No mesh has this id, or the mesh was deleted. The status is 404 if the id is in the path, " \
+      "and 422 if it is in the body.")                                                             \
     X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
-      "The mesh has no attribute of this name in this domain; GET .../attributes lists those it "  \
-      "has. Where a body names one, the status is 422.")                                           \
+      "The mesh has no attribute with this name in this domain; GET .../attributes lists its "     \
+      "attributes. The status is 404 if the attribute is in the path, and 422 if it is in the "    \
+      "body.")                                                                                     \
     X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
       "No job has this id, or it ended so long ago that it was forgotten.")                        \
     X(NO_SUCH_RESULT, "no_such_result", 404, "The job has no result",                              \
-      "It failed, was cancelled, or was answered without a body; or there was no room to keep "    \
-      "the "                                                                                       \
-      "body. The job itself says which.")                                                          \
+      "The job failed, was cancelled, or was answered without a body; or there was no room to "    \
+      "keep the body. GET of the job says which.")                                                 \
     X(NO_SUCH_REVISION, "no_such_revision", 404, "The mesh has no such revision yet",              \
       "The requested revision is higher than the present one, which every answer about the "       \
       "mesh shows.")                                                                               \
@@ -119,17 +120,19 @@
       "The redo history of the mesh is empty: nothing was undone, or a new edit was made "         \
       "after the undo.")                                                                           \
     X(UNREACHABLE_REVISION, "unreachable_revision", 409, "Undo or redo cannot reach the revision", \
-      "Undo reaches revisions that consist of edits still in effect, redo those that were "        \
-      "undone last. What was undone before a new edit can be reached by neither, but can be "      \
-      "read with ?revision= while the history holds it.")                                          \
+      "Undo goes back only over edits that are still in effect, and redo repeats only edits that " \
+      "were undone since the last new edit. If an edit was undone before a new edit, neither "     \
+      "leads to its revision, which can still be read with ?revision= while the history holds "    \
+      "it.")                                                                                       \
     X(MESH_BUSY, "mesh_busy", 409, "The mesh is being changed by a long operation",                \
-      "Changes are accepted again when it has ended; reads are possible meanwhile.")               \
+      "Changes are accepted again when the operation has ended; reads are possible meanwhile.")    \
     X(IDEMPOTENCY_BUSY, "idempotency_in_progress", 409, "The same request is in progress",         \
       "A request with this Idempotency-Key is in progress. Send it again after Retry-After "       \
       "seconds to get its answer.")                                                                \
-    X(BACKUP_KEPT, "backup_kept", 409, "There is a backup already",                                \
-      "The server keeps one backup at a time, because it takes as much room as the store. "        \
-      "Fetch it from its job and DELETE the job, or wait until it is done.")                       \
+    X(BACKUP_KEPT, "backup_kept", 409, "A backup is being made or kept already",                   \
+      "The server keeps only one backup at a time, because a backup takes as much room as the "    \
+      "store. Fetch the backup from its job and then DELETE the job; if the job still runs, wait " \
+      "until it is done.")                                                                         \
     X(NOTHING_KEPT, "nothing_kept", 409, "There is nothing to back up",                            \
       "The server was started with --store memory, and keeps nothing on the disk.")                \
     X(RELOAD_FAILED, "reload_failed", 409, "A file cannot be used",                                \
@@ -137,13 +140,13 @@
       "previous settings stay in effect.")                                                         \
     X(REVISION_GONE, "revision_gone", 410, "The revision is not available any more",               \
       "A cursor or parameter names a revision that the server no longer holds. Start again "       \
-      "without it.")                                                                               \
+      "without the cursor or parameter.")                                                          \
     X(STALE, "stale_revision", 412, "The mesh is at another revision",                             \
-      "If-Match or expected_revision does not name the present revision, which is in "             \
-      "`revision`. Read the mesh again, and then decide what to change.")                          \
+      "If-Match or expected_revision does not name the present revision, which the problem's "     \
+      "member `revision` tells. Read the mesh again, and then decide what to change.")             \
     X(PRECONDITION, "precondition_failed", 412, "The precondition does not hold",                  \
-      "If-None-Match: * asks that the mesh does not exist, and it does; or If-Match asks that it " \
-      "does, and it does not.")                                                                    \
+      "With If-None-Match: * the mesh must not exist, but it exists; or with If-Match the mesh "   \
+      "must exist, but it does not.")                                                              \
     X(BODY_TOO_LARGE, "body_too_large", 413, "The body is too large",                              \
       "The body is larger than is allowed here. A compressed body is also refused if it "          \
       "decompresses to too many times its size, or needs too large a window: send it "             \
@@ -156,29 +159,32 @@
       "Content-Encoding may be gzip, zstd or identity, and one of them only. Accept-Encoding and " \
       "`supported` list them.")                                                                    \
     X(WRONG_HOST, "wrong_host", 421, "The server does not accept this Host",                       \
-      "Host must name localhost, a loopback address or a configured name, so that a web page "     \
-      "cannot reach a local server through a name of its own.")                                    \
+      "The header Host must name localhost, a loopback address or a name that the option "         \
+      "--allow-host allows. Otherwise any web page could reach a local server through a host "     \
+      "name of its own (DNS rebinding).")                                                          \
     X(HEADERS_TOO_LARGE, "headers_too_large", 431, "The headers are too large",                    \
-      "A request may have 100 headers and 16384 bytes of them, fewer with a long target.")         \
+      "A request may have at most 100 headers with 16384 bytes in all, and fewer if its path and " \
+      "query are long.")                                                                           \
     X(IDEMPOTENCY_MISMATCH, "idempotency_mismatch", 422, "The key was used for another request",   \
-      "A request with the Idempotency-Key of an earlier request, within a day, must have "         \
-      "the same method, path, query, Content-Type and body.")                                      \
+      "If a request has the Idempotency-Key of an earlier request of the last day, it must also "  \
+      "have the same method, path, query, Content-Type and body.")                                 \
     X(UNCLEAR_PARTS, "unclear_parts", 422, "It is not clear which file is the mesh",               \
-      "Exactly one file of a multipart/form-data body must be a mesh, judged by its name or "      \
-      "media type or, if no file is, by its first bytes; the others are files that it "            \
-      "refers to. ?format= chooses one if there are several.")                                     \
+      "Exactly one file of a multipart/form-data body must be a mesh file, and the others are "    \
+      "files that it refers to. Names and media types show which file is a mesh file; if they "    \
+      "show none, the first bytes do. If there are several mesh files, ?format= chooses the one "  \
+      "of that format.")                                                                           \
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests",                                          \
-      "The token (or, without one, the address) has used up its requests or bytes a second. "      \
-      "The detail says which; the header RateLimit-Policy shows the limits, RateLimit what "       \
-      "is left. Try again after Retry-After seconds.")                                             \
+      "The token (or, if the request has no token, the client's address) has used up its "         \
+      "requests or bytes a second; the detail says which. The header RateLimit-Policy shows the "  \
+      "limits, and RateLimit what is left. Try again after Retry-After seconds.")                  \
     X(TOO_MANY_CONNECTIONS, "too_many_connections", 429, "Too many connections from one address",  \
-      "The address has as many connections as are allowed. This one is closed; use the open "      \
-      "ones, or try again after Retry-After seconds.")                                             \
+      "The client's address has as many connections as are allowed. This connection is closed; "   \
+      "use the open ones, or try again after Retry-After seconds.")                                \
     X(TOO_MANY_JOBS_OF_TOKEN, "too_many_jobs_of_token", 429, "Too many jobs of one token",         \
       "The token has as many waiting and running jobs as are allowed. Try again after "            \
-      "Retry-After seconds, or cancel one.")                                                       \
-    X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
-      "This is an error in the server; the request may be correct.")                               \
+      "Retry-After seconds, or cancel one of these jobs.")                                         \
+    X(INTERNAL, "internal", 500, "The server has an internal error",                               \
+      "The request may be correct: the error is in the server.")                                   \
     X(MESH_DAMAGED, "mesh_damaged", 500, "The mesh is damaged",                                    \
       "The data of the mesh on the disk is not what was written. The mesh can be deleted, "        \
       "or replaced by PUT; other meshes are not affected.")                                        \
@@ -190,7 +196,7 @@
       "The method is unknown, or the body has a transfer coding other than chunked. The "          \
       "connection is closed.")                                                                     \
     X(NOT_READY, "not_ready", 503, "The server is not ready",                                      \
-      "It is starting or stopping. Try again later.")                                              \
+      "The server is starting or stopping. Try again later.")                                      \
     X(OVERLOADED, "overloaded", 503, "Too many connections",                                       \
       "The server has as many connections as are allowed. Try again after Retry-After "            \
       "seconds.")                                                                                  \
@@ -209,28 +215,28 @@
     X(LOADING, "loading", 503, "The mesh is being loaded",                                         \
       "Reading the mesh from the disk takes longer than a request may wait. Try again after "      \
       "Retry-After seconds.")                                                                      \
-    X(STORE_BEHIND, "store_behind", 503, "The disk is behind",                                     \
+    X(STORE_BEHIND, "store_behind", 503, "The disk is too slow for the changes",                   \
       "Too many changes are waiting for the disk. Nothing was changed; try again after "           \
       "Retry-After seconds.")                                                                      \
-    X(STORE_LOST, "store_lost", 503, "A change that the answer would show was lost",               \
-      "The answer would show a change by another request that could not be saved. This "           \
-      "request changed nothing; send it again to see what was saved.")                             \
+    X(STORE_LOST, "store_lost", 503, "A change that the answer would show could not be saved",     \
+      "The answer would show a change by another request, and that change could not be saved on "  \
+      "the disk. This request changed nothing; send it again to see what was saved.")              \
     X(STORE_FAILED, "store_failed", 503, "The disk failed",                                        \
       "A write or a sync of the disk failed. The change was not made, or is lost. Reads are "      \
       "still possible, but no changes are accepted until the server is restarted.")                \
     X(INTERRUPTED, "interrupted", 503, "The server stopped before the job had ended",              \
-      "Only for a job: it was waiting or running when the server stopped or was killed. It "       \
-      "changed nothing; send the request again.")                                                  \
+      "The job was waiting or running when the server stopped or was killed. The job changed "     \
+      "nothing; send its request again.")                                                          \
     X(BACKUP_FAILED, "backup_failed", 503, "The backup was not made",                              \
-      "The detail says why: most likely there is not enough room for it beside the store.")        \
+      "The detail says why. Most likely the disk has not enough space for a copy of the store.")   \
     X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
-      "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
+      "The server supports HTTP/1.1 and HTTP/1.0. The connection is closed.")                      \
     X(STORE_FULL, "store_full", 507, "The disk is full",                                           \
       "The change was not made, or is lost. Reads are still possible, meshes can be "              \
       "deleted, and changes are accepted again as soon as there is room.")                         \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
-      "What the request needs does not fit in the configured memory budget beside what is in "     \
-      "use. Delete a mesh and try again, or try again later.")                                     \
+      "The request needs more memory than the configured memory budget has left. Delete a mesh "   \
+      "and try again, or try again later.")                                                        \
     X(QUOTA, "quota", 507, "The token's quota is used up",                                         \
       "The token that created the mesh is limited in the number of its meshes, or in their "       \
       "memory; the detail says which. Nothing was changed. Delete a mesh of that token, or "       \
@@ -293,8 +299,9 @@ bool api_problem_set_core(api_problem *problem, const he_error *err);
 /* Fills the problem from a refusal of core about the path; elements that do not exist give the
  * status 404 or 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Fills the problem sent instead of an answer whose content did not become durable; `wait` has the
- * reason. `changed` says that the request itself made the change that was lost. */
+/* Fills the problem that is sent instead of an answer if a change that the answer shows did not
+ * become durable; `wait` has the reason. `changed` says that the request itself made the change
+ * that was lost. */
 bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

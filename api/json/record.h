@@ -42,7 +42,8 @@ typedef struct api_field {
     api_form form;
     size_t offset;     /* offset of the value in the struct */
     bool zero_is_none; /* 0 or "" means that there is no value */
-    /* 1 + the offset of a bool that says if there is a value (API_KNOWN); 0: there is always one */
+    /* 1 + the offset of a bool in the struct that says whether there is a value (API_KNOWN); 0:
+     * there always is one */
     size_t known;
     /* Writes a value that must be computed from the struct at `value`, after the member's name;
      * NULL if the value is written as it is. */

@@ -15,9 +15,11 @@ enum { REQUESTS, BYTES, AMOUNTS };
 
 typedef struct bucket {
     api_rate_key key;
-    uint64_t at;   /* time for which `taken` was last computed */
-    uint64_t full; /* time from which the bucket is full, because both amounts are 0 */
-    /* Amounts not refilled yet, in millionths of a request and of a byte. */
+    uint64_t at; /* the time at which `taken` was last computed */
+    /* The time from which on the bucket is full, because both amounts `taken` are 0 then. */
+    uint64_t full;
+    /* Amounts that were taken from the bucket and are not refilled yet, in millionths of a request
+     * and of a byte. */
     uint64_t taken[AMOUNTS];
     uint32_t next; /* next bucket in its chain of the hash table */
     uint32_t newer, older;

@@ -48,7 +48,7 @@ typedef struct api_rate_left {
 } api_rate_left;
 
 typedef struct api_rate_state {
-    api_rate_left requests, bytes; /* all members are zero for an amount without a limit */
+    api_rate_left requests, bytes; /* if an amount has no limit, all its members are zero */
 } api_rate_state;
 
 /* Makes a table for `capacity` clients. Returns NULL when memory is out. */

@@ -6,8 +6,8 @@
 
 /* Reads after which revision the client wants events. A browser that reconnects repeats its request
  * with Last-Event-ID, which is newer than the `since` in the URL. A Last-Event-ID that this server
- * did not make is treated as one of another mesh, because a browser would not reconnect after a
- * refusal. */
+ * did not make is not refused, because a browser would not reconnect after a refusal; it is treated
+ * like an id of another mesh, for which the client gets `resync`. */
 static bool read_since(api_exchange *x, st_since *since)
 {
     const char *last = x->request.headers[API_HEADER_LAST_EVENT_ID];

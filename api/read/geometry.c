@@ -20,7 +20,7 @@ typedef struct geometry {
     api_rows rows;
 } geometry;
 
-/* What came of the attempt to answer with the slots that are kept with the mesh. */
+/* The result of the attempt to answer with the slots that are kept with the mesh. */
 typedef enum geometry_step {
     TAKEN,   /* the rows to send were chosen (`rows` of geometry) */
     MISSING, /* no slots are kept */
@@ -48,8 +48,8 @@ static bool is_working(const api_exchange *x)
 /* --- using and making slots --- */
 
 /* Brings the slots up to date with the revision in x->info. Returns HE_LIMIT if that takes too long
- * for a worker. Returns HE_UNSUPPORTED if the slots must be made anew, because the history does not
- * reach back or because an update would take about as long. */
+ * for a worker thread. Returns HE_UNSUPPORTED if the slots must be made anew, because the history
+ * does not reach back or because an update would take about as long. */
 static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, const he_mesh *mesh,
                                he_error *err)
 {
@@ -63,10 +63,12 @@ static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, cons
         records += delta == NULL ? 0 : delta->count + 1;
         if (delta == NULL) {
             status = he_fail_plain(err, HE_UNSUPPORTED,
-                                   "the history does not reach back to the last drawn revision");
+                                   "the history does not reach back to the revision of the arrays "
+                                   "that the server keeps");
         } else if (records > most) {
             status = he_fail_plain(err, HE_LIMIT,
-                                   "there are too many changes since the last drawn revision");
+                                   "there are too many changes since the revision of the arrays "
+                                   "that the server keeps");
         } else {
             status = he_touched_add(&touched, mesh, delta, err);
         }
@@ -273,8 +275,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Sets the ETag of the answer if the kept slots show it, so that If-None-Match is answered 304
- * before a job is made. */
+/* Sets the ETag of the answer if the slots that are kept with the mesh show it, so that a matching
+ * If-None-Match is answered 304 before a job is made. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);

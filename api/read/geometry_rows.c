@@ -209,8 +209,8 @@ static bool put_triangle(api_rows *r)
     return true;
 }
 
-/* Writes the next piece of the current part of the answer: the header, four ids, or a row. Returns
- * false if the part has ended. */
+/* Writes the next piece of the present part of the answer: the header, four row numbers, or a row.
+ * Returns false if the part has ended. */
 static bool put(api_rows *r)
 {
     switch (r->part) {

@@ -77,7 +77,7 @@ void api_job_result(api_exchange *x)
         api_write_job(&x->out, &job, true);
         api_answer_json(x, 202);
     } else if (path[0] == '\0') {
-        api_fail(x, API_NO_SUCH_RESULT, "the job is %s, and its answer is not kept",
+        api_fail(x, API_NO_SUCH_RESULT, "the job is %s, and there is no answer to fetch",
                  api_job_state_name(job.state));
     } else {
         const char *tag = kept_header(&job, "ETag");

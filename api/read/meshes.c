@@ -64,7 +64,8 @@ static bool write_range(api_exchange *x, list_page *p, const char *prefix)
 {
     size_t count = 0, asked;
     do {
-        /* One card more than needed is read, which shows whether there is a next page. */
+        /* One card (description of a mesh) more than needed is read, which shows whether there is a
+         * next page. */
         size_t left = p->limit - p->given + 1;
         asked = left < CARDS ? left : CARDS;
         st_status status = st_cards(x->store, p->from, p->cards, asked, &count);

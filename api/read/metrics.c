@@ -1,7 +1,7 @@
 /* metrics.c - GET /metrics: writes each metric of metric_rows.h from counters and from the present
  * state of the server.
  *
- * A worker can answer this request, because locks are held only for moments. */
+ * A worker thread can answer this request, because locks are held only for moments. */
 #include "api/metric/metric_page.h"
 
 #include "api/json/problem.h"

@@ -75,8 +75,8 @@ static unsigned char *put_element(unsigned char *at, const he_mesh *base, he_kin
     return at;
 }
 
-/* Drops the splits before `first`, which are the finest. Splits are sent from the last to the
- * first. */
+/* Drops the splits before `first`, which are the finest ones, because splits are sent from the last
+ * to the first. */
 static void drop_splits(he_progressive *mesh, size_t first)
 {
     if (first == 0) {

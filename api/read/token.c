@@ -168,5 +168,5 @@ static void reload(api_exchange *x)
 
 void api_admin_reload(api_exchange *x)
 {
-    api_defer(x, reload); /* reload() reads files, so it must not run on a worker */
+    api_defer(x, reload); /* reload() reads files, so it must not run on a worker thread */
 }

@@ -217,8 +217,8 @@ static bool find_route(api_exchange *x)
     x->head = strcmp(x->request.method, "HEAD") == 0;
     if ((x->route->flags & API_EXPENSIVE) && is_of_other_site(x)) {
         return api_fail(x, API_FOREIGN_ORIGIN,
-                        "this read is expensive, and Sec-Fetch-Site says that a page of another "
-                        "site asks for it");
+                        "the header Sec-Fetch-Site says that a page of another site sent this "
+                        "request, which is too expensive for such pages");
     }
     return api_gate_enter(x) && check_variables(x, &variables) && check_query(x);
 }
@@ -268,7 +268,7 @@ bool api_answer_from_card(api_exchange *x)
     }
     if (status != ST_OK || mesh != NULL) {
         st_release(mesh);
-        /* The caller then loads the mesh, which finds the mesh or reports the error. */
+        /* The caller then loads the mesh: loading finds the content or reports the error. */
         return false;
     }
     x->info = cold.info;

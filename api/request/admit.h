@@ -13,8 +13,9 @@ bool api_admit(api_exchange *x);
 /* Looks for the mesh on disk if x->is_cold, which means that it is not in memory. Blocks. Returns
  * false if the request is refused. */
 bool api_load_mesh(api_exchange *x);
-/* Tries to answer or refuse a request to a mesh that is not in memory (x->is_cold) from its stored
- * card (name, revision and counts), without loading the mesh. Returns true if it could. Blocks. */
+/* Tries to answer or refuse a request to a mesh that is not in memory (x->is_cold) from its card,
+ * the stored description with name, revision and counts, without loading the mesh. Returns true if
+ * it has answered or refused. Blocks. */
 bool api_answer_from_card(api_exchange *x);
 
 /* Returns how many bytes the body of the request may have. */

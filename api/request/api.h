@@ -62,7 +62,7 @@ typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 /* What the work of api_work or of a job costs, so that the server can schedule it. */
 typedef struct api_load {
     bool reads;       /* the work changes nothing */
-    double seconds;   /* estimated duration; far too low for some work */
+    double seconds;   /* estimated duration in seconds; for some work the estimate is far too low */
     const char *mesh; /* id of the mesh that the work is about; "" if there is none */
 } api_load;
 
@@ -81,7 +81,7 @@ typedef struct api_answer {
      * never blocks on a lock for long. */
     const char *bytes;
     int64_t length; /* -1: unknown, with `read` only */
-    bool slow;      /* `read` computes for milliseconds: do not call it on a worker */
+    bool slow;      /* `read` computes for milliseconds: do not call it on a worker thread */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
     /* The body if it has no known end, such as an event stream; then `bytes` and `read` are NULL.
@@ -147,7 +147,7 @@ typedef struct api_options {
     const char *commit; /* git commit of the build; "" or NULL if unknown */
 } api_options;
 
-/* A table of routes. The server passes the one of api/describe/routes.h. */
+/* A table of routes. The server passes the table of api/describe/routes.h. */
 typedef struct api_route_table {
     const struct api_route *rows;
     size_t count;
@@ -187,7 +187,7 @@ void api_set_worker_progress(api_exchange *exchange,
 /* Sets the problem that the client gets if the callback `tell` stops the work, instead of
  * HE_CANCELLED. `tell` calls it before it returns false. */
 void api_give_up(api_exchange *exchange, int code, const char *text);
-/* Returns true if the request may become a job if its client prefers that. */
+/* Returns true if the route allows that the request becomes a job, should its client prefer one. */
 bool api_can_be_job(const api_exchange *exchange);
 /* Returns the cost of the work. The server calls it after it got API_WORK or API_JOB, before the
  * work begins. */

@@ -118,8 +118,8 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
-/* Refuses a request to a mesh whose changes were lost. While the store cannot write, a write is
- * refused with the reason for that. */
+/* Refuses a request to a mesh whose changes were lost. If the store cannot write now, a write is
+ * refused with the reason of that. */
 static bool fail_lost(api_exchange *x)
 {
     st_health health;
@@ -150,7 +150,8 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_NO_MEMORY:
         return api_fail_memory(x);
     case ST_BUDGET:
-        return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit in the memory budget");
+        return api_fail(x, API_MEMORY_BUDGET,
+                        "the memory budget has not enough space left for the mesh");
     case ST_TOO_MANY:
         return api_fail(x, API_TOO_MANY_MESHES,
                         "the server already holds as many meshes as it is allowed to");
@@ -164,11 +165,14 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_LISTENERS:
         return api_fail(x, API_OVERLOADED, "too many clients are listening to events");
     case ST_AHEAD:
-        return api_fail(x, API_NO_SUCH_REVISION, "the mesh does not have this revision yet");
+        return api_fail(x, API_NO_SUCH_REVISION,
+                        "the mesh does not have the requested revision yet");
     case ST_GONE:
-        return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
+        return api_fail(x, API_REVISION_GONE,
+                        "the history does not reach back to the requested revision");
     case ST_ELSEWHERE:
-        return api_fail(x, API_UNREACHABLE_REVISION, "neither undo nor redo leads to the revision");
+        return api_fail(x, API_UNREACHABLE_REVISION,
+                        "neither undo nor redo leads to the requested revision");
     case ST_LOST:
         return fail_lost(x);
     case ST_BEHIND:
@@ -506,7 +510,7 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
     api_coding coding;
     const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
     /* A job never answers 304: its client asked for the result, and the mesh may have got the ETag
-     * in its request after the request was sent. */
+     * in If-None-Match only after the request was sent. */
     if (none == NULL || x->phase == API_PHASE_JOB ||
         !api_etag_listed(none, etag, &x->codings, &coding)) {
         api_answer_header(x, "ETag", etag);

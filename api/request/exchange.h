@@ -56,8 +56,8 @@ struct api_service {
     api_decompressor_room decompressing; /* counts the memory of all decoders of request bodies */
 };
 
-/* How far an exchange is: it receives the body on a worker, works on a thread that may block, works
- * in a job, or is answered. It only moves forward. */
+/* How far an exchange is: it receives the body on a worker thread, works on a thread that may
+ * block, works in a job, or is answered. It only moves forward. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
 enum { API_LOCATION = 512 }; /* the most bytes that a percent-encoded path of this API has */
@@ -77,7 +77,7 @@ struct api_exchange {
     uint32_t id;  /* {id} in the path */
     const char *code;      /* {code} in the path */
     const char *attribute; /* {name} in the path */
-    const char *job_id;    /* {job} in the path, which may be any text */
+    const char *job_id;    /* the text that stands for {job} in the path; it was not checked */
     /* The client's token, with a reference held; NULL: the route is open, or the server has no
      * tokens. */
     api_token *token;
@@ -101,7 +101,7 @@ struct api_exchange {
     /* Position in the journal of the record of the Idempotency-Key, for which the answer waits; 0:
      * none. */
     uint64_t noted;
-    const char *own_job;  /* id of the job that does the work of this exchange; NULL: none */
+    const char *own_job;  /* id of the job that does the work of this exchange; NULL: no job does */
     api_coding coding_in; /* content coding of the body */
     api_codings codings;  /* content codings that the answer may have */
 
@@ -127,14 +127,16 @@ struct api_exchange {
      * be durable (`shown` in api_answer). */
     bool shows_all;
     uint64_t since; /* the journal was durable up to this position when the exchange began */
-    st_write write; /* the write to the mesh; a claim outlives the handler that began it */
+    /* The write to the mesh; if it is a claim (api_write_claim), it outlives the handler that began
+     * it. */
+    st_write write;
     /* What the handler reads: at first a copy of the route's members `reads`, `cost`, `tag` and
      * `run`. */
     api_reading reading;
     const he_mesh *content; /* the mesh that the handler may read while it runs; NULL: none */
     /* The snapshot that owns `content`; NULL: `content` is read under the shared lock. */
     st_snapshot *snapshot;
-    bool keeps; /* `snapshot` must be kept until the exchange is freed */
+    bool keeps; /* `snapshot` is needed until the exchange is freed */
 
     /* --- the handler's state, which `free_state` frees with the exchange --- */
     void *state;
@@ -191,8 +193,8 @@ st_cause api_cause(const api_exchange *x);
  * a cursor at the body's expected_revision, or NULL. api_write_commit or st_write_abort ends the
  * write. On failure returns false with the problem filled and without holding a lock. */
 bool api_write_begin(api_exchange *x, const api_in *expected);
-/* Begins x->write as a claim, for a long edit that works on a copy without the mesh's lock
- * (store/write.h). The exchange ends the claim if the handler did not. */
+/* Begins x->write as a claim, which reserves the mesh for a long edit that works on a copy without
+ * the mesh's lock (store/write.h). The exchange ends the claim if the handler did not. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
 /* Commits x->write. From then on the client gets at least 204, even if the answer fails
  * (api_publish). Returns false with the problem filled and nothing changed if the journal has no
@@ -220,14 +222,14 @@ void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly
 double api_patience(const api_exchange *x);
 /* Returns true if work that takes this many seconds must become a job. */
 bool api_wants_job(const api_exchange *x, double seconds);
-/* Returns true if work on `amount` elements or bytes must move from a worker to a thread that may
- * block, because `amount` exceeds `threshold`. Returns false in api_work, which is on such a
- * thread. */
+/* Returns true if work on `amount` elements or bytes must move from a worker thread to a thread
+ * that may block, because `amount` exceeds `threshold`. Returns false in api_work, which is on such
+ * a thread. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
 /* Returns the number of all ids of vertices, half-edges and faces, including deleted elements,
  * which is the cost of work on the whole mesh. */
 uint64_t api_elements_of(const he_mesh *mesh);
-/* Returns true if work on the whole mesh must move from a worker to a thread that may block.
+/* Returns true if work on the whole mesh must move from a worker thread to a thread that may block.
  * Returns false in api_work, which is on such a thread. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 

@@ -136,8 +136,9 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
     return "";
 }
 
-/* Stores the key of a request that changed nothing. The key of a change is part of the change's
- * record in the journal; this one gets a record of its own, for which the answer waits. */
+/* Stores the key of a request that changed nothing. The key of a request that changed a mesh is a
+ * part of the record of the change in the journal; the key of this request gets a record of its
+ * own, and the answer waits until that record is durable. */
 static void note_unchanged(api_exchange *x, st_kept *kept)
 {
     st_keyed_note(x->store, x->keyed, &x->info, &x->noted);
@@ -150,8 +151,8 @@ void api_idempotency_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
     if (x->keyed == NULL || st_keyed_answer(x->keyed)->status != 0) {
-        /* Nothing is to be done: there is no key, or the answer is the one that was kept under the
-         * key, which is borrowed until the exchange ends. */
+        /* Nothing is to be done: the request has no key, or its answer is the one that was stored
+         * under the key, which is borrowed until the exchange ends. */
         return;
     }
     if (answer->status < 300) {

@@ -82,8 +82,8 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
 }
 
 /* Decides, after the mesh was obtained, whether the handler runs on this thread. Returns false if
- * the work is deferred, if the request is refused, or if the client has the answer already
- * (304). */
+ * the work was deferred to another thread, if the request is refused, or if the client has the
+ * answer already (304). */
 static bool is_read_here(api_exchange *x)
 {
     api_cost cost = {0};

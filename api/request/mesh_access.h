@@ -2,9 +2,9 @@
  *
  * A row of the table of routes says what its handler reads (api_reads) and what that costs. Before
  * the handler runs, api_read obtains the mesh: the present one or an earlier revision
- * (at_revision.h), on a worker, on a thread that may block, or in a job. The handler finds the mesh
- * in x->content, described by x->info, and need not release it. A handler is called once, unless it
- * calls api_begin_elsewhere.
+ * (at_revision.h), on a worker thread, on a thread that may block, or in a job. The handler finds
+ * the mesh in x->content, described by x->info, and need not release it. A handler is called once,
+ * unless it calls api_begin_elsewhere.
  *
  * A handler that changes a mesh begins a write (api_write_begin, api_write_claim). Facts about the
  * content that are needed before that, such as its size, are found by the row's `cost`
@@ -17,7 +17,7 @@
 
 /* Obtains what x->reading says the handler reads, and runs the handler. A failure fills the problem
  * (404, 410, 507). If the client has the representation already, the answer is 304. If the work is
- * too costly for a worker or becomes a job, the handler does not run: x->deferred is set to
+ * too costly for a worker thread or becomes a job, the handler does not run: x->deferred is set to
  * api_read, which is then called on another thread. */
 void api_read(api_exchange *x);
 /* Obtains what the row's `begin_reads` says, and runs the row's `begin`. */
@@ -31,8 +31,8 @@ void api_read_as(api_exchange *x, const api_reading *reading);
  * shared lock, the lock is released and x->content becomes a snapshot. So handlers also call this
  * function before long work. Returns false with the problem filled when memory is out. */
 bool api_keep_mesh(api_exchange *x);
-/* A handler that finds that its work takes too long for a worker calls this function and returns.
- * Its output is dropped, and the handler is called again on a thread that may block. */
+/* A handler that finds that its work takes too long for a worker thread calls this function and
+ * returns. Its output is dropped, and the handler is called again on a thread that may block. */
 void api_begin_elsewhere(api_exchange *x);
 
 /* --- for the member `cost` of a route --- */

@@ -47,18 +47,19 @@ typedef struct api_parameter {
 typedef enum api_reads {
     API_READS_NONE, /* nothing */
     API_READS_CARD, /* the description of the mesh (x->info), but not its content */
-    /* Used by handlers that write: `cost` reads the content under the shared lock, which is
-     * released before the handler runs and begins a write (exchange.h). */
+    /* Used for a handler that writes: the function `cost` reads the content under the shared lock,
+     * which is released before the handler runs and begins a write (exchange.h). */
     API_READS_BEFORE,
     API_READS_LOCKED, /* the content under the shared lock: for short work */
-    /* API_READS_LOCKED on a worker, else API_READS_SNAPSHOT, so that writers need not wait. */
+    /* API_READS_LOCKED on a worker thread, else API_READS_SNAPSHOT, so that writers need not
+     * wait. */
     API_READS_VIEW,
     API_READS_SNAPSHOT /* an immutable snapshot of the content */
 } api_reads;
 
 /* What the work of a handler costs. With more than API_COSTLY_ELEMENTS elements it moves from the
- * worker to a thread that may block. If it takes more seconds than the client will wait, it becomes
- * a job, provided that the route has API_LONG. */
+ * worker thread to a thread that may block. If it takes more seconds than the client will wait, it
+ * becomes a job, provided that the route has API_LONG. */
 typedef struct api_cost {
     uint64_t elements;
     double seconds; /* estimated duration; 0: not estimated */
@@ -83,7 +84,7 @@ enum {
     API_WRITES = 1, /* the route changes something, and reads If-Match */
     /* A write whose cost grows with its upload: a thread that may block works on large uploads. */
     API_COSTLY = 2,
-    API_MAY_CREATE = 4, /* the mesh in the path need not exist */
+    API_MAY_CREATE = 4, /* the mesh that the path names need not exist */
     API_OWN_ACCEPT = 8, /* the handler itself evaluates Accept, because ?format= overrides it */
     API_FIXED = 16,     /* the path is not under /v1: it is independent of the API version */
     /* The route reads Idempotency-Key; the answer is kept with the mesh (idempotency.h). */
@@ -91,8 +92,10 @@ enum {
     /* The route makes a mesh and reads Idempotency-Key; the answer is kept for the whole store
      * (idempotency.h). */
     API_IDEMPOTENCY_KEY_NEW = 64,
-    API_LONG = 128,       /* the work may become a job: the route reads Prefer and may answer 202 */
-    API_INTERRUPTS = 256, /* the route is allowed while a long edit (a claim) works on the mesh */
+    API_LONG = 128, /* the work may become a job: the route reads Prefer and may answer 202 */
+    /* The route is allowed while a long edit that has claimed the mesh works on it
+     * (store/write.h). */
+    API_INTERRUPTS = 256,
     /* The route takes `dry_run`, so an answer may describe a state that the mesh never had. */
     API_REHEARSED = 512,
     /* The limits of clients do not apply to the route: monitoring must always get an answer. */
@@ -135,8 +138,8 @@ typedef struct api_route {
     bool (*decode)(api_exchange *x);
     void (*run)(api_exchange *x); /* the handler; called in api_end or in api_work */
     /* Tries to answer a request to a mesh that is not in memory, on a thread that may block, with
-     * x->info from the mesh's stored card. If it sets neither an answer nor a problem, the mesh is
-     * loaded and `run` is called. NULL: the mesh is always loaded. */
+     * x->info from the mesh's card (its stored description). If it sets neither an answer nor a
+     * problem, the mesh is loaded and `run` is called. NULL: the mesh is always loaded. */
     void (*cold)(api_exchange *x, st_cold *cold);
     api_reads reads;
     bool (*cost)(api_exchange *x, const he_mesh *mesh,

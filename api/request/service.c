@@ -113,8 +113,8 @@ static bool varies(const api_exchange *x)
            route->produces[1] != NULL && !(route->flags & API_FIXED);
 }
 
-/* Ends the claim on the mesh before the answer is sent, so that the client can write again as soon
- * as it has the answer. */
+/* Ends the claim on the mesh (store/write.h) before the answer is sent, so that the client can
+ * write to the mesh again as soon as it has the answer. */
 static void end_claim(api_exchange *x)
 {
     if (x->write.claimed) {
@@ -135,14 +135,16 @@ static void end_given_up(api_exchange *x)
 }
 
 /* Returns what must be durable before the answer is sent. An answer that is not about one mesh
- * alone may show whether other meshes exist, and so may a refusal. */
+ * alone, and also a refusal, may show whether other meshes exist; so it waits for the changes of
+ * all meshes. */
 static st_shown shown(const api_exchange *x)
 {
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
-    /* Failures of the server itself depend on no mesh. They wait for nothing: if they waited for a
-     * journal that cannot be written, the client would get that loss instead of this failure. */
+    /* Failures of the server itself depend on no mesh, so their answers wait for nothing: if they
+     * waited for a journal that cannot be written, the client would be told of the lost changes
+     * instead of this failure. */
     if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
         return (st_shown){.position = 0};
     }
@@ -151,8 +153,8 @@ static st_shown shown(const api_exchange *x)
         one.position = x->noted > one.position ? x->noted : one.position;
         return one;
     }
-    /* What a write has read from other meshes comes before the write in the journal, so waiting for
-     * the write's own position is enough. */
+    /* A write may have read other meshes. Their changes come before the write in the journal, so
+     * waiting for the position of the write itself is enough. */
     if (x->published != 0 && x->has_info && x->info.position != 0) {
         return (st_shown){.position = x->info.position, .since = x->since};
     }
@@ -192,7 +194,8 @@ static api_step finish(api_exchange *x)
     }
     end_given_up(x);
     if (x->problem.code == HE_OK && !x->answered) {
-        api_fail(x, API_INTERNAL, "the handler of %s gave no answer",
+        api_fail(x, API_INTERNAL,
+                 "the server has no answer for the route %s, which is an error in the server",
                  x->route == NULL ? "-" : x->route->name);
     }
     if (x->problem.code != HE_OK && x->published != 0) {
@@ -214,7 +217,7 @@ static api_step finish(api_exchange *x)
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
-    /* This call may set x->noted, which shown() reads, so it comes first. */
+    /* api_idempotency_settle may set x->noted, which shown() reads, so it is called first. */
     api_idempotency_settle(x);
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;
@@ -555,8 +558,8 @@ static bool parse_body(api_exchange *x)
     return x->has_root;
 }
 
-/* Resets a reading request that took too long for a worker, so that it starts again on a thread
- * that may block. */
+/* Resets a reading request that took too long for a worker thread, so that it starts again on a
+ * thread that may block. */
 static void begin_anew(api_exchange *x)
 {
     drop_answer(x);
@@ -617,7 +620,7 @@ static void go_on(api_exchange *x)
 }
 
 /* Loads the mesh and handles the request as if the mesh had been in memory. This thread may block,
- * so it also does the work that a worker would defer, except the work of a job. */
+ * so it also does the work that a worker thread would defer, except the work of a job. */
 static void load_and_go_on(api_exchange *x)
 {
     if (api_answer_from_card(x) || !api_load_mesh(x)) {

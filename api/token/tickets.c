@@ -5,8 +5,8 @@
 #include <pthread.h>
 #include <string.h>
 
-/* A ticket that the server has issued. Its two hashes lie side by side, so that one comparison in
- * constant time covers both. */
+/* A ticket that the server has issued. Its two hashes are adjacent in memory, so that one
+ * comparison in constant time covers both hashes. */
 typedef struct ticket {
     unsigned char hashes[2 * API_TOKEN_HASH]; /* hash of the ticket, then of its target */
     double expires;

@@ -115,7 +115,7 @@ static bool read_prefixes(const reader *r, word w, api_token *out)
         const char *comma = memchr(at, ',', (size_t)(end - at));
         word prefix = {at, (size_t)((comma == NULL ? end : comma) - at)};
         if (out->prefix_count == API_TOKEN_PREFIXES) {
-            return fail(r, "a token takes at most %d prefixes", API_TOKEN_PREFIXES);
+            return fail(r, "a token may have at most %d prefixes", API_TOKEN_PREFIXES);
         }
         if (!is_of_ids(prefix, API_TOKEN_PREFIX)) {
             return fail(r, "prefix %zu is not 1 to %d of the characters A-Z a-z 0-9 . _ -",
@@ -167,7 +167,8 @@ static bool read_expiry(const reader *r, word w, api_token *out)
             return true;
         }
     }
-    return fail(r, "expires= takes a day or time such as 2027-01-01 or 2027-01-01T12:00:00Z");
+    return fail(
+        r, "expires= needs a day or a time in UTC, such as 2027-01-01 or 2027-01-01T12:00:00Z");
 }
 
 /* The optional fields that may follow the first three fields of a line, each only once. */
@@ -199,7 +200,7 @@ static bool read_limit(const reader *r, api_limit limit, word w, api_token *out)
         return fail(r, "%s= is given twice", api_limit_name(limit));
     }
     if (!api_amount_parse(w.at, w.length, bytes, &value) || value > most) {
-        return fail(r, "%s= takes a number from 0 to %llu%s", api_limit_name(limit),
+        return fail(r, "%s= needs a number from 0 to %llu%s", api_limit_name(limit),
                     (unsigned long long)most, bytes ? " (K, M, G and T are units)" : "");
     }
     out->own_limits |= 1U << limit;
@@ -280,7 +281,7 @@ static bool read_line(const reader *r, const char *at, size_t length, api_token 
     }
     bool everything = out->role == API_ROLE_ADMIN || out->role == API_ROLE_METRICS;
     return !everything || out->prefix_count == 0 ||
-           fail(r, "a token of the role %s takes no prefix=", api_role_name(out->role));
+           fail(r, "a token with the role %s may not have prefix=", api_role_name(out->role));
 }
 
 /* --- reading the whole file --- */
@@ -309,8 +310,8 @@ static void met_free(met *m)
     he_mem_free(m->nexts);
 }
 
-/* Returns an earlier token of the list whose member of `size` bytes at `offset` equals that of the
- * last token. If there is none, adds the last token to the table and returns NULL. */
+/* Returns an earlier token of the list that is equal to the last token in the member of `size`
+ * bytes at `offset`. If there is none, adds the last token to the table and returns NULL. */
 static const api_token *met_find(met *m, const api_token_list *list, size_t offset, size_t size)
 {
     uint32_t last = (uint32_t)list->count - 1;
@@ -356,10 +357,10 @@ static bool add_token(reader *r, const char *at, size_t length, gathered *to)
     const api_token *other =
         met_find(&to->names, list, offsetof(api_token, name), sizeof token->name);
     if (other != NULL) {
-        return fail(r, "line %zu has the same name", other->line);
+        return fail(r, "the token in line %zu has the same name", other->line);
     }
     other = met_find(&to->hashes, list, offsetof(api_token, hash), sizeof token->hash);
-    return other == NULL || fail(r, "line %zu has the same hash", other->line);
+    return other == NULL || fail(r, "the token in line %zu has the same hash", other->line);
 }
 
 static bool read_lines(reader *r, const char *at, const char *end, gathered *to)

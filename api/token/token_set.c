@@ -83,8 +83,8 @@ static void set_limits(api_token *to, const api_token *line, const api_limits *d
     }
 }
 
-/* Replaces each new token that equals a token in force, apart from limits, by the token in force,
- * because requests hold references to the latter. Sets the limits of all tokens in the new list. */
+/* Replaces each new token that equals a token in force, apart from limits, by that token in force,
+ * because requests hold references to it. Sets the limits of all tokens in the new list. */
 static void keep_known(api_tokens *tokens, api_token_list *fresh)
 {
     for (size_t i = 0; i < fresh->count; i++) {

@@ -26,9 +26,9 @@ void api_tokens_free(api_tokens *tokens);
  * Without this call these tokens have no limits. */
 void api_tokens_limit(api_tokens *tokens, const api_limits *defaults);
 
-/* Replaces all tokens by those of a token file (token_file.h), or none if the file is wrong. Tokens
- * whose lines differ in nothing but limits stay, with the new limits; the others are revoked and
- * their watches called.
+/* Replaces all tokens by those of a token file (token_file.h); if the file is wrong, no token is
+ * replaced. Tokens whose lines differ in nothing but limits stay, with the new limits; the others
+ * are revoked and their watches called.
  * Returns false with a sentence in `message` if the file is wrong. */
 bool api_tokens_load(api_tokens *tokens, const char *bytes, size_t length,
                      char message[API_TOKENS_MESSAGE]);

@@ -230,7 +230,7 @@ void api_attribute_put_begin(api_exchange *x)
     }
     if (length >= HE_COLUMN_NAME) {
         api_fail(x, HE_BAD_VALUE,
-                 "an attribute's name must have 1 to %d bytes, and this one has %zu",
+                 "an attribute's name must have 1 to %d bytes, but this name has %zu",
                  HE_COLUMN_NAME - 1, length);
         return;
     }
@@ -256,7 +256,9 @@ void api_attribute_put_body(api_exchange *x, const char *bytes, size_t length)
     writing *w = x->state;
     if (length > w->body.maximum - w->body.length) {
         if (w->octets && w->body.maximum <= API_MAX_ATTRIBUTE_BYTES) {
-            api_fail(x, HE_BAD_VALUE, "the body exceeds the %zu bytes of all %s",
+            api_fail(x, HE_BAD_VALUE,
+                     "the body is longer than %zu bytes, which is the size of one value for each "
+                     "of all %s",
                      w->body.maximum - 1, he_kind_plural(x->kind));
             x->problem.status = 422;
         } else {
@@ -350,7 +352,7 @@ static void put(api_exchange *x, writing *w)
     he_error err = {0};
     bool is_new = he_mesh_find_column(mesh, x->kind, x->attribute) == NULL;
     bool good = !is_new || count_columns(mesh) < API_MAX_ATTRIBUTES ||
-                api_fail(x, HE_LIMIT, "the mesh has %zu attributes, and may not have more",
+                api_fail(x, HE_LIMIT, "the mesh already has %zu attributes, and may not have more",
                          count_columns(mesh));
     good = good && fill(x, w, mesh);
     if (good && he_attribute_put(mesh, w->column, &err) != HE_OK) {
@@ -362,8 +364,8 @@ static void put(api_exchange *x, writing *w)
     publish(x, w, is_new ? "attribute_create" : "attribute_replace", is_new ? 201 : 200, good);
 }
 
-/* Adds a large column to a copy of the mesh, under a claim, so that the mesh is not locked while
- * the change is written to the disk. */
+/* Adds a large column to a copy of the mesh, under a claim (store/write.h): the mesh is reserved,
+ * but not locked, while the change is written to the disk. */
 static void put_claimed(api_exchange *x)
 {
     he_error err = {0};

@@ -29,7 +29,8 @@ void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* If the mesh was deleted while the body of a PUT arrived, the PUT creates it instead. */
+/* If the mesh was deleted while the body of a PUT arrived, the PUT creates the mesh instead of
+ * replacing it. */
 static bool forget_removed(api_exchange *x)
 {
     if (x->problem.code != API_NO_SUCH_MESH) {

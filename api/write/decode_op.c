@@ -95,7 +95,7 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
     }
     if (count < min) {
         return api_in_fail(in, HE_NO_SUCH_ELEMENT,
-                           "the references in the list refer to no elements");
+                           "the list is empty, because its references stand for empty lists");
     }
     arg->ids = ids;
     arg->count = count;

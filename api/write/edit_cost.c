@@ -12,7 +12,7 @@ void api_edit_cost_clear(api_edit_cost *cost)
 }
 
 /* Adds one id to the elements that an edit visits. Ids beyond API_COSTLY_ELEMENTS are not
- * collected: it is then known that the edit is too costly for a worker. */
+ * collected: it is then known that the edit is too costly for a worker thread. */
 static he_status gather(api_edit_cost *cost, const he_param *param, uint32_t id, he_error *err)
 {
     he_ids *lists = (param->flags & HE_REACHES) != 0 ? cost->reached : cost->named;
@@ -180,7 +180,8 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
 /* Vertices and faces with fewer half-edges are not kept in the cache (api_hubs). */
 enum { HUB = 256 };
 
-/* Returns what the function `steps` returns, but keeps high degrees in a cache. */
+/* Returns what the function `steps` returns, and remembers high numbers of half-edges in a
+ * cache. */
 static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most,
                           api_hubs *hubs)
 {

@@ -26,7 +26,8 @@ typedef struct edits {
     uint64_t passes;          /* how many passes over the mesh the `whole` operations take */
     double growth;            /* the factor by which all operations together enlarge the mesh */
     uint64_t elements_beside; /* number of elements of the other meshes that operations name */
-    /* costly: the list must leave the worker thread. claims: it must claim the mesh. */
+    /* costly: the list must run on another thread than a worker thread. claims: the list must claim
+     * the mesh (store/write.h) and work on a copy. */
     bool costly, claims;
     double seconds;
     api_edit_cost cost;
@@ -35,8 +36,9 @@ typedef struct edits {
     uint64_t work;      /* work charged so far, in the unit of API_POOL_EDITS */
     uint64_t most_work; /* a list with more work must continue on another thread */
     bool exceeded;      /* `most_work` would be exceeded */
-    size_t most_rows;   /* a list whose delta has more rows needs a claim */
-    bool crowded;       /* `most_rows` was exceeded */
+    /* A list whose delta has more rows than this must claim the mesh (store/write.h). */
+    size_t most_rows;
+    bool crowded; /* `most_rows` was exceeded */
     /* How many more reports of progress are free, because the charge for the current operation
      * includes them. */
     uint64_t paid;
@@ -201,8 +203,8 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     }
     if (delta->count > API_MAX_EDITS_ROWS) {
         return api_in_fail(in, HE_LIMIT,
-                           "the list is too long: the operations before this one change %zu rows, "
-                           "and at most %d are allowed",
+                           "the list is too long: the operations before this one change %zu rows "
+                           "of elements and attributes, and at most %d are allowed",
                            delta->count, (int)API_MAX_EDITS_ROWS);
     }
     return true;
@@ -212,7 +214,7 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
 enum { PHASES = 24 };
 
 /* Charges the cost of one operation. Returns false if the list exceeds what it may do on this
- * thread or without a claim. */
+ * thread, or without claiming the mesh (store/write.h). */
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
 {
     bool whole = he_op_is_whole(call->op, call->args);
@@ -452,8 +454,8 @@ static void go_on_elsewhere(api_exchange *x, edits *e);
 
 /* --- running lists of operations --- */
 
-/* Counts the operations for the metrics. If one was refused, only that one is counted, because the
- * others were rolled back. */
+/* Counts the operations for the metrics. If an operation was refused, only that operation is
+ * counted, because the others were rolled back. */
 static void count_operations(const api_exchange *x, const edits *e)
 {
     api_metrics *metrics = x->service->metrics;
@@ -548,7 +550,7 @@ static void run_claimed(api_exchange *x)
 }
 
 /* Starts a list again that was rolled back. If it changes too many rows, it claims the mesh and
- * works on a copy; else it moves from a worker to the job pool, or from there to a job. */
+ * works on a copy; else it moves from a worker thread to the job pool, or from there to a job. */
 static void go_on_elsewhere(api_exchange *x, edits *e)
 {
     bool on_worker = x->phase == API_PHASE_BODY;
@@ -586,8 +588,9 @@ static void run(api_exchange *x)
 
 /* Estimates the cost of a list of operations. A list of many operations, or one that visits the
  * whole mesh or a huge element, belongs on a thread that may block. A long list, or work on a very
- * large mesh, needs a claim, so that the mesh is not locked meanwhile. The handler chooses the
- * thread, because a claim must be made before the client is answered. */
+ * large mesh, claims the mesh (store/write.h) and works on a copy, so that the mesh is not locked
+ * meanwhile. The handler chooses the thread, because the mesh must be claimed before the client is
+ * answered. */
 bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     edits *e = x->state;

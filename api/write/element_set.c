@@ -11,8 +11,9 @@ bool api_in_set(const api_in *in, const char **name)
         return false;
     }
     if (!api_in_first(in, &member)) {
-        return api_in_fail(in, API_MISSING_MEMBER,
-                           "a set must name a bool attribute, such as {\"selected\":true}");
+        return api_in_fail(
+            in, API_MISSING_MEMBER,
+            "a set must name an attribute of type bool, such as {\"selected\":true}");
     }
     second = member;
     if (api_in_next(&second)) {
@@ -44,7 +45,9 @@ bool api_find_set(const api_in *in, const he_mesh *mesh, he_kind kind, api_arena
         return false;
     }
     if (column->type != HE_BOOL || column->components != 1) {
-        return api_in_fail(in, API_WRONG_TYPE, "\"%s\" is not a bool of one component", name);
+        return api_in_fail(
+            in, API_WRONG_TYPE,
+            "a set needs an attribute of type bool with one component, and \"%s\" is none", name);
     }
     size_t found = 0;
     for (size_t i = 0; i < column->rows; i++) {

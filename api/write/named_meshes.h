@@ -22,7 +22,8 @@ typedef struct api_named_meshes {
     api_exchange *asker;
     api_named_mesh other[API_MAX_NAMED_MESHES];
     size_t count;
-    st_shown shown[API_MAX_NAMED_MESHES]; /* the state of each mesh that its snapshot shows */
+    /* The state of each mesh that the mesh's snapshot shows. */
+    st_shown shown[API_MAX_NAMED_MESHES];
     /* How many of these meshes are not in memory; if any, api_named_meshes_load must be called. */
     size_t cold;
 } api_named_meshes;

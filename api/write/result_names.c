@@ -76,12 +76,14 @@ static bool find_value(const api_in *at, const char *text, const value *wanted, 
     }
     if (list && (uint64_t)index >= ids->count) {
         return api_in_fail(at, HE_NO_SUCH_ELEMENT,
-                           "\"%.100s\" is out of range: the result has %zu elements", text,
-                           ids->count);
+                           "the index in \"%.100s\" is too large: the result has %zu elements",
+                           text, ids->count);
     }
     out->ids = list ? &ids->ids[index] : &results->id[row];
     if (!results->present[row] || *out->ids == HE_NONE) {
-        return api_in_fail(at, HE_NO_SUCH_ELEMENT, "\"%.100s\" has no value here", text);
+        return api_in_fail(at, HE_NO_SUCH_ELEMENT,
+                           "\"%.100s\" stands for a result that the operation did not produce",
+                           text);
     }
     return true;
 }
@@ -98,7 +100,8 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
     const api_result_name *name = find_name(names, text + 1, (size_t)(dot - text - 1));
     if (name == NULL) {
         return api_in_fail(at, API_BAD_REFERENCE,
-                           "no earlier operation has the name that \"%.100s\" refers to", text);
+                           "no earlier operation of the list has the name that \"%.100s\" contains",
+                           text);
     }
     const char *result = dot + 1, *second = strchr(result, '.');
     size_t length = second == NULL ? strlen(result) : (size_t)(second - result);
@@ -118,7 +121,8 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
         }
         return find_value(at, text, &(value){name, row, index}, out);
     }
-    return api_in_fail(at, API_BAD_REFERENCE, "%s has no result such as \"%.100s\" refers to",
+    return api_in_fail(at, API_BAD_REFERENCE,
+                       "the operation %s has no result that \"%.100s\" could stand for",
                        name->op->name, text);
 }
 

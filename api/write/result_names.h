@@ -20,8 +20,8 @@
 #include "api/write/decode_op.h"
 
 typedef struct api_result_name {
-    /* The name is stored in `texts`, because the document of an operation is freed when the next
-     * one is read. */
+    /* The name is stored in `texts`, because the parsed document of an operation is freed when the
+     * next operation is read. */
     const char *name;
     const he_op *op;
     bool bound;

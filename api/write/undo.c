@@ -65,7 +65,8 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
                     to);
     } else if (status == ST_ELSEWHERE) {
         api_in_fail(&s->to, API_UNREACHABLE_REVISION,
-                    "no number of steps to %s leads to revision %llu", name_of(s), to);
+                    "%s does not lead to revision %llu, however many steps are taken", name_of(s),
+                    to);
     } else {
         api_fail_store(x, status);
     }

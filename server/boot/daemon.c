@@ -12,7 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* How long a stop waits for running work, of the five seconds that it may last in all. */
+/* How long a stop waits for requests and jobs that still run. A stop may last five seconds in
+ * all. */
 enum { STOP_MILLIS = 4000 };
 
 /* Does the periodic work of the main thread, which serves no requests, until SIGTERM or SIGINT
@@ -32,7 +33,7 @@ static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *
             (void)srv_reload(parts, message, sizeof message);
         }
     } while (number != SIGTERM && number != SIGINT);
-    /* This last check reports a disk that failed in the last second. */
+    /* This last check reports a failure of the disk in the last second. */
     srv_watch_look(&watch, parts);
 }
 
@@ -92,7 +93,7 @@ int srv_daemon_run(const srv_started *started)
     parts.log = srv_log_new(STDERR_FILENO, srv_log_capacity(st_memory_budget()), &settings);
     if (parts.log == NULL) {
         srv_line_write(STDERR_FILENO, settings.json, SRV_LEVEL_ERROR,
-                       "no memory or threads to start");
+                       "there is not enough memory, or there are not enough threads, to start");
         return 1;
     }
     srv_start_tell(parts.log, started->config, started->environment);
@@ -107,8 +108,8 @@ int srv_daemon_run(const srv_started *started)
         srv_notify(text);
         wait_for_stop(&parts, &signals, &reason);
         if (!stop(&parts, &reason)) {
-            /* Threads still use the daemon's memory, so nothing is freed. The journal is left as it
-             * would be after a kill, which it is designed to survive. */
+            /* Threads of the abandoned work still use the daemon's memory, so nothing is freed. The
+             * journal is left as it would be after a kill, which it is designed to survive. */
             srv_log_free(parts.log);
             _exit(1);
         }

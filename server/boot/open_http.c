@@ -87,7 +87,7 @@ bool srv_open_http(srv_parts *parts)
         .heartbeat_micros = parts->config->heartbeat * 1000000,
     };
     if (!srv_address_parse(parts->config->listen, &options.address)) {
-        return srv_open_failed(parts, "no address to listen on");
+        return srv_open_failed(parts, "the address in --listen is not valid");
     }
     parts->policy = parts->config->policy;
     allow_own_host(parts, &options.address);

@@ -94,7 +94,9 @@ static bool open_service(srv_parts *parts)
                             .plain_answers = parts->config->no_compression,
                             .parallel = st_parallel_host(parts->parallel),
                         });
-    return parts->service != NULL || srv_open_failed(parts, "no memory or threads to start");
+    return parts->service != NULL ||
+           srv_open_failed(parts,
+                           "there is not enough memory, or there are not enough threads, to start");
 }
 
 bool srv_open_service(srv_parts *parts)

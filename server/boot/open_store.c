@@ -7,9 +7,11 @@
 #include "server/version.h"
 
 enum {
-    /* How many threads the pool has beside those for jobs, so that short tasks find one. */
+    /* How many threads the pool has in addition to those for jobs, so that a short task always
+     * finds a thread. */
     SHORT_THREADS = 2,
-    /* Most pieces of answers that may wait for a thread; workers make further pieces. */
+    /* The largest number of pieces of answers that may wait for a thread; further pieces are made
+     * by the worker threads themselves. */
     MAKER_QUEUE = 1024
 };
 
@@ -29,7 +31,8 @@ static bool open_threads(srv_parts *parts)
     parts->makers = st_pool_new("hedged-answers", srv_cores(), MAKER_QUEUE);
     parts->parallel = st_parallel_new(srv_cores() - 1);
     return (parts->pool != NULL && parts->makers != NULL && parts->parallel != NULL) ||
-           srv_open_failed(parts, "no memory or threads to start");
+           srv_open_failed(parts,
+                           "there is not enough memory, or there are not enough threads, to start");
 }
 
 /* Opens the journal, which keeps the meshes on the disk. Sets *made to true if the store is new, so

@@ -125,7 +125,8 @@ bool srv_reload(void *context, char *message, size_t size)
         if (!reloads[i](parts, why, sizeof why)) {
             srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; the previous settings stay in effect",
                          why);
-            if (ok) { /* this reload is the first that failed; `message` reports only the first */
+            /* `message` reports only the first of the files that could not be read again. */
+            if (ok) {
                 snprintf(message, size, "%s", why);
             }
             ok = false;

@@ -16,8 +16,8 @@ static uint64_t processor_micros(void)
 }
 
 /* Logs that the disk is full, that it has space again, or that it failed. If the disk was full for
- * a while between two checks, that is logged, too; if it was full at both checks, it is not logged
- * that it had space between them. */
+ * a while between two checks, that is logged, too. If it was full at both checks, but had space
+ * between them, that is not logged. */
 static void tell_health(srv_log *log, const st_health *before, const st_health *now,
                         const char *folder)
 {
@@ -36,8 +36,8 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     if (now->damaged_keys > 0 && before->damaged_keys == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
                      "the store in %s has %llu damaged records of requests with an "
-                     "Idempotency-Key: such a request is refused if it is sent again, or is done a "
-                     "second time if its key cannot be read",
+                     "Idempotency-Key: if such a request is sent again, it is refused or, if its "
+                     "key cannot be read, done a second time",
                      folder, (unsigned long long)now->damaged_keys);
     }
     if (now->status == ST_FAILED && before->status != ST_FAILED) {
@@ -67,8 +67,8 @@ static void tell_systemd(const srv_parts *parts)
     srv_notify(text);
 }
 
-/* Notifies systemd's watchdog twice within its timeout, if a worker still answers requests; *fed is
- * the time when a worker was last asked. */
+/* Notifies systemd's watchdog twice within its timeout, if a worker thread still answers requests;
+ * *fed is the time when a worker was last asked. */
 static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 {
     const uint64_t patience = srv_notify_watchdog();
@@ -80,7 +80,9 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
     if (srv_healthcheck(parts->url, message, sizeof message)) {
         srv_notify("WATCHDOG=1");
     } else {
-        srv_log_tell(parts->log, SRV_LEVEL_WARNING, "the daemon asked itself for /livez, and %s",
+        srv_log_tell(parts->log, SRV_LEVEL_WARNING,
+                     "the watchdog is not notified, because the daemon does not answer its own "
+                     "request for /livez: %s",
                      message);
     }
 }

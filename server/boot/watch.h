@@ -1,5 +1,5 @@
 /* watch.h - the periodic work of the main thread: it checks the disk and memory, reports their
- * state to systemd, and checks for systemd's watchdog whether a worker still answers. */
+ * state to systemd, and checks for systemd's watchdog whether a worker thread still answers. */
 #ifndef HE_SERVER_BOOT_WATCH_H
 #define HE_SERVER_BOOT_WATCH_H
 
@@ -9,7 +9,8 @@
 typedef struct srv_watch {
     st_memory_rest rest;
     st_health health;
-    uint64_t fed; /* when a worker was last asked for systemd's watchdog, by st_clock_micros */
+    /* When a worker thread was last asked for systemd's watchdog, by st_clock_micros. */
+    uint64_t fed;
 } srv_watch;
 
 /* Writes the text that `systemctl status` shows while the daemon runs: "listening on URL", and what

@@ -13,8 +13,9 @@
 #include <string.h>
 #include <sys/socket.h>
 
-_Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES,
-               "headers of the largest allowed size must leave space in the buffer");
+_Static_assert(
+    SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES,
+    "the buffer of a connection must have space beside headers of the largest allowed size");
 
 /* --- callbacks of libmicrohttpd --- */
 
@@ -94,8 +95,9 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         }
         api_count(api_metrics_of(http->options.service), API_COUNT_OPENED);
         if (c == NULL || !srv_recv_watch(c)) {
-            /* The bytes of this connection could not be checked (http_recv.h), so it is not served:
-             * its socket is shut down, and libmicrohttpd sees the end of the stream at once. */
+            /* The bytes of this connection cannot be checked (http_recv.h), so the connection is
+             * not served: its socket is shut down, and libmicrohttpd sees the end of the stream at
+             * once. */
             shutdown(fd, SHUT_RDWR);
         }
     } else {
@@ -175,8 +177,8 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
          * requests are found before by http_syntax.h. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
-        /* libmicrohttpd divides this limit by the number of workers, but one worker may get all
-         * connections, so the limit is multiplied by that number. */
+        /* libmicrohttpd divides this limit by the number of worker threads, but one worker may get
+         * all connections, so the limit is multiplied by that number. */
         {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
         {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
         {MHD_OPTION_LISTEN_BACKLOG_SIZE, SRV_BACKLOG, NULL},
@@ -225,18 +227,21 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     api_set_connection_limit(http->options.deadlines.metrics, options->deadlines.max_connections);
     http->deadlines = srv_deadlines_new(&http->options.deadlines);
     http->streams = srv_streams_new(options->heartbeat_micros);
-    /* Each worker may have a buffer for one more connection, which is not counted yet or is not
-     * counted any more. */
+    /* Each worker thread may have a buffer for one more connection, which is not counted yet or is
+     * not counted any more. */
     const size_t most = options->max_sockets + options->workers;
     const bool counts = options->address_connections != 0;
     http->peers = counts ? srv_peers_new(most) : NULL;
     if (http->deadlines == NULL || http->streams == NULL || (counts && http->peers == NULL)) {
-        snprintf(message, size, "no memory or threads to start");
+        snprintf(message, size,
+                 "there is not enough memory, or there are not enough threads, to start");
         http_free(http);
         return NULL;
     }
     if (!srv_buffers_reserve(most)) {
-        snprintf(message, size, "no address space for %zu connections", options->max_sockets);
+        snprintf(message, size,
+                 "the process has not enough address space for the buffers of %zu connections",
+                 options->max_sockets);
         http_free(http);
         return NULL;
     }
@@ -268,7 +273,7 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     }
     /* From now on accept_policy refuses all new connections. MHD_quiesce_daemon cannot be used to
      * stop accepting: it removes the listening socket from the workers' epoll sets while the
-     * workers may do that, too, and the library aborts if both try. */
+     * worker threads may do that, too, and the library aborts if both try. */
     atomic_store(&http->stopping, true);
     st_waits_stop(st_store_waits(http->options.store));
     srv_streams_stop(http->streams);

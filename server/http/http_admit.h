@@ -31,7 +31,7 @@ typedef struct srv_client {
     /* The client's address without a port; "unix:uid=1000" on a Unix socket. */
     char address[SRV_ADDRESS_TEXT];
     srv_scheme scheme;
-    /* Whether the answer has the header that asks for TLS: rule P6 of http_policy.h. */
+    /* Whether the answer has the header Strict-Transport-Security: rule P6 of http_policy.h. */
     bool told_name;
     const char *cors; /* the origin that the answer names in CORS headers (P4), or NULL */
 } srv_client;

@@ -14,8 +14,8 @@
 enum {
     /* The size of the buffer that libmicrohttpd allocates for an answer sent piece by piece. */
     ANSWER_BLOCK = 64 * 1024,
-    /* Size of that buffer for a stream of events to an HTTP/1.0 client; there may be thousands of
-     * streams. */
+    /* The size of that buffer for a stream of events to an HTTP/1.0 client; it is small, because
+     * there may be thousands of streams. */
     LIVE_BLOCK = 1024
 };
 
@@ -47,8 +47,8 @@ static void widen(srv_request *r)
     }
 }
 
-/* Enlarges the socket's send buffer once the client is known to read: when more of the answer was
- * sent than the buffers can hold. */
+/* Enlarges the send buffer of the socket as soon as it is known that the client reads, that is,
+ * when more bytes of the answer were sent than the small buffers can hold. */
 static void widen_after(srv_request *r, uint64_t position)
 {
     if (position >= SRV_SEND_BUFFER) {
@@ -125,8 +125,8 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     }
     int64_t got = srv_stream_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
-        /* While the stream waits, the request needs of its buffer only the part with the
-         * headers. */
+        /* While the stream waits, the request needs only that part of its buffer in which the
+         * headers are. */
         srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
         srv_stream_aside(&r->stream);
         return 0;
@@ -189,9 +189,9 @@ static bool is_streamed(const srv_request *r)
 }
 
 /* Decides whether other threads make the pieces of an answer. Making a piece takes up to a
- * millisecond. If there are only a few downloads, the worker makes the pieces itself, which is
- * faster than passing them through the pool; a thousand downloads would keep it from other work for
- * a second. */
+ * millisecond. If there are only a few downloads, the worker thread makes the pieces itself, which
+ * is faster than passing them through the pool; a thousand downloads would keep it from other work
+ * for a second. */
 static bool is_made_ahead(srv_request *r)
 {
     size_t others = atomic_fetch_add(&r->http->downloads, 1);

@@ -2,8 +2,9 @@
  *
  * An answer whose bytes are in memory is sent as it is. Another answer is made piece by piece: its
  * `read` function is called whenever the socket can take more bytes. If the answer is slow to make,
- * or if there are more downloads than workers, other threads make the pieces (http_producer.h); a
- * stream waits for events (http_stream.h). In both cases the connection is suspended meanwhile. */
+ * or if there are more downloads than worker threads, other threads make the pieces
+ * (http_producer.h); a stream waits for events (http_stream.h). In both cases the connection is
+ * suspended meanwhile. */
 #ifndef HE_SERVER_HTTP_HTTP_ANSWER_H
 #define HE_SERVER_HTTP_HTTP_ANSWER_H
 

@@ -22,12 +22,12 @@ enum {
     LOOK_MILLIS = 500,
     AT_ONCE = 32, /* most buffers whose pages are returned in one check */
     KEPT = 64,    /* number of free buffers that keep their pages for the next connections */
-    LANES = 64    /* largest number of workers that --workers allows */
+    LANES = 64    /* the largest number of worker threads that --workers allows */
 };
 
 /* The states of a buffer. FREE: it belongs to no connection. USED: its connection has a request.
- * IDLE: its connection has no request, and the buffer is in the list of its worker. GIVEN: its
- * connection has no request, and its pages were returned to the system. */
+ * IDLE: its connection has no request, and the buffer is in the list of its worker thread. GIVEN:
+ * its connection has no request, and its pages were returned to the system. */
 typedef enum state { FREE, USED, IDLE, GIVEN } state;
 
 struct lane;
@@ -35,14 +35,14 @@ struct lane;
 typedef struct buffer {
     state state;
     uint32_t next, previous; /* neighbours in a list of free buffers or in the worker's list */
-    struct lane *lane;       /* the list of idle buffers of the worker that took the buffer */
-    uint64_t since;          /* when the buffer became IDLE */
-    size_t held;             /* bytes that st_memory_count counts for the buffer */
+    struct lane *lane; /* the list of idle buffers of the worker thread that took the buffer */
+    uint64_t since;    /* when the buffer became IDLE */
+    size_t held;       /* bytes that st_memory_count counts for the buffer */
 } buffer;
 
 /* The list of a worker's IDLE buffers, in the order in which they became IDLE. It needs no lock,
- * because only the worker uses it; after the worker has ended, the thread that stops the server
- * closes the connections that are left. */
+ * because only the worker thread uses it; after the worker has ended, the thread that stops the
+ * server closes the connections that are left. */
 typedef struct lane {
     uint32_t first, last;
 } lane;
@@ -184,8 +184,8 @@ static uint32_t pop(uint32_t *list)
 }
 
 /* Gives the pages of FREE buffers back to the system, except KEPT buffers, when no connection has
- * ended for a second. Returns how many milliseconds the worker may wait before the next check;
- * `timeout` is how long it would wait otherwise. */
+ * ended for a second. Returns how many milliseconds the worker thread may wait before the next
+ * check; `timeout` is how long it would wait otherwise. */
 static int give_back_free(int timeout)
 {
     if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
@@ -211,8 +211,8 @@ static int give_back_free(int timeout)
 }
 
 /* Gives the pages of this worker's buffers that have been IDLE long enough back to the system.
- * Returns how many milliseconds the worker may wait before the next check; `timeout` is how long it
- * would wait otherwise. */
+ * Returns how many milliseconds the worker thread may wait before the next check; `timeout` is how
+ * long it would wait otherwise. */
 static int give_back_idle(int timeout)
 {
     if (own == NULL || own->first == SRV_NO_BUFFER) {
@@ -297,8 +297,8 @@ typedef int (*unmap_function)(void *, size_t);
  * yet, so that they must not be instrumented. */
 #define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
 
-/* Returns the function of this name that this program's definition hides: the C library's, or a
- * sanitizer's if there is one. *kept remembers it. */
+/* Returns the function that a function with this name in this program hides: the function of the C
+ * library or, if there is one, of a sanitizer. *kept remembers the result. */
 static void *next_definition(_Atomic(void *) *kept, const char *name)
 {
     void *found = atomic_load_explicit(kept, memory_order_acquire);
@@ -350,8 +350,8 @@ UNWATCHED int munmap(void *address, size_t length)
     return all.memory == NULL ? (int)syscall(SYS_munmap, address, length) : unmap(address, length);
 }
 
-/* Replaces the epoll_wait() of the C library, so that workers give pages back before they wait.
- * epoll_pwait() without a signal mask does what the replaced function did. */
+/* Replaces the epoll_wait() of the C library, so that worker threads give pages back before they
+ * wait. epoll_pwait() without a signal mask does what the replaced function did. */
 int epoll_wait(int set, struct epoll_event *events, int most, int timeout)
 {
     return epoll_pwait(set, events, most, give_back_idle(give_back_free(timeout)), NULL);

@@ -10,10 +10,10 @@
  *   B1  An mmap() of exactly SRV_BUFFER_BYTES, rounded up to pages, takes a buffer from a reserved
  *       range, and munmap() of a buffer puts it back; both save the system call. All other calls go
  *       to the system unchanged.
- *   B2  A worker that is about to wait in epoll_wait() returns the pages of those connections of
- *       its own that have been idle for a second (at once when memory is full). It does this for a
- *       few connections each time, so that its clients need not wait. It is the only thread that
- *       reads and writes these pages.
+ *   B2  A worker thread that is about to wait in epoll_wait() returns the pages of those
+ *       connections of its own that have been idle for a second (at once when memory is full). It
+ *       does this for a few connections each time, so that its clients need not wait. It is the
+ *       only thread that reads and writes these pages.
  *   B3  Only pages that are all zeros are returned. When libmicrohttpd uses such a page again, the
  *       system provides a page of zeros, so that the library cannot notice.
  *   B4  st_memory_count counts what a buffer occupies: during a request all of it, and while the
@@ -39,12 +39,12 @@ enum { SRV_NO_BUFFER = UINT32_MAX };
 bool srv_buffers_reserve(size_t most);
 
 /* Returns the number of the buffer that this thread took last, or SRV_NO_BUFFER if it took none
- * since the last call. It belongs to the connection that libmicrohttpd reports next. */
+ * since the last call. The buffer belongs to the connection that libmicrohttpd reports next. */
 uint32_t srv_buffer_taken(void);
 
 /* Say that the connection of a buffer has become idle at `now`, in microseconds of the monotonic
  * clock (srv_buffer_rest), or has begun a request (srv_buffer_use). Must be called by the worker
- * that took the buffer. Do nothing for SRV_NO_BUFFER. */
+ * thread that took the buffer. Do nothing for SRV_NO_BUFFER. */
 void srv_buffer_rest(uint32_t buffer, uint64_t now);
 void srv_buffer_use(uint32_t buffer);
 

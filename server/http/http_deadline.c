@@ -177,7 +177,7 @@ static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
 }
 
 /* Returns true if bytes of an answer may still be in the socket's buffer. In the stage IDLE that is
- * possible until a check has found the buffer empty. */
+ * so until a check has found the buffer empty. */
 static bool may_wait(const srv_connection *c, int stage, uint64_t since)
 {
     return stage == SRV_STAGE_ANSWER || stage == SRV_STAGE_LIVE ||
@@ -335,7 +335,7 @@ static void *run(void *context)
         poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
-            /* The eventfd had nothing to read, which does no harm: the thread checks the list of
+            /* The eventfd had nothing to read. That does no harm: the thread checks the list of
              * connections anyway. */
         }
         pthread_mutex_lock(&d->lock);

@@ -34,10 +34,10 @@
  * In the stages HEAD and BODY a connection is also closed if the client has closed its side, so
  * that the request can never become complete.
  *
- * Closing a connection costs the workers time, because they clean up. If a thousand slow clients
- * connected at the same time, other clients must not be delayed when they are closed: so at most
- * SRV_CLOSES connections are closed at once, and the next ones a hundredth of a second later. The
- * lock of the list of connections is held for at most SRV_CLOSES closes or SRV_LOOKS checks.
+ * Closing a connection costs the worker threads time, because they clean up. If a thousand slow
+ * clients connected at the same time, other clients must not be delayed when they are closed: so at
+ * most SRV_CLOSES connections are closed at once, and the next ones a hundredth of a second later.
+ * The lock of the list of connections is held for at most SRV_CLOSES closes or SRV_LOOKS checks.
  *
  * The module also drains connections that were answered before their body was read: closing a
  * socket with unread data resets it, and a reset can discard the answer before the client has read
@@ -77,8 +77,8 @@ typedef struct srv_deadlines srv_deadlines;
 
 enum { SRV_CLOSES = 16, SRV_LOOKS = 64 };
 
-/* One open connection. The worker that serves the connection sets its stage; the thread of this
- * module reads the stage. */
+/* One open connection. The worker thread that serves the connection sets its stage; the thread of
+ * this module reads the stage. */
 typedef struct srv_connection {
     struct srv_connection *next, *previous;
     int socket;
@@ -97,27 +97,35 @@ typedef struct srv_connection {
     uint32_t of_peer;    /* the peer's entry, which srv_peers_enter returned for the connection */
     _Atomic bool beyond; /* whether the peer's address has more connections than allowed */
     uint32_t buffer;     /* number of the connection's buffer in http_buffer.h */
-    /* The members from here on are used only by the worker that serves the connection. */
+    /* The members from here on are used only by the worker thread that serves the connection. */
     srv_syntax syntax;
     uint64_t requests; /* number of requests of the connection that libmicrohttpd has begun */
     /* Whether the socket's send buffer has SRV_SEND_BUFFER bytes rather than
      * SRV_FIRST_SEND_BUFFER. */
     bool widened;
-    /* Whether the kernel reports with each read if there is more to read: http_recv.h. */
+    /* Whether the kernel reports with each read whether there is more to read: http_recv.h. */
     bool tells_end;
     bool may_have_ended; /* the client's stream may have ended after the bytes of the last read */
-    bool counts_sent;    /* `sent` is used, because a Unix socket does not report bytes sent */
-    /* Number of bytes sent, if they are counted; the checking thread reads it, too. */
+    /* `sent` is counted, because the connection is a Unix socket, for which the kernel does not
+     * report how many bytes were sent. */
+    bool counts_sent;
+    /* Number of bytes that were sent, if they are counted. The thread that checks connections reads
+     * it, too. */
     _Atomic uint64_t sent;
     /* The members from here on are used only by the thread that checks connections, except
      * `peer`. */
     /* Number of bytes that the client had received at the last check. */
     uint64_t acked;
-    uint64_t window, window_acked; /* time and `acked` when measuring the rate began; 0: not yet */
-    uint64_t taken;  /* `since` of an IDLE stage in which all of the answer was read; 0: none */
-    uint64_t kept;   /* number of the answer's bytes in the kernel's buffer at the last check */
-    bool late;       /* whether the connection was counted as closed for being too slow */
-    uint64_t closed; /* `since` of the stage in which the client closed its side; 0: none */
+    /* The time, and the value of `acked`, when the present measurement of the rate began; 0: no
+     * measurement. */
+    uint64_t window, window_acked;
+    /* The value of `since` for an IDLE stage in which the client has read all of the last answer;
+     * 0: none. */
+    uint64_t taken;
+    uint64_t kept; /* number of the answer's bytes in the kernel's buffer at the last check */
+    bool late;     /* whether the connection was counted as closed for being too slow */
+    /* The value of `since` for the stage in which the client closed its side; 0: it has not. */
+    uint64_t closed;
     uint64_t closed_bytes;       /* `bytes` when `closed` was set */
     char peer[SRV_ADDRESS_TEXT]; /* the peer's address, without a port */
 } srv_connection;

@@ -15,7 +15,8 @@ enum {
     /* Most bytes of a refused body that are skipped; if more are to come, the connection is
      * closed. */
     SWALLOW = 256 * 1024,
-    /* Microseconds that a worker spends on a read before the read moves to the pool of threads. */
+    /* Microseconds that a worker thread spends on a read before the read moves to the pool of
+     * threads. */
     WORKER_MICROS = 20000
 };
 
@@ -39,8 +40,8 @@ static bool begin_wait(srv_request *r, srv_state why)
     return allowed;
 }
 
-/* Suspends and resumes the connection, so that the worker serves its other connections before it
- * returns to this one. */
+/* Suspends and resumes the connection, so that the worker thread serves its other connections
+ * before it returns to this one. */
 static bool give_way(srv_request *r)
 {
     srv_timing_enter(&r->timing, SRV_PART_QUEUE);
@@ -96,8 +97,8 @@ static void detach(srv_request *r)
     }
 }
 
-/* Returns true if the worker may continue a request that only reads, and false if it has spent
- * WORKER_MICROS on it, because the worker's other connections are waiting. */
+/* Returns true if the worker thread may continue a request that only reads, and false if it has
+ * spent WORKER_MICROS on it, because the worker's other connections are waiting. */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -138,7 +139,7 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
-    /* The request now waits until a worker continues with it. */
+    /* The request now waits until a worker thread continues with it. */
     srv_timing_enter(&r->timing, SRV_PART_QUEUE);
     MHD_resume_connection(r->connection);
 }
@@ -167,7 +168,8 @@ static bool begin_work(srv_request *r)
 /* --- reading --- */
 
 /* Returns true if the request is malformed (http_syntax.h), and fills `problem`, which may be NULL.
- * libmicrohttpd has then parsed an ending of the request that the client did not send. */
+ * In that case libmicrohttpd has parsed an end of the request that the client did not send (rule S3
+ * of http_syntax.h). */
 static bool is_faulty(const srv_request *r, api_problem *problem)
 {
     return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);
@@ -224,9 +226,10 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
     return srv_admit(http->options.policy, head, framing, &r->client, &r->refusal);
 }
 
-/* Begins the exchange of a request. The exchange borrows the values of headers from libmicrohttpd,
- * which keeps them until the request has completed, or from r->joined. By then the exchange has
- * been freed, or has become a job with copies of the values. */
+/* Begins the exchange of a request. The exchange borrows the values of the headers: from
+ * libmicrohttpd, which keeps them until the request has completed, or from r->joined, which has the
+ * headers that were joined from several lines. By then the exchange has been freed, or has become a
+ * job with copies of the values. */
 static void begin_exchange(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     api_request asked = {

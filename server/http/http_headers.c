@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-/* The number of lines in which one header was sent, and the sum of the lengths of their values,
- * with one byte more for each. */
+/* In how many lines one header was sent, and the sum of the lengths of the values in these lines
+ * plus one byte for each line (for the comma or the NUL after its value). */
 typedef struct line_sum {
     size_t count, bytes;
 } line_sum;

@@ -1,8 +1,8 @@
 /* http_inflight.h - counts running and suspended requests, so that a stop can wait for them.
  *
- * libmicrohttpd must not be stopped while a connection is suspended. So this
- * module is a gate, which counts the suspended connections: after the gate was closed no connection
- * may be suspended any more. */
+ * libmicrohttpd must not be stopped while a connection is suspended. So this module counts the
+ * suspended connections and acts as a gate: after the gate was closed, no connection can be
+ * suspended any more. */
 #ifndef HE_SERVER_HTTP_HTTP_INFLIGHT_H
 #define HE_SERVER_HTTP_HTTP_INFLIGHT_H
 

@@ -54,8 +54,8 @@ typedef struct srv_sender {
     srv_scheme scheme; /* the scheme of the connection */
 } srv_sender;
 
-/* Checks by rules P2, P3 and P5 whether a request may run. Returns false with foreign_origin if it
- * may not. */
+/* Checks by rules P2, P3 and P5 whether the request of a sender may run. Returns false with
+ * foreign_origin if it may not. */
 bool srv_policy_origin(const srv_policy *policy, const srv_sender *sender, api_problem *problem);
 /* Returns true if `host`, the value of the header Host or NULL, is a configured name to which rule
  * P6 applies. */

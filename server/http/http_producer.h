@@ -1,8 +1,8 @@
 /* http_producer.h - lets other threads make the pieces of an answer that is slow to make.
  *
- * While a piece is made, the connection is suspended and the worker serves other connections; while
- * a piece is sent, no further piece is made. The threads are not those of the pool for long work,
- * because a download would have to wait behind that work.
+ * While a piece is made, the connection is suspended and the worker thread serves other
+ * connections; while a piece is sent, no further piece is made. The threads are not those of the
+ * pool for long work, because a download would have to wait behind that work.
  *
  *     srv_producer_take --- returns bytes, the end or a failure: the caller sends that
  *        ^      `------- returns SRV_PRODUCER_WAIT: the caller suspends the connection, then calls
@@ -29,7 +29,7 @@ typedef struct srv_producer {
     /* The last piece; NULL if memory was out: then srv_producer_take calls `read` itself. */
     char *piece;
     size_t from, to;
-    int64_t last; /* the last result of `read`, the answer's source: 0 or -1 at the end */
+    int64_t last; /* the last result of the function `read` of the answer; 0 or -1 at the end */
     bool begun;
 } srv_producer;
 

@@ -18,8 +18,8 @@
  *       libmicrohttpd relies on that: after such a call it waits for the next edge-triggered event
  *       of the socket.
  *   R4  The connection of a socket is found in a table by descriptor, without a lock. An entry is
- *       written only by the worker that owns the descriptor, after accept() and before close(); in
- *       between no other socket has this descriptor.
+ *       written only by the worker thread that owns the descriptor, after accept() and before
+ *       close(); in between no other socket has this descriptor.
  *   R5  If the end of the client's stream arrives together with the last bytes, it is noticed when
  *       they are read. No further event reports it, so libmicrohttpd would wait for the next
  *       request until the idle timeout. The kernel reports with the bytes whether there is more to
@@ -51,8 +51,8 @@ void srv_recv_forget(int socket);
 /* Returns the connection of a TLS session, or NULL if its bytes are not checked. */
 srv_connection *srv_recv_find(gnutls_session_t session);
 /* Returns true if the client has closed its side after the present request, so that the present
- * answer is the last on this connection. Called by the worker of the connection. Returns false for
- * NULL. */
+ * answer is the last on this connection. Called by the worker thread of the connection. Returns
+ * false for NULL. */
 bool srv_recv_has_ended(const srv_connection *connection);
 
 /* Sends bytes to the client without libmicrohttpd, which must not be sending an answer. Returns

@@ -18,8 +18,8 @@ static srv_connection *socket_of(struct MHD_Connection *connection)
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
 {
     srv_connection *socket = socket_of(connection);
-    /* Every request is counted here, because http_syntax.h counts each, too (rule S4). If a request
-     * was not counted there, its bytes were not checked. */
+    /* Every request is counted here, because http_syntax.h also counts every request (rule S4). If
+     * a request is counted here but not there, its bytes were not checked. */
     if (socket == NULL || !srv_syntax_has_begun(&socket->syntax, ++socket->requests)) {
         return NULL;
     }
@@ -129,7 +129,7 @@ void srv_request_end(srv_request *r)
         tell_log(r, now);
     }
     bool counted = r->counted;
-    /* A connection that ended while it was suspended still counts as suspended. */
+    /* If a connection ended while it was suspended, it still counts as suspended here. */
     srv_request_resumed(r);
     if (r->block > 0) {
         atomic_fetch_sub(&http->downloads, 1);

@@ -70,8 +70,8 @@ typedef struct srv_request {
     /* The connection as http_recv.h watches it; NULL if it is not watched. */
     srv_connection *socket;
     srv_state state;
-    bool counted; /* whether the gate (http_inflight.h) counts the request as running */
-    bool aside;   /* whether the gate (http_inflight.h) counts the connection as suspended */
+    bool counted; /* whether http_inflight.h counts the request as running */
+    bool aside;   /* whether http_inflight.h counts the connection as suspended */
     bool whole;   /* whether the whole body of the request has arrived */
     uint64_t started;
     uint64_t number; /* number of the request on its connection, from 1 */

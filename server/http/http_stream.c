@@ -66,7 +66,7 @@ static void ready_due(srv_streams *streams)
 }
 
 /* Marks the streams whose clients have closed their side. The caller holds the lock, under which a
- * stream is also removed from the epoll set; so the streams that epoll reports still exist. */
+ * stream is also removed from the epoll set; so every stream that epoll reports still exists. */
 static void ready_gone(srv_streams *streams)
 {
     struct epoll_event events[GONE_AT_ONCE];
@@ -252,7 +252,7 @@ int64_t srv_stream_read(srv_stream *stream, char *buffer, size_t size)
 }
 
 /* Leaves a stream to the thread of this module until there is something to send. If the source has
- * called wake while the worker read from the stream, the stream is resumed at once. */
+ * called wake while the worker thread read from the stream, the stream is resumed at once. */
 void srv_stream_aside(srv_stream *stream)
 {
     srv_streams *streams = stream->streams;

@@ -1,11 +1,11 @@
 /* http_stream.h - streams of events (api/live.h): suspends their connections while there is nothing
  * to send, and resumes them.
  *
- * A stream belongs to the worker (PULLED) while the worker reads events from its source and sends
- * them. When the source has nothing to send, the worker suspends the connection and puts the stream
- * aside (ASIDE). From then on the stream belongs to this module, whose thread has the connection
- * resumed, exactly once: when the source calls wake, when a heartbeat is due because nothing was
- * sent for some time, when the client has closed its side, or when the server stops.
+ * A stream belongs to the worker thread (PULLED) while the worker reads events from its source and
+ * sends them. When the source has nothing to send, the worker suspends the connection and puts the
+ * stream aside (ASIDE). From then on the stream belongs to this module, whose thread has the
+ * connection resumed, exactly once: when the source calls wake, when a heartbeat is due because
+ * nothing was sent for some time, when the client has closed its side, or when the server stops.
  *
  *     PULLED --srv_stream_read returns API_READ_WAIT, then srv_stream_aside--> ASIDE
  *       ^                                                                    |
@@ -29,7 +29,7 @@ typedef struct srv_stream {
     const api_source *source;
     void (*resume)(struct srv_stream *stream);
     bool aside;
-    bool woken;    /* whether the source has called wake while the worker owned the stream */
+    bool woken;    /* whether the source has called wake while the worker thread owned the stream */
     bool due;      /* whether a heartbeat must be sent if there is nothing else to send */
     bool finished; /* whether the source was told that the server stops */
     bool gone;     /* whether the client has closed its side of the connection */
@@ -49,8 +49,8 @@ void srv_streams_free(srv_streams *streams);
  * the client closes its side, or -1. */
 void srv_stream_begin(srv_streams *streams, srv_stream *stream, const api_source *source,
                       int socket, void (*resume)(srv_stream *stream));
-/* Ends a stream, before its storage and its socket are freed; it must not be aside. Does nothing if
- * the stream was not begun. */
+/* Ends a stream, before its storage and its socket are freed. The stream must not be in the hands
+ * of this module's thread (srv_stream_aside). Does nothing if the stream was not begun. */
 void srv_stream_end(srv_stream *stream);
 /* Reads bytes to send, like the member `read` of api_source; returns -1 also if the client has
  * closed its side. After API_READ_WAIT the caller must suspend the connection, call

@@ -1,7 +1,7 @@
 /* access.h - the record of one request, from which its lines in the log are made.
  *
- * Records are small and have a fixed size, so that a worker fills one without allocating memory;
- * the thread of log.h formats them. */
+ * Records are small and have a fixed size, so that a worker thread fills one without allocating
+ * memory; the thread of log.h formats them. */
 #ifndef HE_SERVER_LOG_ACCESS_H
 #define HE_SERVER_LOG_ACCESS_H
 

@@ -21,7 +21,7 @@ enum {
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,
     MOST_ENTRIES = 8192,
-    RING_SHARE = 64 /* the ring takes the memory budget divided by this */
+    RING_SHARE = 64 /* the ring may take a part of the memory budget: the budget divided by this */
 };
 
 /* One entry of the ring: a line of the daemon itself, or the record of a request. */
@@ -88,10 +88,10 @@ static void write_dropped(srv_log *log, uint64_t dropped)
     write_all(log, line, (size_t)length);
 }
 
-/* Waits until there are entries in the ring. Because waking the log's thread takes a worker longer
- * than adding a record, the thread is woken by the first record and then waits for more records
- * before it writes them. The caller holds the lock. Returns false when everything is written and
- * the log ends. */
+/* Waits until there are entries in the ring. Because waking the log's thread takes a worker thread
+ * longer than adding a record, the thread is woken by the first record and then waits for more
+ * records before it writes them. The caller holds the lock. Returns false when everything is
+ * written and the log ends. */
 static bool wait_for_entries(srv_log *log)
 {
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {

@@ -19,8 +19,10 @@ typedef struct srv_log srv_log;
 typedef struct srv_log_settings {
     srv_level level; /* the least severe level that is written; lines of requests have no level */
     bool json;
-    bool requests;    /* whether a line is written for each request */
-    uint64_t slow_us; /* requests that took longer get a line that says where; 0: none does */
+    bool requests; /* whether a line is written for each request */
+    /* Requests that took longer than this many microseconds get a line that says where the time
+     * went; 0: no request does. */
+    uint64_t slow_us;
 } srv_log_settings;
 
 /* Returns how many entries the ring of a daemon with this memory budget should have: as many as fit

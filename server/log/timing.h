@@ -14,8 +14,8 @@
 typedef struct srv_timing {
     bool on;         /* false: nothing is measured */
     srv_part part;   /* the part in which the request is now */
-    uint64_t since;  /* when this part began, in microseconds of the monotonic clock */
-    uint64_t waited; /* what st_lock_waited returned when this part began */
+    uint64_t since;  /* when the present part began, in microseconds of the monotonic clock */
+    uint64_t waited; /* what st_lock_waited returned when the present part began */
     uint64_t parts[SRV_PARTS];
 } srv_timing;
 

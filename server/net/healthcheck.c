@@ -100,7 +100,7 @@ bool srv_healthcheck(const char *url, char *message, size_t size)
     if (status == 0) {
         snprintf(message, size, "no answer arrived");
     } else {
-        snprintf(message, size, "the answer had the status %d", status);
+        snprintf(message, size, "the daemon answered with the status %d instead of 200", status);
     }
     return status == 200;
 }

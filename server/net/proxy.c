@@ -130,8 +130,8 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
            inet_ntop(address.family, address.address, out, SRV_ADDRESS_TEXT) != NULL;
 }
 
-/* Handles the next element of a list by rule T1 (proxy.h); `address` is NULL if the element has no
- * address. Returns true if this element is that of the client, as far as the list was read. */
+/* Handles the next address of a list by rule T1 (proxy.h); `address` is NULL if the element of the
+ * list has none. Returns true if this element is the client's, as far as the list was read. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);
@@ -160,8 +160,8 @@ static bool read_scheme(const char *text, size_t length, srv_scheme *out)
 
 /* --- X-Forwarded-For, X-Forwarded-Proto --- */
 
-/* Returns the next element of a list with commas, without the blanks around it, and moves *at
- * behind it. Returns NULL after the last element. */
+/* Returns the next element of a list that is separated by commas, without the blanks around the
+ * element, and moves *at behind it. Returns NULL after the last element. */
 static const char *next_element(const char **at, size_t *length)
 {
     const char *text = *at;
@@ -330,7 +330,7 @@ const char *srv_forwarding_end(const srv_forwarding *told, char address[SRV_ADDR
         return "Forwarded is not a list of elements such as for=192.0.2.1;proto=https";
     }
     if (b->malformed) {
-        return "X-Forwarded-For has something that is not an address in the place of the client's "
+        return "X-Forwarded-For has, in the place of the client's address, a text that is not an "
                "address";
     }
     if (told->no_scheme) {

@@ -49,8 +49,8 @@ bool srv_proxies_has(const srv_proxies *proxies, const char *address);
 
 typedef enum srv_scheme { SRV_SCHEME_UNKNOWN, SRV_SCHEME_HTTP, SRV_SCHEME_HTTPS } srv_scheme;
 
-/* What the lines of Forwarded, or of X-Forwarded-For and X-Forwarded-Proto, have said so far; {0}
- * before the first line. Only proxy.c uses the members. */
+/* What the lines of the header Forwarded, or those of X-Forwarded-For and X-Forwarded-Proto, have
+ * said so far about the client; {0} before the first line. Only proxy.c uses the members. */
 typedef struct srv_told {
     char address[SRV_ADDRESS_TEXT]; /* the client's address by T1; "" if it has none */
     srv_scheme scheme;

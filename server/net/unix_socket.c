@@ -34,9 +34,9 @@ static int lock_folder(const char *path)
     return fd;
 }
 
-/* Removes a socket file at the path on which no program listens. Returns NULL, or a sentence that
- * says why the path cannot be used. If connecting gives EAGAIN, a program listens there but is not
- * accepting connections at the moment. */
+/* If no program listens on the socket at the path, removes the socket's file. Returns NULL, or a
+ * sentence that says why the path cannot be used. If connecting gives EAGAIN, a program listens
+ * there but is not accepting connections at the moment. */
 static const char *make_room(const srv_address *address, const char *path)
 {
     struct stat found;

@@ -137,8 +137,8 @@ static srv_certificate *read_pair(const char *certificate_path, const char *key_
              load(&key, message, size) && read_key(pair, &key, message, size);
     }
     if (ok && !is_key_of(pair)) {
-        snprintf(message, size, "%s is not the key of the first certificate in %s", key_path,
-                 certificate_path);
+        snprintf(message, size, "the key in %s does not belong to the first certificate in %s",
+                 key_path, certificate_path);
         ok = false;
     }
     unload(&certificate);

@@ -30,7 +30,7 @@ static size_t exchange(gnutls_session_t session, const char *request, size_t len
     do {
         code = gnutls_record_send(session, request, length);
     } while (goes_on(code));
-    /* A request shorter than a record is sent whole or not at all. */
+    /* A request shorter than a TLS record is sent as a whole or not at all. */
     while (code > 0 && got < size) {
         do {
             code = srv_tls_receive(session, answer + got, size - got);

@@ -213,14 +213,15 @@ static void one_file_is_the_mesh(void **state)
     bench_reply_free(&r);
     bench_done(expect_triangle("obj", send_files(b, "/v1/meshes?format=obj", two)));
     expect_refused(422, "unclear_parts",
-                   "in the format ply, judged by name, media type and first bytes: "
+                   "in the format ply, as far as their names, media types and first bytes show: "
                    "a.obj, a.gltf, a.bin",
                    send_files(b, "/v1/meshes?format=ply", two));
     expect_refused(422, "unclear_parts",
-                   "in a format that the server reads, judged by name, media type and first bytes: "
+                   "in a format that the server reads, as far as their names, media types and "
+                   "first bytes show: "
                    "a.bin, a.mtl",
                    send_files(b, "/v1/meshes", none));
-    expect_refused(422, "unclear_parts", "by name, media type and first bytes: ",
+    expect_refused(422, "unclear_parts", "names, media types and first bytes show: ",
                    send_files(b, "/v1/meshes", (file[MOST_FILES]){{NULL, NULL, NULL, 0}}));
     bench_done(expect_triangle("obj", send_files(b, "/v1/meshes", bare)));
     expect_refused(422, "unclear_parts", "could be the mesh: x, y;",

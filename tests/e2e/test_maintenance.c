@@ -153,7 +153,7 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
                   "DELETE FROM record WHERE mesh = (SELECT key FROM mesh WHERE id = 'cube') "
                   "AND number = 3");
     expect_run(ARGUMENTS("--store", store, "--verify"), 1, "cube: DAMAGED: record 3 is missing");
-    assert_non_null(strstr(output, "cube: undamaged only up to here, revision 2"));
+    assert_non_null(strstr(output, "cube: only an earlier state is undamaged, revision 2"));
     assert_non_null(strstr(output, "2 meshes whole, 1 not"));
     (void)snprintf(dump, sizeof dump, "%s/dump/cube.glb", folder);
     (void)unlink(dump);
@@ -174,7 +174,7 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
                 "FROM sqlite_schema WHERE name = 'kept_by_time') "
                 "WHERE name = 'sqlite_autoindex_mesh_1'");
-    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "the file itself is damaged");
+    expect_run(ARGUMENTS("--store", store, "--verify"), 1, "the database file itself is damaged");
     assert_non_null(strstr(output, "cube: DAMAGED: record 3 is missing"));
     assert_non_null(strstr(output, "1 meshes whole, 2 not"));
     folder_write(folder, "hedge.db", (const unsigned char *)"nothing", 7);

@@ -148,7 +148,7 @@ static void a_bad_pair_leaves_the_one_before_in_force(void **state)
     transport_make_pair("unused", other, key);
     kill(daemon_pid(d), SIGHUP);
     char *log = daemon_wait_log(d, "the previous settings stay in effect", 1);
-    assert_non_null(strstr(log, "is not the key of the first certificate in"));
+    assert_non_null(strstr(log, "does not belong to the first certificate in"));
     assert_non_null(strstr(log, certificate));
     free(log);
     client *c = client_new(d);
@@ -173,7 +173,7 @@ static void what_cannot_serve_stops_the_start(void **state)
     const struct {
         const char *certificate, *key, *why;
     } rows[] = {
-        {certificate, other, "is not the key of the first certificate in"},
+        {certificate, other, "does not belong to the first certificate in"},
         {key, key, "has no certificate in PEM"},
         {certificate, certificate, "has no private key in PEM"},
         {"/nowhere/c.pem", key, "/nowhere/c.pem cannot be read: No such file"},

@@ -578,9 +578,10 @@ static void a_frame_has_the_length_it_says(void **state)
     add(&plain, "abc", 3);
     for (size_t step = 1; step <= sizeof frame; step++) {
         coded.data[5] = 5;
-        expect_refused(API_ZSTD, &coded, step, API_BAD_ENCODING,
-                       "byte 15 of the zstd body: the length of the frame differs from the one in "
-                       "its header");
+        expect_refused(
+            API_ZSTD, &coded, step, API_BAD_ENCODING,
+            "byte 15 of the zstd body: the length of the decompressed frame differs from "
+            "the length in the frame's header");
         coded.data[5] = 3;
         expect_unfolded(API_ZSTD, &coded, step, &plain);
     }

@@ -217,12 +217,13 @@ static void headers_that_are_none_are_refused(void **state)
     expect_refused("--AbC" LINE LINE "x" LAST, "byte 7 of the body: a part has no name");
     expect_refused("--AbC" LINE "Content-Type: text/plain" LINE LINE LAST, "a part has no name");
     expect_refused("--AbC" LINE "Content-Disposition: attachment; name=a" LINE LINE LAST,
-                   "a Content-Disposition is not form-data");
+                   "the Content-Disposition of a part must be form-data");
     expect_refused("--AbC" LINE "Content-Disposition" LINE LINE LAST,
-                   "byte 7 of the body: a line is not a header");
-    expect_refused("--AbC" LINE ": x" LINE LINE LAST, "a line is not a header");
-    expect_refused("--AbC" LINE HEAD("a") " name=b" LINE LINE LAST, "a line is not a header");
-    expect_refused("--AbC" LINE HEAD("a") HEAD("a") LINE LAST, "a header is given twice");
+                   "byte 7 of the body: a line in the headers of a part is not");
+    expect_refused("--AbC" LINE ": x" LINE LINE LAST, "a line in the headers of a part is not");
+    expect_refused("--AbC" LINE HEAD("a") " name=b" LINE LINE LAST,
+                   "a line in the headers of a part is not");
+    expect_refused("--AbC" LINE HEAD("a") HEAD("a") LINE LAST, "a header of a part is given twice");
     expect_refused("--AbC" LINE HEAD("a") "Content-Type: a/b" LINE
                                           "content-type: a/b" LINE LINE LAST,
                    "given twice");
@@ -231,7 +232,7 @@ static void headers_that_are_none_are_refused(void **state)
     expect("--AbC" LINE HEAD("a") "Content-Transfer-Encoding: BINARY" LINE LINE LAST, "[a];");
     expect_refused(
         "--AbC" LINE HEAD("a") "Content-Type: multipart/mixed; boundary=x" LINE LINE LAST,
-        "a part is itself multipart");
+        "a part of the body is itself a multipart body");
 }
 
 static void a_body_that_ends_too_early_is_refused(void **state)
@@ -243,10 +244,10 @@ static void a_body_that_ends_too_early_is_refused(void **state)
         expect_refused_of(TYPE, whole, length, API_BAD_MULTIPART, "ends before its last delimiter");
     }
     expect_refused("no delimiter at all", "ends before its last delimiter");
-    expect_refused(PART("a") "x" LINE "--AbC- ", "a delimiter is followed by neither");
-    expect_refused(PART("a") "x" LINE "--AbC -", "a delimiter is followed by neither");
-    expect_refused(PART("a") "x" LINE "--AbCd" LINE, "a delimiter is followed by neither");
-    expect_refused(PART("a") "x" LINE "--AbC\r\r", "a delimiter is followed by neither");
+    expect_refused(PART("a") "x" LINE "--AbC- ", "neither \"--\" nor a new line follows");
+    expect_refused(PART("a") "x" LINE "--AbC -", "neither \"--\" nor a new line follows");
+    expect_refused(PART("a") "x" LINE "--AbCd" LINE, "neither \"--\" nor a new line follows");
+    expect_refused(PART("a") "x" LINE "--AbC\r\r", "neither \"--\" nor a new line follows");
 }
 
 /* Returns a block with `text` repeated `count` times between `before` and `behind`. */

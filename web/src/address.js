@@ -1,5 +1,5 @@
 // address.js - writes the open mesh, the selection and the camera into the page's address, and
-// shows what an address says; see link.js.
+// shows the mesh, selection and camera that an address names; see link.js.
 
 import { formatLink, parseLink } from './link.js';
 
@@ -12,8 +12,8 @@ export class Address {
         this.#stage = stage;
     }
 
-    // Writes what is shown into the page's address. The entry in the browser's history is replaced,
-    // so moving the camera does not fill that history.
+    // Writes the open mesh, the selection and the camera into the page's address. The entry in the
+    // browser's history is replaced, so moving the camera does not fill that history.
     write() {
         const { mesh, selection } = this.#session;
         if (mesh !== null) {

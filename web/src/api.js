@@ -47,7 +47,8 @@ function unreachable() {
     });
 }
 
-// Returns the problem in an answer's text, or makes one from the status.
+// Returns the problem that is in the text of an answer, or, if the text is none, makes a problem
+// from the answer's status.
 function problemOf(status, text) {
     try {
         const problem = JSON.parse(text);
@@ -104,8 +105,8 @@ function meshPath(mesh) {
     return `v1/meshes/${encodeURIComponent(mesh)}`;
 }
 
-// Returns the present token: {name, role, prefixes, expires}; `name` is null if the server asks for
-// no tokens.
+// Returns a description of the token that requests carry now: {name, role, prefixes, expires};
+// `name` is null if the server asks for no tokens.
 export function getToken() {
     return getJson('v1/token');
 }
@@ -190,8 +191,8 @@ export function getGeometry(mesh, onProgress, signal) {
     return readArrays(`${meshPath(mesh)}/geometry`, onProgress, signal);
 }
 
-// Returns what has changed in the arrays of getGeometry() since they had this revision and layout,
-// or the complete arrays if the server cannot say what has changed: see geometry_delta.js.
+// Returns the changes of the arrays of getGeometry() since this revision and layout, or the
+// complete arrays if the server cannot tell the changes: see geometry_delta.js.
 export function getGeometryChanges(mesh, { revision, layout }) {
     return readArrays(`${meshPath(mesh)}/geometry?since=${revision}&layout=${layout}`, () => {});
 }
@@ -302,7 +303,7 @@ export function edit(mesh, operation, revision, work = null) {
 }
 
 // Returns what an edit of the present mesh would change, without changing anything; null if the
-// server needs long to find out.
+// server would need long to find that out.
 export async function tryEdit(mesh, operation, signal) {
     const answer = await request(`${meshPath(mesh)}/edits`, {
         method: 'POST',
@@ -337,7 +338,7 @@ async function finish(first, work) {
         stop = resolve;
     });
     work?.begin(async () => {
-        // DELETE of a job that has ended would delete its result.
+        // DELETE is not sent to a job that has ended, because it would delete the job's result.
         if ((await getJson(path)).finished === null) {
             await request(path, { method: 'DELETE' });
         }

@@ -50,7 +50,8 @@ async function ids(ask, relations, of) {
     return answers.map((answer) => (lives(answer) ? answer.ids : []));
 }
 
-// Reads the half-edges that are to be drawn as arrows; `roles` is a map from their ids to roles.
+// Reads the half-edges that are to be drawn as arrows; `roles` is a map from the ids of half-edges
+// to their roles (see the top of this file).
 async function halfedgesOf(ask, roles) {
     const wanted = [...roles.keys()].slice(0, MOST);
     const answers = await ask(

@@ -10,7 +10,7 @@
 
 import { normalOfFace, pointAt } from './geometry.js';
 
-// Where an arrow begins and ends on its edge, as parts of the edge's length.
+// Where an arrow begins and ends along its edge, as parts of the edge's length.
 const START = 0.16;
 const END = 0.84;
 // The distance of an arrow from its edge, and its widths, as parts of the edge's length; they are
@@ -39,9 +39,9 @@ function unit(a) {
     return length > 0 ? a.map((value) => value / length) : null;
 }
 
-// Returns nine points per half-edge, three triangles, as {size, places, spreads}; null if the edge
-// has no length or its face no plane. `halfedge` is {origin, target, face, across}; `across` is the
-// face of its twin, in whose plane a boundary half-edge is drawn.
+// Returns the arrow of a half-edge as nine points (three triangles): {size, places, spreads}; null
+// if the edge has no length or its face no plane. `halfedge` is {origin, target, face, across};
+// `across` is the face of its twin, in whose plane a boundary half-edge is drawn.
 export function arrowOf(geometry, { origin, target, face, across }) {
     const from = pointAt(geometry, origin);
     const edge = subtract(pointAt(geometry, target), from);

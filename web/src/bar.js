@@ -1,4 +1,5 @@
-// bar.js - the bar with the name of the open mesh, its buttons, and problems with the connection.
+// bar.js - the bar at the top of the page: the name of the open mesh, the buttons, and problems
+// with the connection.
 
 import { byId, enable } from './dom.js';
 

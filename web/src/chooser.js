@@ -13,8 +13,9 @@ export class Chooser {
     #onChange;
     #operations = [];
 
-    // `onChange(isChosen)` is called when another operation is selected; `isChosen`: the user chose
-    // it in the list. `onEnter(name)` is called when the user presses Enter in the search field.
+    // `onChange(isChosen)` is called when another operation is selected; `isChosen` is true if the
+    // user chose it in the list. `onEnter(name)` is called when the user presses Enter in the
+    // search field.
     constructor({ select, search }, { onChange, onEnter }) {
         [this.#select, this.#search, this.#onChange] = [select, search, onChange];
         select.addEventListener('change', () => onChange(true));
@@ -79,8 +80,9 @@ export class Chooser {
     }
 }
 
-// Returns the name of the operation to select: the one called `text`, else the first whose name
-// contains all the words, else the one selected before, else the first of `operations`.
+// Returns the name of the operation to select: the operation with the name `text`, if there is one;
+// else the first operation whose name contains all the words; else the one that was selected
+// before; else the first of `operations`.
 function bestOf(operations, text, words, before) {
     const names = operations.map(({ name }) => name);
     const named =

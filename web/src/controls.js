@@ -2,7 +2,7 @@
 //
 //   node      the element for the form
 //   main      the element that its label belongs to, and that gets the focus first
-//   isSaid    whether the control has a value
+//   isSaid    whether the user has given a value
 //   clear()   removes the value
 //   read()    returns the value, undefined if there is none; throws a Problem for a mistake
 //
@@ -72,7 +72,7 @@ export class Flag {
 // A choice of yes or no that may be left out.
 export class Whether extends Choice {
     constructor() {
-        super([['', 'as it is'], ['yes', 'yes'], ['no', 'no']], '');
+        super([['', 'unchanged'], ['yes', 'yes'], ['no', 'no']], '');
     }
 
     read() {
@@ -104,7 +104,7 @@ export class Color extends Text {
         }
         if (numbers.length < 3 || numbers.length > this.#most) {
             const count = this.#most > 3 ? 'three or four' : 'three';
-            throw slip(this.#name, 'Not a colour', `${this.#name} is ${count} numbers.`);
+            throw slip(this.#name, 'Not a colour', `${this.#name} must be ${count} numbers.`);
         }
         return numbers;
     }
@@ -202,7 +202,7 @@ export class Numeral {
             throw slip(
                 this.#name,
                 'Not a number',
-                `${this.#name}: this is not a number.`,
+                `${this.#name} must be a number.`,
             );
         }
         return this.node.value === '' ? undefined : Number(this.node.value);
@@ -286,9 +286,10 @@ export class Vector {
     }
 }
 
-// A control with simple fields and, for values that those cannot express, a text area; a button
-// switches between the two. `easy` is the control with the fields, `write()` returns its value as
-// text, and `parse(text)` returns the value that a text means.
+// A control that consists of another control with simple fields and, for values that these fields
+// cannot express, of a text area; a button switches between the two. `easy` is the control with the
+// fields, `write()` returns the value of the fields as text, and `parse(text)` returns the value
+// that a text means.
 export class WithText {
     node;
     #easy;
@@ -298,7 +299,8 @@ export class WithText {
     #write;
     #labels;
 
-    // `labels` are the two labels of the button: while fields are shown, while the text is shown.
+    // `labels` are the two labels of the button: the first is shown while the fields are shown, the
+    // second while the text area is shown.
     constructor(easy, { name, placeholder, write, parse, labels }) {
         [this.#easy, this.#parse, this.#write, this.#labels] = [easy, parse, write, labels];
         this.#text = make('textarea', {

@@ -8,8 +8,8 @@ const CLICK_PIXELS = 4;
 
 const HINTS = {
     move: 'Drag to move the selection.',
-    extrude: 'Drag to extrude, or click.',
-    inset: 'Drag to inset, or click.',
+    extrude: 'Drag to extrude, or click for a default distance.',
+    inset: 'Drag to inset, or click for a default amount.',
 };
 
 export class Direct {
@@ -23,8 +23,9 @@ export class Direct {
 
     // `note` is an element that is shown while a tool is selected; it contains `hint`, `amount` and
     // a button, `giveUp`. `buttons` has one button for each tool. `acts` are four functions:
-    // begin(tool) returns a gesture or null, drag(gesture, moved) returns its result (for both see
-    // gesture.js), onShow(lines) draws a preview (null: none), and onRun(operation) does an edit.
+    // begin(tool) returns a gesture or null, drag(gesture, moved) returns the gesture's result (for
+    // both see gesture.js), onShow(lines) draws a preview, or removes it if `lines` is null, and
+    // onRun(operation) does an edit.
     constructor(canvas, { note, hint, amount, giveUp, buttons }, acts) {
         this.#canvas = canvas;
         this.#elements = { note, hint, amount, buttons };
@@ -130,7 +131,8 @@ export class Direct {
         }
     }
 
-    // Returns how far the pointer has moved, null for a click.
+    // Returns how far the pointer has moved since it was pressed; null if that is so little that it
+    // is a click.
     #movedTo({ clientX, clientY }) {
         const moved = [clientX - this.#down.x, clientY - this.#down.y];
         return Math.hypot(...moved) > CLICK_PIXELS ? moved : null;

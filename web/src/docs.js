@@ -5,7 +5,8 @@ import { getDescription } from './api.js';
 import { make } from './dom.js';
 import { alternatives, typeOf } from './schema.js';
 
-// Returns nodes that say of which type a schema is; names of other schemas in it are links.
+// Returns nodes that describe the type of a schema; the names of other schemas in this description
+// are links.
 function typeNodes(schema) {
     return typeOf(schema).map((part) =>
         typeof part === 'string' ? part : make('a', { href: `#schema-${part.ref}` }, part.ref),
@@ -200,8 +201,8 @@ function show({ info, paths, components }) {
             make('h2', {}, 'Schemas'),
             ...schemas.map(schemaSection),
         );
-    // The browser looked for the section that the address names (#ID) before the manual was built,
-    // so the page must scroll to that section itself.
+    // The page scrolls to the section that its address names (#ID), because the browser looked for
+    // that section before the manual was built.
     document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 

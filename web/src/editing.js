@@ -16,8 +16,8 @@ const MOST_TRIED = 100000;
 // If a form's fields contain more elements than this, the view does not mark them.
 const MOST_MARKED = 1000;
 
-// The operation whose form is shown if a tool of the view does not fit the selection, by the name
-// of the tool.
+// The operation whose form is shown if a tool of the view cannot work on the selected elements, by
+// the name of the tool.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
 
 // The words for what the user has to click, for one element and for several.
@@ -147,7 +147,7 @@ export class Editing {
             return null;
         }
         if (isDear) {
-            return 'No preview: it may take long on a mesh of this size.';
+            return 'No preview: this operation may take long on a mesh of this size.';
         }
         try {
             return wordsOf(await api.tryEdit(mesh, operation, signal));
@@ -172,14 +172,14 @@ export class Editing {
             const { revision, history } = this.#session.shown;
             const isFinal = history.entries[0]?.undoable === false;
             const end = isFinal ? ' This edit cannot be undone.' : '';
-            this.#toasts.tell(operation.op, `Done: this is revision ${revision}.${end}`);
+            this.#toasts.tell(operation.op, `Done: the mesh is now at revision ${revision}.${end}`);
         } finally {
             this.#work.end();
         }
     }
 
-    // Deletes or collapses the selected elements, or only the last one if the operation takes one
-    // element.
+    // Deletes or collapses the selected elements; if the operation takes only one element, the
+    // element that was selected last.
     async remove() {
         const { chosen, last } = this.#session.selection;
         if (last !== undefined) {
@@ -199,8 +199,8 @@ export class Editing {
         }
     }
 
-    // Tells the user which field of the form waits for a click, `wanted`, see Tools; undefined if
-    // none does.
+    // Tells the user which field of the form waits for a click; `wanted` describes this field (see
+    // Tools) and is undefined if no field waits.
     #showPicking(wanted) {
         byId('pick-note').hidden = wanted === undefined;
         if (wanted !== undefined) {
@@ -215,7 +215,7 @@ export class Editing {
         }
     }
 
-    // If a field of the form waits for a click, ends the wait.
+    // Ends the wait of the form's field that waits for a click, if there is one.
     stopPicking() {
         this.#tools.disarm();
     }
@@ -251,9 +251,9 @@ export class Editing {
         }
     }
 
-    // Starts a tool of the view, or opens the form of its operation if the tool does not fit the
-    // selection. While the tool is in use, that form is shown, too, for exact numbers. `isKey`: the
-    // user pressed the tool's key, not its button.
+    // Starts a tool of the view, or opens the form of its operation if the tool cannot work on the
+    // selected elements. While the tool is in use, the form is shown, too, so that the user can
+    // give exact numbers. `isKey`: the user pressed the tool's key, not its button.
     start(tool, isKey) {
         const name = FORMS[tool];
         const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);

@@ -29,8 +29,8 @@ export function isList({ plural, type }) {
 }
 
 // Makes the control of a parameter. `meshes()` returns a promise of the list of meshes;
-// `pickable(param, control)` returns the control's node with a button after which a click in the
-// view fills it.
+// `pickable(param, control)` returns the control's node together with a button: after a click on
+// the button, a click in the view fills the control.
 export function controlFor(param, meshes, pickable) {
     const { name, type, choices, default: usual, nullable = false } = param;
     if (type === 'flag') {
@@ -68,7 +68,8 @@ function hintFor({ default: usual, required }) {
     return usual === undefined ? (required ? 'number' : 'default') : `${usual}`;
 }
 
-// Returns a note on a parameter: whether it is a whole number, its range, whether it is optional.
+// Returns a note on a parameter: whether the value is a whole number, its range, and whether it may
+// be left out.
 export function marksOf({ type, required, min, max, exclusive }) {
     const marks = type === 'integer' ? ['whole'] : [];
     if (min !== undefined || max !== undefined) {

@@ -3,14 +3,14 @@
 import { normalOfFace, pointAt } from './geometry.js';
 import { middleOf, reachFrom } from './view.js';
 
-// If the sum of the faces' unit normals is shorter than this, the faces count as looking in all
-// directions.
+// If the sum of the faces' unit normals is shorter than this, the faces count as having no common
+// direction.
 const NOWHERE = 1e-3;
 
 // Returns a ball around the selected elements and the direction in which they look, {center,
 // radius, normal}; null if nothing is selected. The ball of a single vertex contains its
-// neighbours. `normal` is the mean normal of the selected faces, or of the faces beside the
-// selection if no face is selected; it is null if those look in all directions.
+// neighbours. `normal` is the mean normal of the selected faces or, if no face is selected, of the
+// faces beside the selection; it is null if these faces have no common direction.
 export function framing(geometry, selection) {
     const marks = selection.marksIn(geometry);
     const arrows = selection.arrowsIn(geometry);

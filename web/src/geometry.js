@@ -188,7 +188,8 @@ export function findFaces(geometry, places) {
     const { triangles, triangleCount } = geometry;
     let done = -1; // index of the last triangle processed
     for (const place of places) {
-        // The face that this triangle belonged to before may still have a triangle beside it.
+        // The face to which this triangle belonged before may still have another triangle, just
+        // beside this one.
         for (const at of [place - 1, place, place + 1]) {
             if (at > done && at < triangleCount && isLive(triangles, at)) {
                 done = at;
@@ -206,8 +207,8 @@ function setFirst(geometry, face, triangle) {
     }
     const isOf = (at) => at >= 0 && faceOf(triangles, at) === face && isLive(triangles, at);
     let first = geometry.firstOf[face] - 1;
-    // The entry is still right if it and the triangle just before belong to the face; otherwise the
-    // first triangle must be searched.
+    // The entry of firstOf is still right if the triangle that it names and the triangle just
+    // before `triangle` both belong to the face; otherwise the first triangle must be searched.
     if (first < 0 || first >= triangle || !isOf(first) || !isOf(triangle - 1)) {
         for (first = triangle; isOf(first - 1); first--);
     }

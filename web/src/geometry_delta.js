@@ -30,7 +30,7 @@ export function applyDelta(geometry, buffer, rowTexels = 2048) {
         return null;
     }
     if (header.base !== geometry.revision || header.layout !== geometry.layout) {
-        throw new RangeError('The changes are not for the geometry that is shown.');
+        throw new RangeError('The changes from the server are not for the geometry shown.');
     }
     const view = new DataView(buffer);
     const [vertexRows, triangleRows] = [88, 92].map((at) => view.getUint32(at, true));
@@ -41,7 +41,7 @@ export function applyDelta(geometry, buffer, rowTexels = 2048) {
         !fits(vertices.places, geometry.vertexCount, header.vertexCount) ||
         !fits(triangles.places, geometry.triangleCount, header.triangleCount)
     ) {
-        throw new RangeError('The changes do not fit the geometry that is shown.');
+        throw new RangeError('The changes from the server do not fit the geometry shown.');
     }
     const before = [geometry.vertices, geometry.triangles];
     geometry.vertices = grown(geometry.vertices, header.vertexCount, rowTexels);

@@ -80,9 +80,10 @@ function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
     return edgesOfTriangles(triangles, found).slice(0, MOST_LINES);
 }
 
-// Returns the result when the pointer has moved by (dx, dy) CSS pixels, or null for a click, which
-// uses the default amount: {operation, lines, text}, where `lines` are pairs of end points, and the
-// operation is null if it would change nothing. `view` is Renderer.view.
+// Returns what the gesture does if the pointer has moved by (dx, dy) CSS pixels, or, if the
+// movement is null (a click), what it does with the default amount: {operation, lines, text}, where
+// `lines` are pairs of end points of a preview, `text` shows the amount, and the operation is null
+// if it would change nothing. `view` is Renderer.view.
 export function drag(gesture, view, moved) {
     if (gesture.op === 'vertex_move') {
         return move(gesture, moved === null ? [0, 0, 0] : across(gesture, view, moved));
@@ -99,7 +100,8 @@ export function drag(gesture, view, moved) {
 
 // --- from pixels to places ---
 
-// Returns how long a CSS pixel is in the plane through the selection parallel to the screen.
+// Returns the length in view coordinates of one CSS pixel, in the plane that goes through the
+// selection and is parallel to the screen.
 function pixelOf({ middle }, view) {
     const depth = -dot(add(middle, view.position, -1), view.back);
     return pixelAtOne(view.height) * Math.max(depth, 0);
@@ -191,7 +193,7 @@ function shrink(gesture, factor) {
         return linesOfFace(geometry, id, (point) => add(point, add(middle, point, -1), factor));
     });
     const operation = { op, faces: idsOf(gesture), factor };
-    return { operation, lines, text: `${textOf([100 * factor])} % of the way` };
+    return { operation, lines, text: `${textOf([100 * factor])} % of the way to the middle` };
 }
 
 // Returns lines that show how a face moves if its corners p move to place(p): its edges at the new

@@ -51,8 +51,8 @@ export class History {
     async #readOn() {
         const first = this.#shown;
         const page = await this.#readPage(this.#more.dataset.cursor);
-        // If the mesh was edited meanwhile, the list shows a newer history, to which this page does
-        // not belong.
+        // If the mesh was edited while the page was read, the list shows a newer history, to which
+        // this page does not belong.
         if (this.#shown === first) {
             this.#append(page);
         }
@@ -99,7 +99,7 @@ export class History {
             {
                 type: 'button',
                 className: 'entry',
-                title: `Undo all since revision ${revision}`,
+                title: `Undo all edits since revision ${revision}`,
                 disabled: !this.#isEnabled,
                 onclick: () => {
                     this.#hasFocus = true;
@@ -117,7 +117,7 @@ export class History {
 
 const signs = { created: '+', deleted: '\u2212', modified: '~' };
 
-// Returns how many elements were created and deleted, as in "+6 −1".
+// Returns how many elements an edit created and deleted, as in "+6 −1".
 function sumOf(entry) {
     return ['created', 'deleted']
         .map((name) => [

@@ -3,7 +3,7 @@
 
 import { formatMeasure, make } from './dom.js';
 
-// The members of an element whose values are ids of elements, and the kind of those elements.
+// The members of an element that are ids of other elements, and the kind of these other elements.
 const LINKS = {
     vertex: 'vertex',
     vertices: 'vertex',
@@ -25,7 +25,7 @@ const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'F
 // If a member has more ids than this, the further ids are shown after a click on a button.
 const MOST = 16;
 
-// The number of digits of a measure, few enough for three measures to fit into a line.
+// The number of digits with which a measure is shown: so few that three measures fit into a line.
 const DIGITS = 5;
 
 export class Inspector {
@@ -49,8 +49,8 @@ export class Inspector {
         this.#heirOf = heirOf;
     }
 
-    // Shows the element that was selected last, its neighbours, and selected elements that were
-    // deleted meanwhile, see selection.js.
+    // Shows the element that was selected last, its neighbours, and the selected elements that
+    // other edits have deleted, see selection.js.
     show({ chosen: selection, around, gone }) {
         const last = selection.at(-1);
         this.#gone.hidden = gone.length === 0;
@@ -158,7 +158,7 @@ function plainValue(value) {
 
 function hintFor(selection) {
     if (selection.length === 0) {
-        return 'Click the mesh to pick an element. Shift picks several.';
+        return 'Click the mesh to pick an element. Shift and click picks several.';
     }
     const others = selection.slice(0, -1);
     return others.length === 0

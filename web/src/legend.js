@@ -90,7 +90,8 @@ function colorOf([red, green, blue, opacity]) {
     return `rgb(${parts.join(' ')} / ${opacity})`;
 }
 
-// Returns notes on the properties of a material that its patch of colour does not show.
+// Returns notes on those properties of a material that the patch of colour in the list does not
+// show.
 function notesOf(look) {
     if (look === null) {
         return ['unknown colour'];

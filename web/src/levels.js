@@ -13,7 +13,7 @@ import { unreadable } from './progressive.js';
 // The bits that say that all three sides of a triangle are edges.
 const SIDES = 7 << 29;
 
-// Which texels have changed is recorded for blocks of this many texels. ROW is a multiple of it, so
+// Changed texels are recorded in blocks of this many texels. ROW is a multiple of this number, so
 // that a block never spans two rows of a texture.
 const BLOCK = 256;
 
@@ -229,7 +229,8 @@ export class Levels {
     }
 }
 
-// Records which blocks of an array are outdated in graphics memory, among those that are shown.
+// Records which blocks of texels of an array have changed since they were uploaded to graphics
+// memory, among those that are shown.
 class Changes {
     #blocks;
     #shown = 0; // number of texels shown at the last call of take(); later ones may be outdated

@@ -1,4 +1,5 @@
-// lineage.js - remembers which elements replaced deleted ones, as far as edits reported it. Pure.
+// lineage.js - remembers which elements have replaced deleted elements, as far as edits have
+// reported it. Pure.
 
 // Each map of replaced elements holds at most this many entries; the oldest entries are forgotten.
 const MOST = 10000;

@@ -18,7 +18,8 @@ import { listen, getHistory } from './api.js';
 const SOON = 250;
 const LATEST = 15000;
 
-// If the stream has not opened after this many milliseconds, the page shows the mesh without it.
+// If the stream has not opened after this many milliseconds, the page shows the mesh without
+// waiting for the stream.
 const PATIENCE = 3000;
 
 export class Live {
@@ -41,7 +42,8 @@ export class Live {
         this.#on = on;
     }
 
-    // Opens the stream. The promise resolves when it is open, if opening fails, or after PATIENCE.
+    // Opens the stream. The promise resolves when the stream is open, when opening it fails, or
+    // after PATIENCE milliseconds.
     open() {
         return new Promise((resolve) => {
             const timer = setTimeout(() => {
@@ -95,7 +97,8 @@ export class Live {
     }
 
     #receive(name, data) {
-        // Since an event arrived, the connection works, so the next delay is short again.
+        // An event has arrived, so the connection works, and the delay before the next attempt to
+        // open the stream is short again.
         this.#delay = SOON;
         if (name === 'bye' && data.reason === 'deleted') {
             this.close();
@@ -118,8 +121,8 @@ export class Live {
         this.#delay = Math.min(2 * this.#delay, LATEST);
     }
 
-    // Opens the stream again, unless the mesh was deleted: listen() does not report why the stream
-    // failed, so another request finds out.
+    // Opens the stream again, unless the mesh was deleted. listen() does not report why the stream
+    // failed, so another request finds out whether the mesh still exists.
     async #retry() {
         try {
             await getHistory(this.#mesh);

@@ -239,8 +239,8 @@ function showWhatMayBeDone() {
     history.setEnabled(ready);
 }
 
-// Ends the showing of levels of detail. Called when another mesh or revision is shown, to which
-// these levels do not belong.
+// Ends the showing of levels of detail. It is called when another mesh or revision is shown, to
+// which the levels do not belong.
 function endLevels() {
     refining.end();
     if (session.loading === null) {
@@ -249,7 +249,7 @@ function endLevels() {
 }
 
 function tellStale() {
-    toasts.tell('Back to the mesh', 'The mesh was changed, so these levels are out of date.');
+    toasts.tell('Back to the mesh', 'The mesh was changed, so the levels of detail are outdated.');
 }
 
 // Reads the list of meshes again, and shows a hint if there are none. Returns the ids in its first

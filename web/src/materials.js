@@ -108,8 +108,8 @@ export class Materials {
             : null;
     }
 
-    // Takes the description of the attribute `material`, or null if faces have no such attribute;
-    // all faces get the attribute's default value.
+    // Takes the description of the face attribute `material`, or null if faces have no such
+    // attribute. All faces get the attribute's default value.
     #setColumn(column) {
         const isUsable = column?.labels !== undefined && column.components === 1;
         this.#names = isUsable ? column.labels : [];

@@ -38,7 +38,8 @@ class Steps {
         return this.#vectors.scale.main;
     }
 
-    // A centre of rotation alone changes nothing, so it does not count as a value.
+    // A centre of rotation alone changes nothing, so the control has no value if only the centre is
+    // given.
     get isSaid() {
         return STEPS.some(([member]) => this.#vectors[member].isSaid);
     }

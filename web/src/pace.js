@@ -40,7 +40,8 @@ export class Pace {
         }
         const faces = this.#faces * this.#growth ** (position / this.positions);
         const level = Math.round((faces - this.#faces) / FACES);
-        // The level is at least the position, so that different positions have different levels.
+        // The result is at least the position itself, so that different positions of the slider
+        // have different levels.
         return Math.min(Math.max(level, Math.floor(position)), this.#levels);
     }
 

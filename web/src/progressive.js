@@ -66,14 +66,14 @@ export class ProgressiveReader {
         this.#bytes.copyWithin(0, at, this.#held);
         this.#held -= at;
         if (this.#part > SPLITS && this.#held > 0) {
-            throw new RangeError('The levels of the mesh are longer than their header says.');
+            throw new RangeError('The levels of detail are longer than their header says.');
         }
     }
 
     // Called when all bytes were passed to push(). Throws a RangeError if some are missing.
     end() {
         if (this.#part <= SPLITS) {
-            throw new RangeError('The levels of the mesh did not arrive completely.');
+            throw new RangeError('The levels of detail did not arrive completely.');
         }
     }
 
@@ -158,5 +158,5 @@ export class ProgressiveReader {
 
 // Returns the error to throw for invalid bytes, also by the functions that receive the rows.
 export function unreadable() {
-    return new RangeError('This page cannot read the levels that the server sent.');
+    return new RangeError('This page cannot read the levels of detail that the server sent.');
 }

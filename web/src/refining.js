@@ -8,15 +8,15 @@ import { Levels } from './levels.js';
 import { Pace } from './pace.js';
 import { ProgressiveReader } from './progressive.js';
 
-// The longest time between two frames that counts while playing, in seconds: if the page was hidden
-// or a frame was slow, playing does not jump further.
+// The longest time between two frames, in seconds, that counts as playing time: if the page was
+// hidden or a frame was slow, the levels do not jump forward by more than this time.
 const LONGEST = 0.5;
 
 const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
 
 const HINTS = {
-    waiting: 'The server is computing the levels.',
-    shown: 'You cannot pick or edit meanwhile.',
+    waiting: 'The server is computing the levels of detail.',
+    shown: 'You cannot pick or edit while levels of detail are shown.',
 };
 
 export class Refining {
@@ -200,7 +200,7 @@ export class Refining {
         }
     }
 
-    // Called before a frame: goes to the level that the frame is to show.
+    // Called before a frame is drawn: goes to the level that the frame is to show.
     #step(now) {
         const [levels, pace] = [this.#levels, this.#pace];
         const wasPlaying = this.#isPlaying;

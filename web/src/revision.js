@@ -9,8 +9,8 @@
 //   boundary    ids of the origin and the target of each half-edge of all boundary loops, one after
 //               another; of the revision of `summary`
 //
-// A function that reads returns a function that puts the result into the Content, so that
-// everything for one frame is put there at once.
+// Each function that reads something returns another function that puts the result into the
+// Content, so that all results for one frame are put there at once.
 
 import * as api from './api.js';
 import { VERTEX_ISOLATED, findFaces, headerOf, unpack } from './geometry.js';

@@ -54,8 +54,8 @@ function basic(schema) {
     return [`${type ?? 'anything'}${range(schema)}${form === undefined ? '' : ` (${form})`}`];
 }
 
-// Returns a description of the values that a schema allows, as an array: texts, and {ref: NAME} for
-// each reference to another schema.
+// Returns a description of the values that a schema allows, as an array whose items are texts or,
+// for a reference to another schema, {ref: NAME}.
 export function typeOf(schema) {
     const parts = schema.$ref
         ? [{ ref: nameOf(schema.$ref) }]

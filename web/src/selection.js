@@ -46,8 +46,8 @@ export class Selection {
         } finally {
             if (choice === this.#choice) {
                 this.#take(kind, id, also, read);
-                // The other selected elements, or the answers just read about this element, may be
-                // outdated.
+                // The other selected elements, or the answers that were just read about this
+                // element, may be outdated by now.
                 if (change !== this.#change || this.#seen !== this.#change) {
                     await this.#readAgain();
                 }

@@ -13,8 +13,8 @@ import { Materials } from './materials.js';
 import { Content } from './revision.js';
 import { Selection } from './selection.js';
 
-// After a change of a large mesh, its summary is read when there was no further change for this
-// many milliseconds.
+// After a change of a large mesh, its summary is read as soon as the mesh has not changed again for
+// this many milliseconds.
 const REST = 400;
 
 export class Session {
@@ -122,8 +122,8 @@ export class Session {
         return followed;
     }
 
-    // If events may have been missed, fetches what they would have reported. While the mesh is
-    // still being opened, does nothing: open() calls this again at its end.
+    // If events may have been missed, fetches the changes that these events would have reported.
+    // While the mesh is still being opened, does nothing: open() calls this again at its end.
     #catchUp(followed) {
         if (followed.hasMissed && followed === this.#followed) {
             followed.hasMissed = false;
@@ -139,8 +139,7 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             this.#readMaterials(followed);
-            // If this page itself caused the replacement of the mesh, it may have fetched the new
-            // mesh already.
+            // If this page itself has replaced the mesh, it may have fetched the new mesh already.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });

@@ -19,15 +19,15 @@ export class SignIn {
         this.onChange = onChange;
     }
 
-    // Asks the server what the present token allows. If the server requires a token and has none
-    // that is valid, the user is asked for one.
+    // Asks the server what the token of this page allows. If the server requires a token and the
+    // page has no valid one, the user is asked for one.
     async start() {
         const { name, role, prefixes } = await api.getToken();
         this.mayEdit = role !== 'read';
         const who = byId('who');
         who.hidden = name === null;
         who.textContent = `${name} (${role})`;
-        const meshes = prefixes.length > 0 ? `; meshes ${prefixes.join(', ')}\u2026` : '';
+        const meshes = prefixes.length > 0 ? `; only meshes ${prefixes.join(', ')}\u2026` : '';
         who.title = `${ROLES[role] ?? role}${meshes}. Click to use another token`;
         document.body.classList.toggle('looks-only', !this.mayEdit);
         this.onChange();

@@ -3,8 +3,8 @@
 import { NoWebGL, Renderer } from './gl/render.js';
 import { REACH, choose } from './pick.js';
 
-// If the pointer moved further than this between press and release, it turned the camera;
-// otherwise it clicked.
+// If the pointer moved further than this many CSS pixels between press and release, it turned the
+// camera; otherwise it clicked.
 const CLICK_PIXELS = 4;
 
 // The camera is at rest if it has not moved for this many milliseconds. Only then the page's
@@ -99,7 +99,8 @@ export class Stage {
         }
     }
 
-    // The renderer if marks can be drawn on the mesh, or null. See Renderer for the marks.
+    // The renderer if the mesh is drawn and marks can be drawn on it, or null. See Renderer for the
+    // marks.
     get #marked() {
         return this.#isLevel ? null : this.#renderer;
     }

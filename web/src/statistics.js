@@ -11,7 +11,8 @@ export class Statistics {
         this.#facts = facts;
     }
 
-    // Shows a summary; `isCurrent` is false if it is of an earlier revision than the mesh shown.
+    // Shows a summary; `isCurrent` is false if the summary is of an earlier revision than the mesh
+    // that is shown.
     show(summary, isCurrent) {
         this.#sizes.replaceChildren(...sizesOf(summary));
         this.#facts.replaceChildren(...factsOf(summary));

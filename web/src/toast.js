@@ -20,8 +20,8 @@ export class Toasts {
     show(error, again) {
         const title = error.title || 'Something went wrong';
         const detail = error.detail || error.message || String(error);
-        // The page sends one operation at a time, so the index of the operation in an error's
-        // pointer is not shown.
+        // The page sends one operation at a time, so the index of the operation, with which the
+        // pointer of an error begins, is not shown.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
         const toast = this.#add('alert', title, `${detail}${where}`);

@@ -14,8 +14,8 @@ export function forgetToken() {
     sessionStorage.removeItem(PLACE);
 }
 
-// Sets the function that asks the user for a token. It returns a promise of the token, or of null
-// if the user gives none; `wasWrong`: the server has refused a token.
+// Sets the function that asks the user for a token. The function returns a promise of the token, or
+// of null if the user gives none. Its argument `wasWrong` says that the server has refused a token.
 export function askBy(show) {
     ask = show;
 }

@@ -17,7 +17,7 @@ import {
     readField,
 } from './fields.js';
 
-// By kind of element: the function that returns the ids of those elements of this kind to which a
+// The function, by kind of element, that returns the ids of those elements of this kind to which a
 // selected element of another kind refers.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
@@ -80,7 +80,8 @@ export class Tools {
     }
 
     // Fills the form with the selected elements, {kind, id, element} each, in the order of
-    // selection. If these are the elements of the last call, text that the user has typed stays.
+    // selection. If the last call had the same elements, the text that the user has typed into the
+    // form stays.
     setSelection(selection) {
         const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
@@ -178,7 +179,8 @@ export class Tools {
             );
     }
 
-    // Marks the field that the pointer of a problem refers to as wrong; '' marks none.
+    // Marks the field to which the pointer of a problem refers as wrong; if the pointer is '', no
+    // field is marked.
     mark(pointer) {
         for (const field of this.#fields.values()) {
             const isWrong = isAbout(field, pointer);
@@ -257,8 +259,8 @@ export class Tools {
         this.#touch();
     }
 
-    // Returns the rows of a parameter in the form; `isOther`: the parameter is an alternative to
-    // one before it.
+    // Returns the rows of a parameter in the form; `isOther` says that the parameter is an
+    // alternative to the parameter before it.
     #rows(param, isOther) {
         const { name, doc } = param;
         const id = `param-${name}`;
@@ -291,8 +293,8 @@ export class Tools {
         return isOther ? [make('p', { className: 'or' }, 'or'), field.row] : [field.row];
     }
 
-    // Returns an element with a control and a button after which a click in the view fills the
-    // control.
+    // Returns an element with a control and a button: after a click on the button, a click in the
+    // view fills the control.
     #pickable(param, control) {
         const armed = { param, control };
         armed.button = make(

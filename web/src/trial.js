@@ -30,7 +30,8 @@ export class Trial {
         }
     }
 
-    // Called when the mesh has changed: makes the dry run again, because its result may be another.
+    // Called when the mesh has changed: makes the dry run again, because its result may be
+    // different now.
     askAgain() {
         if (this.#asked !== null) {
             this.ask(this.#asked);
@@ -63,7 +64,8 @@ export class Trial {
                 this.#say(words, false);
             }
         } catch (error) {
-            // The page's bar shows a lost connection (status 0), so the form need not.
+            // A lost connection (status 0) is shown in the page's bar, so it is not shown in the
+            // form.
             if (!running.signal.aborted && error.status !== 0) {
                 this.#sayRefused(error);
             }

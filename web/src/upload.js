@@ -27,15 +27,16 @@ export class Uploads {
         this.#onError = onError;
         input.addEventListener('change', () => {
             this.#add([...input.files]);
-            // If the field were not emptied, the browser would not report that the user chooses the
-            // same file again.
+            // The field is emptied, because otherwise the browser would not report that the user
+            // chooses the same file again.
             input.value = '';
         });
         this.#listenToDrops();
     }
 
-    // Shows a hint while files are dragged over the page. When the pointer enters a child element,
-    // its parent gets a leave event; so both events are counted, and the hint does not flicker.
+    // Shows a hint while files are dragged over the page. When the pointer moves from an element
+    // into its child, the parent gets a leave event; therefore enter and leave events are counted,
+    // and the hint does not flicker.
     #listenToDrops() {
         const hasFiles = (event) => this.#isOpen() && event.dataTransfer?.types.includes('Files');
         document.addEventListener('dragenter', (event) => {

@@ -1,4 +1,5 @@
-// view.js - computes what the camera sees and where it appears on the screen. Pure.
+// view.js - computes which part of the mesh the camera sees, and where a point of the mesh appears
+// on the screen. Pure.
 //
 // The mesh is within the unit ball, and the z axis points up, as in the shapes that the server
 // makes.

@@ -14,7 +14,8 @@ export class Work {
         button.addEventListener('click', () => this.#giveUp());
     }
 
-    // Called before work begins; `isShown`: it is shown at once, not only from begin() on.
+    // Called before work begins. If `isShown` is true, the work is shown at once; otherwise only
+    // from begin() on.
     start(title, isShown) {
         const { box, label, progress, button } = this.#elements;
         this.#title = title;

@@ -209,8 +209,8 @@ static bool choose_field(srv_syntax *s)
     return first;
 }
 
-/* Returns the position up to which a header may be read: the end of the bytes that have arrived, or
- * the limit for the bytes of all headers. */
+/* Returns the position up to which the present header may be read: the end of the bytes that have
+ * arrived, or the place where the headers would have more bytes than allowed. */
 static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
 {
     size_t room = s->limit > s->head ? s->limit - s->head : 0;

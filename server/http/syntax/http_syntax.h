@@ -76,9 +76,11 @@ enum { SRV_SYNTAX_TEXT = 32 };
 typedef struct srv_syntax {
     uint8_t state;
     uint8_t fault; /* an srv_fault */
-    uint8_t field; /* the header being read, if its value is checked; else OTHER */
+    /* The header that is being read, if the values of this header are checked; else OTHER. */
+    uint8_t field;
     uint8_t phase; /* whether the position is before, within or after the text of the value */
-    uint8_t seen;  /* bit set of those headers that may occur once and have occurred */
+    /* Bit set of those headers that may occur only once and have occurred in this request. */
+    uint8_t seen;
     uint8_t text_length;
     bool trailers, old, has_query;
     /* Number of characters of the version, or of digits of a chunk's size, read so far. */
@@ -89,7 +91,9 @@ typedef struct srv_syntax {
     uint16_t extension;      /* bytes of the extensions of the present chunk */
     uint32_t extensions;     /* bytes of the extensions of all chunks of this request */
     uint32_t head, limit;    /* bytes of headers read so far, and their maximum */
-    uint64_t left; /* bytes left of the body or chunk; while its size is read, the size so far */
+    /* How many bytes of the body or chunk are still to come; while the size of a chunk is read, the
+     * size so far. */
+    uint64_t left;
     uint64_t requests; /* number of requests begun on the connection */
     /* After a fault: the bytes by rule S3 that are still to be passed on. */
     const char *ending;

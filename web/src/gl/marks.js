@@ -268,7 +268,8 @@ function line(depthFunc, opacity) {
     });
 }
 
-// Gives a line material a width, and one colour instead of a colour for each vertex.
+// Sets the width of a material for lines, and one colour for all its lines, instead of a colour for
+// each vertex.
 function plain(material, width, color) {
     material.linewidth = width;
     material.vertexColors = false;

@@ -192,7 +192,8 @@ export class Renderer {
     }
 
     #move(act) {
-        // The panels that appear with a mesh may have changed the size of the canvas.
+        // Adapts the picture to the canvas, whose size may have changed, because the panels appear
+        // with a mesh.
         this.#resize();
         act();
     }

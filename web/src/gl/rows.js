@@ -48,8 +48,8 @@ export class Rows extends DataTexture {
         if (ranges?.length === 0) {
             return;
         }
-        // The first upload must be of the whole texture; if a range were set, only that range would
-        // be uploaded.
+        // The first upload must be of the whole texture: if a range were set now, only that range
+        // would be uploaded.
         if (this.#isSent && ranges !== null) {
             ranges.forEach(([begin, end]) => this.addUpdateRange(4 * begin, 4 * (end - begin)));
         } else {

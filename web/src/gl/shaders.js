@@ -112,7 +112,8 @@ void main() {
     vec3 rate = max(sqrt(dx * dx + dy * dy), vec3(1e-9)).zxy;
     vec3 line = 1.0 - smoothstep(edgeWidth - 0.6, edgeWidth + 0.6, bary.zxy / rate);
     line *= vec3(float(sides & 1u), float((sides >> 1) & 1u), float((sides >> 2) & 1u));
-    // Edges of triangles of a few pixels would cover them completely.
+    // Without this, the edges of a triangle that is only a few pixels large would cover it
+    // completely.
     line *= smoothstep(1.0, 9.0, 1.0 / rate);
     float drawn = 0.88 * max(max(line.x, line.y), line.z);
     ivec2 place = ivec2(gl_FragCoord.xy) & 3;
@@ -145,7 +146,8 @@ void main() {
     vec4 place = vertexAt(gl_VertexID);
     bool wanted = isolatedOnly ? place.w == 2.0 : place.w > 0.0;
     vec4 seen = modelViewMatrix * vec4(place.xyz, 1.0);
-    // A dot faces the camera, so it is moved nearer; otherwise the surface would hide parts of it.
+    // A dot faces the camera, so it is moved a little nearer to the camera; otherwise the surface
+    // would hide parts of it.
     seen.xyz *= 0.996;
     vertex = uint(gl_VertexID);
     gl_PointSize = size;

@@ -87,7 +87,8 @@ export class Surface {
             },
             side: DoubleSide,
             blending: NoBlending,
-            // Faces are drawn a little farther away, so that they do not hide the marks on them.
+            // Faces are drawn a little farther from the camera than they are, so that they do not
+            // hide the marks on them.
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
