@@ -103,12 +103,12 @@ const srv_option srv_options[] = {
     {"workers", SRV_COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0: one for each core"},
     {"jobs", SRV_COUNT, MEMBER(jobs), "0", "N", 0, 64,
-     "how many jobs, or how many long reads (checks, queries, exports), can run at the same time; "
-     "both together: one more. 0: as many as there are cores, but at least 2. One further thread "
-     "is reserved for imports and edits. A single job can use all cores"},
+     "at most N jobs and at most N long reads (checks, queries, exports) run at the same time, and "
+     "N + 1 of both together; 0: N is the number of cores, but at least 2. Another thread is "
+     "reserved for imports and edits. A single job can use all cores"},
     {"job-queue", SRV_COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
-     "how many jobs can wait for a thread; as many long reads can wait, and as many imports and "
-     "edits. Further ones are answered 503"},
+     "at most N jobs, at most N long reads, and at most N imports and edits wait for a thread; "
+     "further requests are answered 503"},
     {"read-seconds", SRV_COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
      "longest time that a check, a query, a traversal or an export may compute while its client "
      "waits; after this time it is answered 503. Jobs have no such limit"},

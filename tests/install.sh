@@ -121,7 +121,7 @@ version_is_named() {
 
 check 'make install puts everything in its place' installs
 check 'the program runs from there with its page' runs_from_there
-check 'the manual page has every option' man_is_whole
+check 'the manual page has every option and its text' man_is_whole
 check 'the unit starts what was installed' unit_is_whole
 if command -v groff >/dev/null; then
     check 'the manual page is set without a warning' man_is_clean
