@@ -5,10 +5,10 @@
 #   docker run --read-only -v hedge:/data -v "$PWD/tokens:/tokens:ro" -e HEDGE_TOKENS=/tokens \
 #       -p 127.0.0.1:8080:8080 hedge
 #
-# Inside, only an address beyond loopback can be reached from outside the container, and hedged takes
-# such a one only with a file of tokens, or when HEDGE_INSECURE=1 says that requests without a token
-# are meant. -p decides who reaches it: with 127.0.0.1 before the port, this machine alone.
-# tests/container.sh builds and tries the image.
+# In a container, hedged must listen on an address that other machines can reach. It does so only with
+# a file of tokens, or with HEDGE_INSECURE=1, which allows requests without a token. -p decides which
+# machines can connect: with 127.0.0.1 before the port, only this one. tests/container.sh builds and
+# tries the image.
 ARG DEBIAN=docker.io/library/debian:bookworm-slim
 
 # --- the daemon ---

@@ -17,126 +17,141 @@
 
 const srv_option srv_options[] = {
     {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
-     "file of settings, one on each line, as --print-config shows them"},
+     "configuration file with one option on each line, in the format of --print-config"},
     {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT|unix:PATH", 0, 0,
-     "address to listen on; port 0 chooses a free port. unix:PATH is a Unix socket, which the "
-     "daemon creates (mode 0660) and removes"},
+     "address to listen on; port 0: any free port. unix:PATH: a Unix socket with the permissions "
+     "0660, which the daemon creates and removes"},
     {"insecure", SRV_FLAG, MEMBER(insecure), "0", NULL, 0, 0,
-     "allow an address that other machines can reach without --tokens"},
+     "allow --listen with an address that other machines can reach, although requests need no "
+     "token"},
     {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
-     "file of tokens and their roles, one on each line, as --new-token prints it. Without a file "
-     "every client may do everything. SIGHUP and POST /v1/admin/reload read it again"},
+     "file of tokens and their roles, one on each line, as --new-token prints them. Without this "
+     "file every client may do everything. SIGHUP and POST /v1/admin/reload read it again"},
     {"token-requests", SRV_COUNT, LIMIT(token_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
-     "requests a second for each token, 0: no limit; more are answered 429. A line of the token "
-     "file can set its own limit, here with requests=N"},
+     "requests per second for each token; 0: no limit. Further requests are answered 429. The line "
+     "of a token in the file can set another limit (here requests=N)"},
     {"token-bytes", SRV_BYTES, LIMIT(token_limits, BYTES), "0", "BYTES", 0, API_LIMIT_MOST_BYTES,
-     "bytes a second for each token, of requests and answers together, 0: no limit"},
+     "bytes per second for each token, of request bodies and answers together; 0: no limit. When "
+     "they are used up, requests are answered 429"},
     {"token-jobs", SRV_COUNT, LIMIT(token_limits, JOBS), "0", "N", 0, API_LIMIT_MOST,
-     "jobs of each token that may wait or run, 0: no limit; more are answered 429"},
+     "waiting and running jobs of each token; 0: no limit. Further jobs are answered 429"},
     {"token-meshes", SRV_COUNT, LIMIT(token_limits, MESHES), "0", "N", 0, API_LIMIT_MOST,
-     "meshes that each token may create, 0: no limit; more are answered 507"},
+     "existing meshes that each token has created; 0: no limit. Further meshes are answered 507"},
     {"token-mesh-bytes", SRV_BYTES, LIMIT(token_limits, MESH_BYTES), "0", "BYTES", 0,
      API_LIMIT_MOST_BYTES,
-     "memory of the meshes that each token created, 0: no limit; a request that would need more is "
-     "answered 507"},
+     "memory that the meshes created by each token may take together; 0: no limit. Changes that "
+     "need more are answered 507"},
     {"address-requests", SRV_COUNT, LIMIT(address_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
-     "requests a second without a token for each address (each /64 of IPv6), 0: no limit; more are "
-     "answered 429"},
+     "requests per second from each IP address (IPv6: each /64 network), except requests with a "
+     "valid token; 0: no limit. Further requests are answered 429"},
     {"address-bytes", SRV_BYTES, LIMIT(address_limits, BYTES), "0", "BYTES", 0,
-     API_LIMIT_MOST_BYTES, "bytes a second of these requests and their answers, 0: no limit"},
+     API_LIMIT_MOST_BYTES,
+     "bytes per second for each IP address (IPv6: each /64 network), of request bodies and answers "
+     "together, except for requests with a valid token; 0: no limit. When they are used up, "
+     "requests are answered 429"},
     {"address-connections", SRV_COUNT, LIMIT(address_limits, CONNECTIONS), "0", "N", 0, 1000000,
-     "simultaneous connections of each address, 0: no limit; more are answered 429 and closed"},
+     "open connections from each IP address (IPv6: each /64 network); 0: no limit. Further "
+     "connections are answered 429 and closed"},
     {"limit-burst", SRV_COUNT, MEMBER(limit_burst), "10", "SECONDS", 1, API_BURST_MOST,
-     "a client that was idle may use up the limits of this many seconds at once"},
+     "burst of the limits per second: after a pause, a client may at once use as many requests and "
+     "bytes as its limits allow in this many seconds"},
     {"tls-cert", SRV_TEXT, MEMBER(tls_cert), "", "FILE", 0, 0,
-     "serve HTTPS only, with the certificate in this file (PEM, followed by its chain). SIGHUP and "
+     "accept only HTTPS, with the certificate in this PEM file, followed by its chain. SIGHUP and "
      "POST /v1/admin/reload read it again"},
     {"tls-key", SRV_TEXT, MEMBER(tls_key), "", "FILE", 0, 0,
-     "the certificate's key (PEM, not encrypted)"},
+     "private key of the certificate (PEM, not encrypted)"},
     {"allow-host", SRV_LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
-     "also accept this name in the header Host; may be repeated, or a list with commas"},
-    {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
-     "allow pages of this origin (https://name) to read and write; may be repeated, or a list with "
+     "further name that requests may have in the header Host; may be repeated, or be a list with "
      "commas"},
-    {"trusted-proxy", SRV_LIST, MEMBER(trusted_proxies), "", "ADDRESS", 0, 0,
-     "trust the headers Forwarded, X-Forwarded-For and X-Forwarded-Proto of the proxy at this "
-     "address, in this network (10.0.0.0/8), or on the Unix socket (unix); may be repeated, or a "
+    {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
+     "origin (https://name) whose web pages may read and change meshes; may be repeated, or be a "
      "list with commas"},
+    {"trusted-proxy", SRV_LIST, MEMBER(trusted_proxies), "", "ADDRESS", 0, 0,
+     "reverse proxy whose headers Forwarded, X-Forwarded-For and X-Forwarded-Proto are trusted: an "
+     "IP address, a network (10.0.0.0/8), or unix for all clients of the Unix socket; may be "
+     "repeated, or be a list with commas"},
     {"web", SRV_TEXT, MEMBER(web), "", "DIR", 0, 0,
-     "folder of the built page; if not given, it is looked for beside the executable"},
+     "folder of the built web page; if not given, the daemon looks for it relative to its "
+     "executable"},
     {"store", SRV_TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
-     "where meshes are kept: in memory until the daemon stops, or permanently in a folder, which "
-     "is created if it is missing"},
+     "where meshes are kept. memory: only in memory, until the daemon stops; sqlite:DIR: on the "
+     "disk, in a folder that is created if it is missing"},
     {"samples", SRV_FLAG, MEMBER(samples), "0", NULL, 0, 0,
-     "put a few sample meshes into a new store"},
+     "create a few sample meshes if the store is new"},
     {"log", SRV_CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
-     "access: write a line to stderr for each request; auto: only if stderr is not a terminal"},
+     "access: log a line for each request on stderr; off: do not; auto: only if stderr is not a "
+     "terminal"},
     {"log-format", SRV_CHOICE, MEMBER(log_format), "auto", "auto|text|json", 0, 0,
-     "format of the lines on stderr; auto: text on a terminal, otherwise json. The line that says "
-     "where hedged listens is always plain text"},
+     "format of the log on stderr. auto: text on a terminal, else json. The line that says where "
+     "hedged listens is always plain text"},
     {"log-level", SRV_CHOICE, MEMBER(log_level), "info", "error|warning|info|debug", 0, 0,
-     "the least important messages to write to stderr, apart from the lines of --log"},
+     "least severe messages that are logged; the lines of --log do not depend on it"},
     {"slow", SRV_COUNT, MEMBER(slow), "0", "MS", 0, 86400000,
-     "write a line to stderr for each request that took longer than this many milliseconds, with "
-     "where the time went; 0: never"},
+     "log each request that takes longer than this many milliseconds, with the parts of its time; "
+     "0: never"},
     {"max-upload", SRV_BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
-     "largest mesh document or file that can be uploaded"},
+     "largest mesh document or file that can be uploaded, compressed or decompressed"},
     {"memory-budget", SRV_BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
-     "memory that the daemon may use; 0: three quarters of the machine's memory, or of the "
-     "smallest limit of its control groups"},
+     "memory that the daemon may use; 0: three quarters of the machine's memory, or of the lowest "
+     "limit of its control groups"},
     {"undo-budget", SRV_BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
-     "memory for the undo history of one mesh; the oldest edits are dropped first"},
+     "memory for the undo history of each mesh; when it is used up, the oldest edits are dropped; "
+     "0: no edit can be undone"},
     {"no-compression", SRV_FLAG, MEMBER(no_compression), "0", NULL, 0, 0, "never compress answers"},
     {"max-meshes", SRV_COUNT, MEMBER(max_meshes), "10000000", "N", 1, 10000000,
-     "largest number of meshes in the store"},
+     "meshes that the store may have; further meshes are answered 507"},
     {"workers", SRV_COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0: one for each core"},
     {"jobs", SRV_COUNT, MEMBER(jobs), "0", "N", 0, 64,
-     "threads for long reads, and as many for jobs; one thread is kept free for imports and edits; "
-     "0: one for each core, but at least two. Parts of one job run on all cores"},
+     "at most N jobs and at most N long reads (checks, queries, exports) run at the same time, and "
+     "N + 1 of both together; 0: N is the number of cores, but at least 2. Another thread is "
+     "reserved for imports and edits. A single job can use all cores"},
     {"job-queue", SRV_COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
-     "how many jobs may wait for a thread; the same number of long reads, and of imports and "
-     "edits, may wait; more are answered 503"},
+     "at most N jobs, at most N long reads, and at most N imports and edits wait for a thread; "
+     "further requests are answered 503"},
     {"read-seconds", SRV_COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
-     "longest time that a check, a query, a walk or an export may compute; longer ones are "
-     "answered 503 (a job has no limit)"},
+     "longest time that a check, a query, a traversal or an export may compute while its client "
+     "waits; after this time it is answered 503. Jobs have no such limit"},
     {"max-connections", SRV_COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
-     "simultaneous connections; more are answered 503"},
+     "open connections of all clients; further connections are answered 503"},
     {"max-listeners", SRV_COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,
-     "simultaneous event streams; more are answered 503"},
+     "open event streams of all meshes; further streams are answered 503. 0: none are allowed"},
     {"max-mesh-listeners", SRV_COUNT, MEMBER(max_mesh_listeners), "2000", "N", 0, 1000000,
-     "simultaneous event streams of one mesh"},
+     "open event streams of each mesh; further streams are answered 503. 0: none are allowed"},
     {"heartbeat", SRV_COUNT, MEMBER(heartbeat), "15", "SECONDS", 1, 3600,
-     "a comment is sent in an event stream after this long without an event"},
+     "an event stream sends a comment after this long without an event"},
     {"idle-timeout", SRV_COUNT, MEMBER(idle_timeout), "30", "SECONDS", 1, 86400,
-     "a connection without a request is closed after this long"},
+     "a connection is closed after this long without a request"},
     {"header-timeout", SRV_COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
-     "time for the headers to arrive after the request line"},
+     "time in which the headers of a request, or a TLS handshake, must be complete"},
     {"body-grace", SRV_COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
-     "time after which a client must send a body, or read an answer, as fast as --min-rate"},
+     "time after which --min-rate applies to a body, and over which it is measured for an answer"},
     {"min-rate", SRV_BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
-     "bytes a second at which a client must send or read on average"},
+     "bytes per second that a client must send or receive on average, else its connection is "
+     "closed; 0: no minimum"},
     {"request-timeout", SRV_COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
-     "longest time for a whole body to arrive"},
+     "time in which the whole body of a request must arrive"},
     {"backup", SRV_COMMAND, MEMBER(backup), "", "FILE", 0, 0,
-     "write the store to a file, even while a daemon uses it, and exit"},
+     "write a backup of the store to FILE and exit; a daemon may be using the store"},
     {"restore", SRV_COMMAND, MEMBER(restore), "", "FILE", 0, 0,
-     "replace the store by a file of --backup, while no daemon uses it, and exit"},
+     "replace the store by the backup FILE and exit; no daemon may be using the store"},
     {"verify", SRV_ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
-     "read every mesh of the store, or of a file of --backup, and exit: status 0 if all are "
-     "undamaged"},
+     "read every mesh of the store, or of the backup FILE, print what is damaged, and exit: status "
+     "0 if nothing is"},
     {"dump", SRV_COMMAND, MEMBER(dump), "", "DIR", 0, 0,
-     "write every undamaged mesh of the store to a folder, as GLB, and exit"},
+     "write every mesh of the store to a GLB file in DIR, a damaged mesh at its last undamaged "
+     "revision, and exit"},
     {"new-token", SRV_ACTION, MEMBER(new_token), "0", "[NAME [ROLE]]", 0, 0,
-     "print a new token, which is not saved anywhere, and its line for the file of --tokens, and "
-     "exit. ROLE is read (if not given), write, admin or metrics"},
+     "print a new token, which is stored nowhere, and its line for the file of --tokens, and exit. "
+     "ROLE is read (if not given), write, admin or metrics"},
     {"healthcheck", SRV_ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
-     "ask a running daemon for /livez: exit status 0 when it answers"},
+     "request /livez from a running daemon, at URL or at the address of --listen, and exit: status "
+     "0 if it answers"},
     {"print-config", SRV_ACTION, MEMBER(print_config), "0", NULL, 0, 0,
-     "show the options in effect and exit"},
+     "print the options in effect and exit"},
     {"version", SRV_ACTION, MEMBER(version), "0", NULL, 0, 0,
-     "show the version and the commit it was built from, and exit; -V"},
-    {"help", SRV_ACTION, MEMBER(help), "0", NULL, 0, 0, "show this help and exit; -h"},
+     "print the version and the commit it was built from, and exit; short form: -V"},
+    {"help", SRV_ACTION, MEMBER(help), "0", NULL, 0, 0, "print this help and exit; short form: -h"},
 };
 
 enum { OPTIONS = sizeof srv_options / sizeof *srv_options };

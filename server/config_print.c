@@ -43,7 +43,7 @@ void srv_config_help(FILE *out)
             "hedged " SRV_VERSION " - a server for half-edge meshes\n\n"
             "usage: hedged [OPTION...]\n\n"
             "An option overrides its environment variable, which overrides a line of the file\n"
-            "of --config, which overrides the default.\n\n");
+            "of --config, which overrides the default (in parentheses).\n\n");
     for (size_t i = 0; i < srv_option_count; i++) {
         const srv_option *row = &srv_options[i];
         char variable[SRV_VARIABLE_TEXT], flag[64];

@@ -64,8 +64,8 @@ PY
     return $status
 }
 
-# Each option and variable of --help must be in the manual page, and no placeholder may be left in
-# it.
+# Each option, text and variable of --help must be in the manual page, and no placeholder may be left
+# in it.
 man_is_whole() {
     "$hedged" --help | grep -oE '^  --[a-z-]+|HEDGE_[A-Z_]+' | tr -d ' ' >"$work/names"
     [ "$(wc -l <"$work/names")" -gt 30 ] || return 1
@@ -73,6 +73,13 @@ man_is_whole() {
     while read -r name; do
         grep -qE -- "^(\.BI \")?$name(\"| |$)" "$work/plain" || { echo "no $name"; return 1; }
     done <"$work/names"
+    # Texts begin in column 30. An option that is longer stands alone in its line, and what it has in
+    # that column has no blank.
+    "$hedged" --help | sed -n '/^  --/,$p' | cut -c 30- | grep -v '^HEDGE_' | grep ' ' >"$work/texts"
+    [ "$(wc -l <"$work/texts")" -gt 30 ] || return 1
+    while read -r text; do
+        grep -qxF -- "$text" "$work/plain" || { echo "no \"$text\""; return 1; }
+    done <"$work/texts"
     grep -q "$("$hedged" --version)" "$work/plain" && ! grep -n '@[A-Z]*@' "$man"
 }
 
@@ -114,7 +121,7 @@ version_is_named() {
 
 check 'make install puts everything in its place' installs
 check 'the program runs from there with its page' runs_from_there
-check 'the manual page has every option' man_is_whole
+check 'the manual page has every option and its text' man_is_whole
 check 'the unit starts what was installed' unit_is_whole
 if command -v groff >/dev/null; then
     check 'the manual page is set without a warning' man_is_clean
