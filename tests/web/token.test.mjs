@@ -21,13 +21,15 @@ function makeToken(name, role) {
     return { token, line };
 }
 
-// Starts a daemon with a mesh and two tokens: alice may edit, and bob may only read.
+// Starts a daemon with a mesh and three tokens: alice may edit, bob may only read, and prom may read
+// metrics alone.
 async function startGuarded(t) {
     const folder = mkdtempSync(path.join(os.tmpdir(), 'tokens-'));
     t.after(() => rmSync(folder, { recursive: true }));
     const [alice, bob] = [makeToken('alice', 'write'), makeToken('bob', 'read')];
+    const prom = makeToken('prom', 'metrics');
     const file = path.join(folder, 'tokens');
-    writeFileSync(file, `${alice.line}\n${bob.line}\n`);
+    writeFileSync(file, `${alice.line}\n${bob.line}\n${prom.line}\n`);
     const daemon = await startDaemon(t, '--tokens', file);
     const ask = async (who, place, method = 'GET', body = undefined) => {
         const answer = await fetch(`${daemon.url}${place}`, {
@@ -39,7 +41,7 @@ async function startGuarded(t) {
     };
     const { status } = await ask(alice, '/v1/meshes/box', 'PUT', { name: 'box', shape: 'cube' });
     assert.equal(status, 201);
-    return { daemon, alice, bob, ask };
+    return { daemon, alice, bob, prom, ask };
 }
 
 const UNAUTHORIZED = [/status of 401/];
@@ -102,6 +104,16 @@ test('who may look sees no buttons that edit', async (t) => {
     await use(page, alice.token);
     await waitForFrame(page, { mesh: 'box', revision: 2 });
     assert.equal(await page.locator('#split').isVisible(), true);
+});
+
+test('a token for metrics is of no use to the page, which says so and asks again', async (t) => {
+    const { daemon, alice, prom } = await startGuarded(t);
+    const page = await openPage(t, daemon, { allowed: [...UNAUTHORIZED, /status of 403/] });
+    await use(page, prom.token);
+    await page.locator('#token-wrong', { hasText: 'may only read metrics' }).waitFor();
+    await use(page, alice.token);
+    await waitForFrame(page, { mesh: 'box', revision: 1 });
+    assert.equal(await page.locator('#who').textContent(), 'alice (write)');
 });
 
 test('without a token the page says so, and asks again when told to', async (t) => {

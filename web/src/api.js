@@ -107,8 +107,18 @@ function meshPath(mesh) {
 
 // Returns a description of the token that requests carry now: {name, role, prefixes, expires};
 // `name` is null if the server asks for no tokens.
-export function getToken() {
-    return getJson('v1/token');
+export async function getToken() {
+    const bearer = token();
+    try {
+        return await getJson('v1/token');
+    } catch (error) {
+        // A token with the role `metrics` may not even ask this, so the page cannot use it.
+        const reason = 'The token may only read metrics. The page needs the role read or write.';
+        if (error.status === 403 && (await renewToken(bearer, reason))) {
+            return getToken();
+        }
+        throw error;
+    }
 }
 
 // Returns the server's OpenAPI document.

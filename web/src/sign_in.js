@@ -11,7 +11,7 @@ export class SignIn {
 
     // `onChange()` is called when the server has said what the token allows.
     constructor(onChange) {
-        askBy((wasWrong) => this.#ask(wasWrong));
+        askBy((reason) => this.#ask(reason));
         byId('who').addEventListener('click', () => {
             forgetToken();
             window.location.reload();
@@ -33,10 +33,12 @@ export class SignIn {
         this.onChange();
     }
 
-    #ask(wasWrong) {
+    // Asks for a token. `reason` says why the last one is of no use, or is ''.
+    #ask(reason) {
         const dialog = byId('sign-in');
         const field = byId('token');
-        byId('token-wrong').hidden = !wasWrong;
+        byId('token-wrong').hidden = reason === '';
+        byId('token-wrong').textContent = reason;
         field.value = '';
         dialog.returnValue = '';
         dialog.showModal();

@@ -2,6 +2,7 @@
 // storage of the browser's tab and lost when the tab is closed.
 
 const PLACE = 'hedge-token';
+const UNKNOWN = 'The token is unknown, expired or revoked.';
 
 let ask = () => Promise.resolve(null);
 let asked = null;
@@ -15,17 +16,18 @@ export function forgetToken() {
 }
 
 // Sets the function that asks the user for a token. The function returns a promise of the token, or
-// of null if the user gives none. Its argument `wasWrong` says that the server has refused a token.
+// of null if the user gives none. Its argument says why the last token is of no use; it is '' if
+// there was none.
 export function askBy(show) {
     ask = show;
 }
 
-// Called when a request with the token `refused`, or with none (null), was answered 401. Returns
+// Called when the server has refused the token `refused`, or a request without one (null). Returns
 // whether there is another token to try. The user is asked only once, however many requests are
 // refused at a time.
-export async function renewToken(refused) {
+export async function renewToken(refused, reason = UNKNOWN) {
     if (token() === refused) {
-        asked ??= ask(refused !== null).finally(() => {
+        asked ??= ask(refused === null ? '' : reason).finally(() => {
             asked = null;
         });
         const given = await asked;
