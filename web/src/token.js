@@ -21,8 +21,8 @@ export function askBy(show) {
 }
 
 // Called when a request with the token `refused`, or with none (null), was answered 401. Returns
-// whether there is another token to try. The user is asked only once, however many requests are
-// refused at a time.
+// whether there is now another token to try. If several requests are refused at once, the user is
+// asked only once.
 export async function renewToken(refused) {
     if (token() === refused) {
         asked ??= ask(refused !== null).finally(() => {
