@@ -1,5 +1,5 @@
-/* codings.h - compresses and decompresses the bodies of tests with zlib and libzstd at their
- * default levels, because the project's own compression cannot be tested against itself. */
+/* codings.h - compresses and decompresses bodies in tests by calling zlib and libzstd directly,
+ * with their default levels. The project's own compression is tested against it. */
 #ifndef TESTS_CODINGS_H
 #define TESTS_CODINGS_H
 

@@ -20,7 +20,8 @@ typedef struct framing_case {
     size_t tail_length;
     int status;
     const char *code; /* error code of the expected problem; NULL: the answer is no problem */
-    bool fault;       /* whether the framing of the bytes is faulty; otherwise a handler answers */
+    bool fault;       /* whether the framing (where the request ends) is faulty; if not, the request
+                         reaches a handler */
     /* Whether the daemon must close the connection, as it does after every fault. */
     bool closes;
 } framing_case;

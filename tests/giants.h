@@ -9,11 +9,11 @@
 
 /* Returns a star: a polygon with very many points. */
 he_mesh *giant_star(void);
-/* Returns two rows of points with triangles between them, for which the number of Delaunay flips
+/* Returns a strip of triangles between two rows of points, for which the number of Delaunay flips
  * grows with the square of the number of points. */
 he_mesh *giant_rows(void);
-/* Returns a triangle with a table of `count` materials that no face uses; their names are PREFIX0,
- * PREFIX1 and so on. */
+/* Returns a mesh of one triangle with a table of `count` materials that no face uses; their names
+ * are PREFIX0, PREFIX1 and so on. */
 he_mesh *giant_palette(const char *prefix, size_t count);
 
 #endif

@@ -8,8 +8,8 @@
 enum { JSON_TOKENS_TOLD = 1 << 14 };
 
 /* The tokens of a text. `told` lists them: "{" and "[" for opening brackets, "." for a closing
- * bracket, "name:" for a member, "s" for a string, numbers with their length, and words; then how
- * the text ended. Tokens that do not fit into `told` are left out. */
+ * bracket, "name:" for a member, "s" for a string, numbers as their length, and the words true,
+ * false and null; then how the text ended. Tokens that do not fit into `told` are left out. */
 typedef struct json_tokens {
     char told[JSON_TOKENS_TOLD];
     size_t length;
@@ -19,16 +19,16 @@ typedef struct json_tokens {
 } json_tokens;
 
 void json_tokens_of_text(json_tokens *t, const char *text, size_t length);
-/* Reads the text in pieces: it is cut before each byte whose bit is set in `cuts`. The 64 bits are
- * used again for each further 64 bytes. */
+/* Reads the text in pieces: it is cut before each byte whose bit is set in `cuts`. Each further 64
+ * bytes use the same 64 bits again. */
 void json_tokens_of_pieces(json_tokens *t, const char *text, size_t length, uint64_t cuts);
 /* Reads one more piece. The piece is first copied to a block of exactly its size, so that
  * AddressSanitizer notices a read beyond it. */
 void json_tokens_of_piece(json_tokens *t, he_lexer *x, const char *piece, size_t length);
 
 /* Returns whether a text gave the same tokens whole and in pieces. If the pieces end inside a
- * value, the whole text must have a fault; otherwise both must have the same fault at the same
- * place, or none. */
+ * value, the whole text must have a fault; otherwise both readings must find the same fault at the
+ * same position, or none. */
 bool json_tokens_agree(const json_tokens *whole, const json_tokens *pieces);
 
 #endif

@@ -34,7 +34,8 @@ typedef struct mirror_column {
     bool single; /* true if the values are floats, false if they are doubles */
     double fallback[MIRROR_COMPONENTS];
     char *labels;    /* the labels of the values, one per line; NULL: none */
-    double *values;  /* values of each row; rows beyond the end have the default */
+    double *values;  /* values of the rows; elements with an id beyond the last row have the values
+                        in `fallback` */
     size_t capacity; /* number of rows allocated */
 } mirror_column;
 
@@ -48,7 +49,7 @@ typedef struct mirror {
 } mirror;
 
 void mirror_clear(mirror *m);
-/* Makes a copy of `mesh`, which has this revision. */
+/* Makes a copy of `mesh`; `revision` is the revision of the mesh. */
 void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision);
 /* Adds an element from one line of GET .../vertices, .../halfedges or .../faces. */
 void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
@@ -69,8 +70,8 @@ typedef enum mirror_step {
  * event contradict the copy. */
 mirror_step mirror_apply(mirror *m, const cJSON *data);
 
-/* Returns whether all links and values of two copies are equal; if not, `text` describes the first
- * difference. */
+/* Returns whether two copies are equal in all links, positions and attribute values; if not, `text`
+ * describes the first difference. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
 /* Returns the first live element in the copy with an id from `from` on, continuing at 0 after the

@@ -1,7 +1,6 @@
 /* pace.h - limits on time that hold on every machine, however slow, busy or instrumented: the
  * processor time of work is compared with that of other work in the same run. The kernel counts
- * pauses of a virtual machine as processor time, so work counts as slow only if every attempt was
- * slow. */
+ * pauses of a virtual machine as processor time, so a test fails only if every attempt was slow. */
 #ifndef TESTS_PACE_H
 #define TESTS_PACE_H
 
@@ -17,8 +16,9 @@ double pace_seconds(void);
 double pace_unit(void);
 
 /* Fails the test if the time of `work` grows like the square of its size: if `size` items take more
- * than 50 times as long as a tenth of them. `work` gets `context` and a number of items, and
- * returns the time that counts. A time of less than a twentieth of a second is never too long. */
+ * than 50 times as long as a tenth of them. `work` is called with `context` and a number of items,
+ * and returns its time in seconds. A time of less than a twentieth of a second is never too
+ * long. */
 void pace_require_linear(const char *what, double (*work)(const void *context, size_t size),
                          const void *context, size_t size);
 

@@ -11,8 +11,8 @@
 
 enum { RANDOM_EDIT_TEXT = 1024 };
 
-/* Writes an edit with the operation in this row of the table of operations. The mesh must have an
- * edge. If the operation needs another mesh, the edit names the mesh "m". */
+/* Writes a request for an edit with the operation in row `row` of the table of operations. The mesh
+ * must have an edge. If the operation needs another mesh, the edit names the mesh "m". */
 void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDIT_TEXT]);
 
 #endif

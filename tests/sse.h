@@ -9,7 +9,7 @@ typedef struct sse {
     char *bytes; /* bytes of the event stream that were received but not parsed yet */
     size_t length, capacity;
     char *block; /* lines of the event that was parsed last */
-    char id[64]; /* the id received last, with or without an event */
+    char id[64]; /* id in the last `id:` line, even if that block had no data */
     size_t idle; /* number of comments received */
     size_t blocks;
 } sse;

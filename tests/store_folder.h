@@ -12,7 +12,7 @@ enum { FOLDER_PATH = 256 };
 void folder_make(char out[FOLDER_PATH]);
 /* Removes the folder with all files and folders in it. */
 void folder_remove(const char *folder);
-/* Copies the files of a store that is open, so that the copy is what a killed process would
+/* Copies the files of an open store to another folder: the files that a killed process would
  * leave. */
 void folder_copy(const char *from, const char *to);
 /* Reads a file of the folder; the caller must free the bytes. Returns NULL if the file does not
@@ -33,7 +33,7 @@ typedef struct told_journal {
 void told_begin(told_journal *told, const st_journal *journal);
 /* Opens the journal of the store in a folder and listens to it. */
 void told_open(told_journal *told, const char *folder);
-/* Waits until this position is durable or lost. */
+/* Waits until the journal has reported this position as durable or lost. */
 void told_wait(told_journal *told, uint64_t position);
 unsigned told_losses(told_journal *told);
 void told_end(told_journal *told); /* closes the journal */
@@ -45,14 +45,14 @@ typedef struct kept_mesh {
     const he_mesh *content;
 } kept_mesh;
 
-/* Make a record that creates the mesh or replaces the whole mesh, and a record of an edit. The
- * caller must add the body. */
+/* kept_content makes a record that creates the mesh or replaces the whole mesh, kept_edit a record
+ * of an edit. The caller must add the record's body. */
 st_record kept_content(kept_mesh *mesh);
 st_record kept_edit(kept_mesh *mesh);
 st_record kept_rename(kept_mesh *mesh, const char *name);
 st_record kept_remove(kept_mesh *mesh);
-/* Appends one record. Its body is `body`, or the encoded mesh if the record has a content that was
- * not written in advance. Returns the record's position, 0 if the record is refused. */
+/* Appends one record. Its body is `body`, or the encoded mesh if the record has mesh data that was
+ * not encoded in advance. Returns the record's position, 0 if the record is refused. */
 uint64_t kept_append(const st_journal *journal, st_record record, const kept_mesh *mesh,
                      const void *body, size_t size);
 st_status kept_status(void); /* returns the reason of the latest refusal */

@@ -11,8 +11,8 @@
 void store_sql_run(const char *folder, const char *sql);
 /* Returns the number in the first column and row of the result of a query. */
 int64_t store_sql_number(const char *folder, const char *sql);
-/* Waits until the store has purged all deleted contents. It purges in steps between commits, so
- * this function commits until nothing is left. */
+/* Waits until the store has erased the stored data of all deleted meshes. It does so in steps
+ * between commits, so this function commits until nothing is left to erase. */
 void store_sql_wait_for_purge(const char *folder, const told_journal *told);
 
 #endif

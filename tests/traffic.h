@@ -14,8 +14,8 @@
 enum { TRAFFIC_JSON = 1 << 20, TRAFFIC_OTHER = 4 << 10 };
 
 typedef struct traffic_message {
-    /* The head of the message: lines "Name: value" that end in CR LF, with or without a start
-     * line. */
+    /* The head of the message: lines "Name: value" that each end in CR LF; a request or status line
+     * may come first. */
     const char *head;
     const char *body; /* the body of the message; NULL: unknown; "": there is none */
     size_t length;

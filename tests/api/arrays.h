@@ -11,12 +11,13 @@
 enum { HEADER = 96, ROW = 16, VERTEX_PART = 0, TRIANGLE_PART = 1 };
 
 typedef struct arrays {
-    uint64_t revision, layout; /* revision and layout of the last answer; 0 before the first one */
+    uint64_t revision, layout; /* revision and layout stated by the last answer; both are 0 before
+                                  the first answer */
     char *rows[2];
     uint32_t count[2];
     char frame[32];
-    /* `whole` counts the answers with all rows, `changes` the answers with changes only; `bytes` is
-     * the length of all answers with changes together. */
+    /* `whole` counts the answers with all rows, `changes` the answers that have only changes;
+     * `bytes` is the total length of the bodies of the latter in bytes. */
     uint64_t whole, changes, bytes;
 } arrays;
 
@@ -27,8 +28,8 @@ bench_reply arrays_ask(api_bench *b, const char *mesh, const arrays *c);
 void arrays_apply(arrays *c, const char *body, size_t length);
 void arrays_update(api_bench *b, const char *mesh, arrays *c);
 void arrays_assert_same(const arrays *a, const arrays *b);
-/* Checks that the triangles of each live face are consecutive and in order, that the rows reserved
- * for further triangles are zeros, and that each vertex has its row. */
+/* Checks that the triangles of each live face are consecutive and in order, that rows reserved for
+ * triangles not yet made are zeros, and that each live vertex has a row. */
 void arrays_check(const arrays *c, const he_mesh *m);
 
 /* arrays_u32 and arrays_u64 read a little-endian number at any address, aligned or not. */

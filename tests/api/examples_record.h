@@ -7,8 +7,9 @@
 #include "tests/api/request.h"
 
 /* Sends all requests of `file` to a new service and appends to `out` the whole file with the
- * answers. Text that differs from run to run, which the file lists under "differs", is written as
- * the file shows it. Fails the test if a request reaches another route than the one it names. */
+ * answers. Text that differs from run to run (the member "differs" of the file lists it) is copied
+ * from `file`, not from the new answers. Fails the test if a request reaches a route other than the
+ * one that its row in the file names. */
 void examples_record(const api_examples *file, api_text *out);
 
 /* Appends a JSON text. A value is written on one line if that line has at most 100 characters, else

@@ -1,5 +1,5 @@
-/* fan.h - a mesh in which many triangles share one vertex. If the triangles cross each other, the
- * search for self-intersections takes long. */
+/* fan.h - a mesh in which many triangles share one vertex, as a request body. If the triangles
+ * cross, the search for self-intersections takes a long time. */
 #ifndef TESTS_API_FAN_H
 #define TESTS_API_FAN_H
 

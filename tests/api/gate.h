@@ -10,11 +10,11 @@
  * `tell` is set. */
 size_t gate_findings(bool tell);
 
-/* Number of seconds by which the service's clock is ahead of the real time. The test program adds
- * them when the service reads the clock. */
+/* Number of seconds by which the service's clock is ahead of the real time. The function that gives
+ * the service the time adds this number. */
 extern double gate_seconds_passed;
-/* Returns how many limits of tokens and addresses, and how many expiries of tickets, the service
- * does not enforce; prints each of them if `tell` is set. */
+/* Returns in how many cases the service exceeds a limit on a token or an address, or accepts a
+ * ticket that has expired; prints each such case if `tell` is true. */
 size_t gate_limit_findings(bool tell);
 
 #endif

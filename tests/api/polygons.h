@@ -1,10 +1,10 @@
 /* polygons.h - a small mesh stored as lists of corners, without links: all neighbours are found by
  * searching.
  *
- * The searches are slow but obviously right, so that the answers of the API can be compared with
- * them. Where the API has a choice, pg_learn_vertex, pg_learn_face and pg_learn_next record what it
- * chose and check that it is allowed: the half-edge that a vertex or face stores, and the order in
- * which boundary links connect the fans of faces at a bow-tie. */
+ * The searches are slow but obviously right, so that the answers of the API can be checked against
+ * their results. Where the API has a choice, pg_learn_vertex, pg_learn_face and pg_learn_next
+ * record the choice of the API and check that the choice is allowed: the half-edge that a vertex or
+ * face stores, and the order in which boundary links connect the fans of faces at a bow-tie. */
 #ifndef TESTS_API_POLYGONS_H
 #define TESTS_API_POLYGONS_H
 
@@ -31,8 +31,8 @@ typedef struct pg_mesh {
  * least `vertices` vertices. Edges are numbered in the order in which the faces name them, and each
  * edge is directed as in the first face that has it. */
 void pg_make(pg_mesh *pg, const char *faces, unsigned vertices);
-/* Makes a mesh from faces, each a list of vertices that ends in PG_NONE; all faces are in one
- * list. */
+/* Makes a mesh from faces, each a list of vertices that ends in PG_NONE; `corners` has these lists
+ * one after another. */
 void pg_make_corners(pg_mesh *pg, const unsigned *corners, size_t count, unsigned vertices);
 
 /* Records which half-edge the API has chosen to store with a vertex or a face; fails the test if
@@ -41,7 +41,7 @@ void pg_learn_vertex(pg_mesh *pg, unsigned v, unsigned halfedge);
 void pg_learn_face(pg_mesh *pg, unsigned f, unsigned halfedge);
 void pg_learn_next(pg_mesh *pg, unsigned h, unsigned next);
 
-/* An element of the mesh, such as the vertex 3: `kind` is "vertex" and `id` is 3. */
+/* An element of the mesh; for vertex 3, `kind` is "vertex" and `id` is 3. */
 typedef struct pg_element {
     const char *kind;
     unsigned id;
@@ -68,13 +68,14 @@ void pg_breadth_first(const pg_mesh *pg, const pg_flood *flood, pg_list *ids, pg
 /* Finds the distance between each two vertices, as a number of edges or by length; HUGE_VAL if no
  * path connects them. */
 void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_VERTICES]);
-/* Finds the edges of the edge loop through `edge`, which goes straight on at vertices of four
- * edges, or, if `ring` is set, of the edge ring, which goes across faces of four sides. */
+/* Finds the edges of the edge loop through `edge` (it goes straight on at each vertex with four
+ * edges), or, if `ring` is true, the edges of the edge ring through `edge` (it crosses each face
+ * with four sides to the opposite side). */
 void pg_edges(const pg_mesh *pg, bool ring, unsigned edge, pg_list *out, bool *closed);
 /* Finds the boundary loops and returns their number. Each loop starts with its lowest half-edge,
  * and the loops are in the order of their lowest half-edges. */
 unsigned pg_boundaries(const pg_mesh *pg, pg_list loops[PG_FACES]);
-/* Finds for each face the lowest face in its connected component. */
+/* Writes for each face the lowest id of a face in the same connected component. */
 void pg_components(const pg_mesh *pg, bool by_vertex, unsigned lowest[PG_FACES]);
 
 #endif

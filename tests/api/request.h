@@ -21,17 +21,17 @@ api_bench *bench_new_over(const st_journal *journal);
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 /* Makes a bench whose service requires the tokens in the text `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
-/* Makes a bench with rate limits for clients without a token. Such a client may use at once as much
- * as the limit allows in `burst` seconds. `file` is the text of a file of tokens; NULL: no token is
- * required. */
+/* Makes a bench with rate limits for clients without a token. Such a client may spend at once what
+ * the limit allows in `burst` seconds. `file` is the text of a file of tokens; if it is NULL, no
+ * token is required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
-/* Sets the client address of all further requests; a new bench has the address 0. `is_beyond` means
- * that the address has one connection more than it is allowed. */
+/* Sets the client address of all further requests; a new bench has the address 0. If `is_beyond` is
+ * true, the service treats the connection as one more than the address may have. */
 void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
 /* Sets the file of tokens that the next POST /v1/admin/reload will read. */
 void bench_change_tokens(api_bench *b, const char *file);
-/* Makes POST /v1/admin/backup answer with a file that contains `text`. If `text` is NULL, the
- * answer says that a store in memory has no backup. */
+/* Makes POST /v1/admin/backup answer with a file that contains `text`. If `text` is NULL, POST
+ * /v1/admin/backup fails because a store in memory has no backup. */
 void bench_keep(api_bench *b, const char *text);
 /* Sends `token` with all further requests that have no header Authorization; NULL: no token is
  * sent. */
@@ -48,19 +48,20 @@ void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {
     int status;
-    char *body; /* ends in NUL; of a stream, all that can be read without waiting */
+    char *body; /* the body, ended by NUL; if the answer is a stream: all that can be read without
+                   waiting */
     size_t length;
     cJSON *json;       /* the body, parsed; NULL: the body is not JSON */
-    const char *route; /* path template of the route, "-" if no route matched */
+    const char *route; /* path template of the route that matched, "-" if none did */
     api_header headers[API_ANSWER_HEADERS];
     size_t header_count;
-    /* the request and its answer in the service; it owns the memory of `headers` */
+    /* the service's object for the request and its answer; it owns the memory of `headers` */
     api_exchange *exchange;
 } bench_reply;
 
 /* Sends a request. `target` is path and query. `headers` are pairs of name and value, ended by
  * NULL; `headers` may be NULL. A body without a Content-Type is sent as application/json; with a
- * Content-Type of "" the header is left out. `body` NULL: the request has no body. */
+ * Content-Type of "" the header is left out. If `body` is NULL, the request has no body. */
 bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body);
 /* A request whose body may hold any bytes; the members are as in bench_send(). */

@@ -35,12 +35,12 @@ void page_say_ids(page *p, const unsigned *ids, unsigned count);
 /* Appends a JSON array of the ids in a list. */
 void page_say_list(page *p, const pg_list *list);
 
-/* Returns whether two texts are equal except for the last digits of numbers, which depend on
+/* Returns whether two texts are equal; the last digits of numbers may differ, since they depend on
  * rounding. */
 bool page_same(const char *a, const char *e);
 
-/* Requires that the answer has the status 200 and the text `wanted`, as page_same() compares
- * texts. */
+/* Requires that the answer has the status 200 and that its body equals the text `wanted` in the
+ * sense of page_same(). */
 void page_expect(const bench_reply *r, const page *wanted);
 
 /* --- requests --- */
@@ -59,8 +59,9 @@ void page_expect_post(api_bench *b, const page *wanted, const char *target, cons
 /* --- specimens --- */
 
 /* Number of specimens. They are, in this order: an empty mesh, closed and open meshes, a bow-tie,
- * isolated vertices, polygons, faces that share two edges, two components, two components that
- * touch at a vertex, three fans around a vertex, and a mesh of genus 1. */
+ * isolated vertices, polygons with more than three sides, two faces that share two edges, two
+ * components, two components that touch at a vertex, three fans around a vertex, and a mesh of
+ * genus 1. */
 enum { SPECIMENS = 14 };
 extern const char *const specimens[SPECIMENS];
 

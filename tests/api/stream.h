@@ -1,5 +1,5 @@
-/* stream.h - a listener to the events of a mesh, without a socket, and a copy of the mesh that is
- * kept up to date by the events. */
+/* stream.h - a listener that reads the event stream of a mesh without a socket, and a copy of the
+ * mesh that is kept up to date by the events. */
 #ifndef TESTS_API_STREAM_H
 #define TESTS_API_STREAM_H
 
@@ -20,8 +20,8 @@ typedef struct listener {
     cJSON *data;
 } listener;
 
-/* Opens an event stream. Returns NULL if the request was refused because memory is out; any other
- * refusal fails the test. `last` is the value of the header Last-Event-ID, or NULL. */
+/* Opens an event stream. Returns NULL if the request was refused because memory is out; a refusal
+ * for another reason fails the test. `last` is the value of the header Last-Event-ID, or NULL. */
 listener *stream_try(api_bench *b, const char *path, const char *query, const char *last);
 listener *stream_open(api_bench *b, const char *path, const char *query, const char *last);
 void stream_close(listener *l);
@@ -38,8 +38,9 @@ st_mesh *stream_mesh(api_bench *b);
 /* Copies the present state of the mesh "m". */
 void stream_dump(api_bench *b, mirror *m);
 void stream_require(api_bench *b, const mirror *copy, const char *after);
-/* Reads all events that are ready and applies them to the copy. Returns how often the events did
- * not suffice, so that the whole mesh was copied again. */
+/* Reads all events that are ready and applies them to the copy. Returns the number of times that
+ * the whole mesh had to be copied again, because the server sent `resync` or a revision was
+ * missing. */
 unsigned stream_follow(api_bench *b, listener *l, mirror *copy);
 
 #endif

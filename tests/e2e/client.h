@@ -1,4 +1,4 @@
-/* client.h - requests to a daemon, sent through libcurl or as given bytes through a socket. */
+/* client.h - requests to a daemon, sent through libcurl, or as raw bytes through a socket. */
 #ifndef TESTS_E2E_CLIENT_H
 #define TESTS_E2E_CLIENT_H
 
@@ -12,7 +12,7 @@ typedef struct reply {
     long status; /* 0: there was no answer */
     char *body;  /* NUL-terminated */
     size_t length;
-    char *headers; /* header lines as received, ended by CR LF */
+    char *headers; /* header lines as received, each ended by CR LF */
     cJSON *json;   /* the body, parsed; NULL if it is not JSON */
 } reply;
 
@@ -36,8 +36,8 @@ void client_free(client *c);
 /* Makes the client trust the certificate in the file `certificate`, and no other one, if the daemon
  * speaks TLS. The file name must stay valid. */
 void client_trust(client *c, const char *certificate);
-/* Sends a request with a body of text. `headers` are lines "Name: value", ended by NULL; the
- * pointer may be NULL. `body` NULL: no body. A body without a Content-Type is sent as
+/* Sends a request with a body of text. `headers` are lines "Name: value", ended by NULL; `headers`
+ * may be NULL. If `body` is NULL, the request has no body. A body without a Content-Type is sent as
  * application/json. */
 reply client_send(client *c, const char *method, const char *path, const char *const *headers,
                   const char *body);
@@ -51,20 +51,21 @@ typedef struct client_request {
 reply client_send_bytes(client *c, const client_request *request);
 /* client_get sends a GET, client_post a POST with a JSON body. */
 reply client_get(client *c, const char *path);
-/* Waits until the job at the path `job` runs; fails the test if it has ended before. Among jobs
- * that wait, a short one may be run before a long one that came first. */
+/* Waits until the job at the path `job` runs; fails the test if the job has already ended. The
+ * daemon may run a waiting job before a longer one that was submitted earlier. */
 void client_await_running(client *c, const char *job);
 reply client_post(client *c, const char *path, const char *json);
 
-/* Opens a connection without libcurl, which the caller must close. Over TLS it is one end of a
- * socket pair, and a thread encrypts between the other end and the daemon (transport.h). `buffer`
- * is the size of the receive buffer, 0 for the default. If it is small, a client that does not read
- * soon makes the daemon wait. */
+/* Opens a connection without libcurl, which the caller must close. Over TLS the result is one end
+ * of a socket pair; a thread encrypts what passes between the other end and the daemon
+ * (transport.h). `buffer` is the size of the receive buffer, 0 for the default. With a small
+ * buffer, the daemon must soon wait if the client does not read. */
 int client_connect(const daemon_process *d, int buffer);
 
 /* Sends bytes unchanged on a new connection and reads until the server closes it, or until
  * `answers` complete answers have come. Returns what was read; the caller must free it. If
- * `half_close` is set, the sending direction of the connection is closed after the bytes. */
+ * `half_close` is set, the sending direction of the connection is closed after the bytes are
+ * sent. */
 char *client_raw(const daemon_process *d, const char *bytes, size_t length, int answers,
                  bool half_close);
 /* Returns the status of the first answer in the bytes that client_raw has returned, 0 if there is

@@ -9,8 +9,8 @@ typedef struct daemon_process daemon_process;
 
 /* Starts $HEDGED (build/hedged if unset) with --store memory and with the options of the present
  * transport (transport.h), such as a free port. Waits until the daemon says where it listens.
- * `arguments`, ended by NULL, are added and override these options; the pointer may be NULL. Fails
- * the test if the daemon does not start. */
+ * `arguments`, ended by NULL, are added after these options and override them; `arguments` may be
+ * NULL. Fails the test if the daemon does not start. */
 daemon_process *daemon_start(const char *const *arguments);
 /* Starts a daemon whose standard error is a terminal, so that it writes its log in the format for
  * people. */
@@ -18,8 +18,8 @@ daemon_process *daemon_start_on_terminal(const char *const *arguments);
 /* Sends SIGTERM, waits for the end of the daemon and frees `d`. Returns the exit status, or 128 +
  * the number of the signal that ended the process. */
 int daemon_stop(daemon_process *d);
-/* Sends SIGKILL, waits for the end of the daemon and frees `d`. As in a crash of the machine, only
- * what is on the disk is left. */
+/* Sends SIGKILL, waits for the end of the daemon and frees `d`. What the daemon had only in memory
+ * is lost, as in a crash. */
 void daemon_kill(daemon_process *d);
 /* Stops the daemon as daemon_stop does and requires status 0; returns all that it has written to
  * standard error, ended by NUL, which the caller must free. */
@@ -29,7 +29,7 @@ const char *
 daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121", "https://...", "unix:PATH" */
 int daemon_port(const daemon_process *d);
 int daemon_pid(const daemon_process *d);
-/* daemon_peak returns the most memory that the daemon ever held, in bytes; daemon_cpu returns the
+/* daemon_peak returns the peak of the daemon's resident memory in bytes; daemon_cpu returns the
  * seconds of processor time that it has used. */
 size_t daemon_peak(const daemon_process *d);
 double daemon_cpu(const daemon_process *d);

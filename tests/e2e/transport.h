@@ -2,9 +2,9 @@
  *
  * The environment variable TRANSPORT names the transport, so that the whole suite can run over each
  * of them (`make test TESTS=e2e TRANSPORT=tls`). daemon.c starts daemons with the options of the
- * transport, client.c connects accordingly, and most tests need not know the transport. A test
- * about one transport chooses that itself; a test that is not possible over a transport is skipped,
- * with a reason. */
+ * transport, client.c connects over the same transport, so most tests need not know which it is. A
+ * test about one transport chooses that transport itself; over a transport that makes a test
+ * impossible, the test is skipped with a reason. */
 #ifndef TESTS_E2E_TRANSPORT_H
 #define TESTS_E2E_TRANSPORT_H
 
@@ -12,15 +12,15 @@
 
 typedef enum transport { TRANSPORT_TCP, TRANSPORT_TLS, TRANSPORT_UNIX } transport;
 
-/* Returns the transport in the environment, TCP if it names none; fails the test if it names an
- * unknown one. */
+/* Returns the transport that TRANSPORT names, TCP if the variable is not set; fails the test if the
+ * name is unknown. */
 transport transport_get(void);
 /* Makes all daemons that this program starts from now on use the transport `way`. */
 void transport_choose(transport way);
 /* Skips the running test if the transport is `way`, and prints the reason. */
 void transport_skip_over(transport way, const char *reason);
-/* Returns the name of this program in a daemon's log when it connects: "127.0.0.1", or for example
- * "unix:uid=1000". The name is valid until the next call. */
+/* Returns the name by which a daemon's log calls this program when it connects: "127.0.0.1", or for
+ * example "unix:uid=1000". The name is valid until the next call. */
 const char *transport_peer(void);
 
 enum { TRANSPORT_OPTIONS = 8 };
@@ -38,9 +38,9 @@ void transport_make_pair(const char *name, const char *certificate, const char *
 
 /* Begins TLS with the daemon at the other end of a connected socket, which then belongs to this
  * function. Returns a socket on which the caller writes and reads plain text. A thread encrypts and
- * decrypts at most one record in each direction at a time, so that a caller who does not read makes
- * the daemon wait, too. If the caller closes the socket, the connection is closed; if it shuts down
- * the writing side, that direction of TLS ends. If `buffer` is above 0, the socket has a small
+ * decrypts at most one record in each direction at a time, so the daemon must wait if the caller
+ * does not read. If the caller closes the socket, the connection is closed; if the caller shuts
+ * down the writing side, that direction of TLS ends. If `buffer` is above 0, the socket has a small
  * receive buffer. */
 int transport_secure(int connected, int buffer);
 

@@ -1,6 +1,5 @@
-/* service.h - a service in the process of the fuzz target, over a store with three small
- * meshes: "m" is a square of quads, "cube" is closed, "bowtie" has two triangles that share
- * only a vertex. */
+/* service.h - a service in the process of the fuzz target, with a store of three small meshes: "m"
+ * is a square of quads, "cube" is closed, "bowtie" has two triangles that share only a vertex. */
 #ifndef TESTS_FUZZ_SERVICE_H
 #define TESTS_FUZZ_SERVICE_H
 
@@ -12,8 +11,8 @@ api_bench *fuzz_service_new(void);
  * he_check. */
 he_mesh *fuzz_service_mesh(api_bench *b, const char *id);
 
-/* Returns whether these bytes may ask for a much finer mesh. Such inputs are skipped, because a
- * mesh that is large on request is no fault. */
+/* Returns whether these bytes, sent as a request, may make a much finer mesh. Such inputs are
+ * skipped, because it is no fault that a request for a large mesh takes much memory. */
 bool fuzz_service_refines(const void *bytes, size_t size);
 
 /* Sends a request, and runs jobs to their end. Returns the status of the answer; requires that the

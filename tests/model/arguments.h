@@ -1,5 +1,6 @@
-/* arguments.h - draws arguments for a call by name: elements of the mesh, in most cases live,
- * sometimes deleted, sometimes never issued. */
+/* arguments.h - draws random arguments, each for the parameter of a call that has the given name:
+ * mostly ids of live elements, sometimes ids of deleted elements, sometimes ids that were never
+ * issued. */
 #ifndef TESTS_MODEL_ARGUMENTS_H
 #define TESTS_MODEL_ARGUMENTS_H
 
@@ -20,7 +21,8 @@ typedef struct md_call {
 /* Writes the call in the form of a request. */
 void md_describe(const md_call *c, char text[MD_CALL_TEXT]);
 
-/* Find a parameter by its name or its plural; if it is missing, the test fails. */
+/* md_index finds the index of a parameter, and md_get its argument, by its name in the singular or
+ * plural; if the call has no such parameter, the test fails. */
 size_t md_index(const md_call *c, const char *name);
 const he_arg *md_get(const md_call *c, const char *name);
 
@@ -30,7 +32,7 @@ typedef struct md_draft {
     const or_mesh *o;
     const he_mesh *m;
     md_random *r;
-    bool far; /* points may have coordinates as large as doubles get */
+    bool far; /* whether points may have coordinates up to the largest double */
 } md_draft;
 
 void md_give_id(md_draft *d, const char *name, uint32_t id);
@@ -39,21 +41,21 @@ void md_give_flag(md_draft *d, const char *name, bool flag);
 void md_give_ids(md_draft *d, const char *name, const uint32_t *ids, uint32_t count, bool list);
 void md_give_points(md_draft *d, const char *name, uint32_t count, bool list);
 
-/* md_live returns a live element if there is one; md_pick returns one that may also be deleted or
+/* md_live returns a live element if there is one; md_pick returns an id that may also be deleted or
  * never issued. */
 uint32_t md_live(md_draft *d, he_kind kind);
 uint32_t md_pick(md_draft *d, he_kind kind);
-/* Puts up to `most` elements into the call, as one id or as a list, sometimes with a repeated one.
- * Returns their number. */
+/* Puts up to `most` ids of elements into the call, as one id for the parameter `one` or as a list
+ * for `many`, in which an id is sometimes repeated. Returns the number of ids. */
 uint32_t md_pick_some(md_draft *d, const char *one, const char *many, he_kind kind, uint32_t most);
 uint32_t md_boundary_halfedge(md_draft *d);
-/* Puts the arguments `point` and `normal`: random ones, or those of a plane through three
+/* Puts the arguments `point` and `normal` into the call: random ones, or the plane through three
  * vertices. */
 void md_give_plane(md_draft *d);
 /* Returns the plane of a call, from its arguments point, normal and tolerance. */
 or_plane md_plane(const md_call *c);
 
-/* Returns what or_require refuses about any element of a list, and HE_REPEATED_ELEMENT if one is
+/* Returns the refusals of or_require for the elements of a list, and HE_REPEATED_ELEMENT if one is
  * repeated. */
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg);
 bool md_is_live_boundary(const he_mesh *m, uint32_t h);

@@ -9,15 +9,15 @@
 
 /* Returns the name of an operation that has no line in the tables of rows.h, or NULL. */
 const char *md_missing(void);
-/* Draws an operation and its arguments. Returns false if the operation does not suit the mesh: then
- * the caller must draw again. `far`: coordinates may be as large as doubles get; `room` is false if
- * the mesh should not grow. */
+/* Draws an operation and its arguments. Returns false if the mesh has no arguments for the
+ * operation: then the caller must draw again. If `far` is true, coordinates may be as large as the
+ * largest double; `room` is false if the mesh should not grow. */
 bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool far, bool room);
 /* Runs the call on the oracle, before hedge runs it. Returns the set of refusals that apply. */
 uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m);
-/* Follows an operation whose steps hedge may order freely: after hedge succeeded, applies the
- * steps that it reported to the oracle. Returns false, with a sentence in `text`, if the
- * steps are wrong. */
+/* Must be called after hedge succeeded. If hedge may choose the order of the operation's steps,
+ * applies to the oracle the steps that hedge reported. Returns false, and writes the reason to
+ * `text`, if a step is wrong. */
 bool md_follow(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
 
 #endif

@@ -9,8 +9,8 @@ typedef struct md_file {
     he_mesh *mesh;
 } md_file;
 
-/* Reads the files, sorted by name, and returns their number; the caller must free the list and the
- * meshes. */
+/* Reads the mesh files of the corpus, sorted by name, and returns their number; the caller must
+ * free the list and the meshes. */
 size_t md_corpus_read(md_file **out);
 /* Copies the elements of a mesh, none of which is deleted, into an empty oracle. */
 void md_take(or_mesh *o, const he_mesh *m);

@@ -5,9 +5,9 @@
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* Adds marks (feature edges and locks) to some new meshes, with a few elements set, attributes of
- * numbers, and an attribute `material` of faces that names no materials. Returns false when memory
- * is out. */
+/* To some new meshes, adds feature edges and locks (each set for a few elements), attributes of
+ * numbers, and an attribute `material` of faces whose values name no materials. Returns false when
+ * memory is out. */
 bool md_mark(he_mesh *m, md_random *r);
 /* Copies the locks and features of hedge's mesh to the oracle. */
 void md_read_marks(or_mesh *o, const he_mesh *m);

@@ -10,10 +10,11 @@ uint32_t md_add_vertices(or_mesh *o, md_random *r, uint32_t n);
 /* Adds a face whose corners are the n vertices from `first` on, in this order or backwards. */
 void md_add_row(or_mesh *o, uint32_t first, uint32_t n, bool backwards);
 
-/* Adds a polygon of 3 to 12 sides, as one face or as two faces back to back. */
+/* Adds a polygon of 3 to 12 sides, as one face, or as two faces of opposite orientation that share
+ * all edges. */
 void md_add_polygon(or_mesh *o, md_random *r, bool both_sides);
-/* Adds a prism over a polygon of 3 to 12 sides. `triangles` percent of its quads are split, `caps`
- * percent of its caps exist. */
+/* Adds a prism over a polygon of 3 to 12 sides. A quad is split into triangles with a probability
+ * of `triangles` percent, and a cap exists with a probability of `caps` percent. */
 void md_add_prism(or_mesh *o, md_random *r, uint32_t triangles, uint32_t caps);
 /* Adds a fan of triangles around a vertex. `below` says what closes the fan on its other side:
  * another fan (0), a polygon (1), or nothing. */

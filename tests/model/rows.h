@@ -7,8 +7,8 @@
 
 typedef struct md_row {
     const char *name;
-    /* Rough growth of the mesh by the operation; while there is no space, operations above 0 are
-     * not drawn. */
+    /* Roughly how much the operation makes the mesh grow (negative: shrink). Operations with a
+     * growth above 0 are not drawn while the mesh should not grow. */
     int growth;
     /* The functions behind md_draw, md_play and md_follow of calls.h for this operation. */
     bool (*draw)(md_draft *d);
@@ -17,7 +17,7 @@ typedef struct md_row {
     bool far; /* the operation is correct even if coordinates are as large as doubles get */
 } md_row;
 
-/* The lines that are not in calls.c; each array ends in a line without a name. */
+/* The lines (rows) that are not in calls.c; each array ends in a row whose name is NULL. */
 extern const md_row md_border_rows[];
 extern const md_row md_weld_rows[];
 extern const md_row md_corner_rows[];

@@ -11,7 +11,8 @@
 #define MD_FAR 1.6e308
 
 /* The following functions add vertices and faces to an empty oracle. */
-/* A mixture of the shapes of the functions below, without the last five. */
+/* Adds a mixture of the shapes that the functions below make; the last five functions are not
+ * used. */
 void md_fill_mixed(or_mesh *o, md_random *r);
 void md_fill_closed_triangles(or_mesh *o, md_random *r);
 void md_fill_open_triangles(or_mesh *o, md_random *r);

@@ -10,7 +10,8 @@ enum { MD_START_NAME = 64 };
 
 typedef struct md_start {
     char name[MD_START_NAME];
-    double share; /* the start's share of all edits; the shares of all starts add up to 1 */
+    double share; /* fraction of all edits that begin from this start; the fractions of all starts
+                     add up to 1 */
     /* The function that fills the oracle with a random mesh; NULL if the start is a file. */
     void (*fill)(or_mesh *o, md_random *r);
     he_mesh *file;
@@ -25,9 +26,10 @@ typedef struct md_starts {
     size_t files; /* number of starts that are files, which come last in the list */
 } md_starts;
 
-/* Files are read from the folder in CORPUS, by default ../shared/corpus: those whose mesh he_build
- * accepts and that leave space in the oracle's tables. They are scaled into the box of the random
- * shapes, for which the oracle's tolerances are made. */
+/* Finds all starts. The environment variable CORPUS names the folder of mesh files, by default
+ * ../shared/corpus. Files are used if he_build accepts their mesh and the oracle's tables have
+ * space for it to grow. Their meshes are scaled into the box of the random shapes, for which the
+ * oracle's tolerances are made. */
 md_starts md_starts_find(void);
 void md_starts_clear(md_starts *starts);
 

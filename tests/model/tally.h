@@ -9,7 +9,7 @@ enum { MD_ROWS = 64 };
 typedef struct md_row_tally {
     uint64_t done;
     uint64_t refused[HE_STATUS_COUNT];
-    /* The highest N for which a test made the N-th allocation of the operation fail. */
+    /* The highest N for which the model test made the N-th allocation of the operation fail. */
     uint32_t starved;
 } md_row_tally;
 
@@ -25,8 +25,8 @@ void md_tally_print(const md_tally *tally, const char *name);
 /* Prints a line for each operation, with `before` in front: how often it succeeded, how often it
  * was refused for each reason, and after `never:` the declared refusals that did not occur. */
 void md_tally_print_rows(const md_tally *tally, const char *before);
-/* Return the number of operations that never succeeded, and of declared refusals that never
- * occurred. */
+/* md_tally_idle returns the number of operations that never succeeded, md_tally_missing the number
+ * of declared refusals that never occurred. */
 size_t md_tally_idle(const md_tally *tally);
 size_t md_tally_missing(const md_tally *tally);
 

@@ -26,8 +26,8 @@
 
 #include "mesh/mesh.h"
 
-/* The rows of `left` and `joined` are an odd number of cache lines long, so that the entries of one
- * column use different cache sets. */
+/* Sizes of the tables. A row of `left` or `joined` has an odd number of cache lines, so that the
+ * entries of one column fall into different cache sets. */
 enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200, OR_LIST = 1200 };
 
 #define OR_NONE        UINT32_MAX
@@ -36,10 +36,11 @@ enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200,
 typedef struct or_vertex {
     bool alive;
     bool locked;
-    /* The oracle computed `at`: it is compared with a tolerance, then replaced by hedge's
-     * position. */
+    /* Whether the oracle computed `at` with rounding: hedge's position may differ from `at` within
+     * a tolerance, and replaces it after the comparison. */
     bool near;
-    bool inside; /* `at` is not specified: any position within low..high is correct */
+    bool inside; /* whether hedge may choose `at`: any position in the box from `low` to `high` is
+                    correct */
     he_vec3 at, low, high;
 } or_vertex;
 
@@ -56,11 +57,12 @@ typedef struct or_face {
 
 typedef struct or_mesh {
     uint32_t vertices, edges, faces; /* numbers of ids issued */
-    /* Number of faces that come after the first `faces` and have no ids yet. */
+    /* Number of faces in `face` that have no ids yet; they come after the first `faces`. */
     uint32_t fresh;
-    /* Faces that hedge cut as it liked, with their old corners `was`: into triangles or, by
-     * plane_split, into parts on one side of the plane. `id` is OR_NONE if all triangles are new,
-     * because they fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
+    /* Faces that hedge may cut in several ways: into triangles or, by plane_split, into parts that
+     * each lie on one side of the plane. `was` is the face before the cut; `id` is OR_NONE for a
+     * hole that is filled, since then all triangles are new. For plane_split, or_adopt adds the new
+     * vertices to `was`. */
     struct {
         uint32_t id, start;
         or_face was;
@@ -70,17 +72,19 @@ typedef struct or_mesh {
     bool chosen[OR_FACES];        /* faces that plane_split cuts */
     double distance[OR_VERTICES]; /* distance of each vertex from the plane; 0 in the plane */
     /* The refusals that depend on how hedge cut the faces in `cut`, or on rounding: hedge may
-     * report one of them or succeed. `before` has the lists to which the oracle returns if hedge
-     * refuses; NULL if nothing was changed. */
+     * report one of them or succeed. `before` is a copy of the oracle's lists from before the
+     * operation, restored if hedge refuses; NULL if the operation has changed nothing. */
     uint64_t may;
     struct or_lists *before;
-    /* Whether hedge joins the loops in `bridge` by faces of its choice, as in loop_bridge. */
+    /* Whether the operation (loop_bridge) joins the two loops in `bridge` by new faces that hedge
+     * may choose. */
     bool bridging;
     or_face bridge[2]; /* the two loops, in the direction around their holes */
-    /* If the loops are equally long: the least twist (sum of the squared lengths of the new edges)
-     * without a doubled edge. */
+    /* If both loops of `bridge` have equally many vertices: the least twist (sum of the squared
+     * lengths of the new edges) of all ways to join them without doubling an edge. */
     double twist;
-    bool either; /* whether either edge in `joining` may survive, as after edge_join */
+    bool either; /* whether hedge may choose which of the two edges in `joining` survives, as after
+                    edge_join */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
@@ -89,8 +93,9 @@ typedef struct or_mesh {
     uint32_t joined[OR_VERTICES][OR_VERTICES];
     uint32_t around[OR_VERTICES][OR_VERTICES];
     uint32_t degree[OR_VERTICES];
-    /* The part of the tables that is in use: the rows of vertices and, for each edge, the pair of
-     * vertices under which it was entered. */
+    /* known_vertices: the number of rows of `left`, `joined` and `around` that are in use.
+     * known_edges: the number of entries of `pair` in use; pair[e] are the two vertices for which
+     * `joined` has the edge e. */
     uint32_t known_vertices, known_edges;
     uint32_t pair[OR_EDGES][2];
 } or_mesh;
@@ -99,14 +104,14 @@ or_mesh *or_new(void);
 void or_free(or_mesh *o);
 void or_empty(or_mesh *o);
 
-/* --- building: ids in order; faces are not checked --- */
+/* --- building: ids are given in order; or_add_face does not check the face --- */
 
 uint32_t or_add_vertex(or_mesh *o, he_vec3 at);
 uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count);
 void or_remove_last_face(or_mesh *o);
 
-/* A copy of the oracle's lists, to which an operation can be taken back. or_restore also
- * frees it. */
+/* A copy of the oracle's lists from before an operation. or_restore undoes the operation with it,
+ * and frees it. */
 typedef struct or_lists {
     uint32_t vertices, edges, faces;
     or_vertex *vertex;
@@ -117,14 +122,14 @@ typedef struct or_lists {
 or_lists *or_save(const or_mesh *o);
 void or_restore(or_mesh *o, or_lists *lists);
 void or_forget(or_lists *lists);
-/* Notes that hedge may refuse this operation for one of the reasons in `may`: then or_decline takes
- * the oracle back to `before`, which belongs to the oracle from now on. */
+/* Notes that hedge may refuse this operation for one of the reasons in `may`: if hedge does,
+ * or_decline restores the lists `before`, which belong to the oracle from now on. */
 void or_doubt(or_mesh *o, or_lists *before, uint64_t may);
 
 /* --- queries --- */
 
-/* Computes `left` and `joined` from the lists. Returns why no mesh can have these faces:
- * HE_TOO_FEW_CORNERS, HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
+/* Computes `left` and `joined` from the lists. Returns 0, or the set of reasons why no mesh can
+ * have these faces: HE_TOO_FEW_CORNERS, HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
 uint64_t or_derive(or_mesh *o);
 /* Set one entry of the table `left` or of the table `joined`. */
 void or_set_left(or_mesh *o, uint32_t a, uint32_t b, uint32_t f);
@@ -140,7 +145,8 @@ uint32_t or_place(const or_face *f, uint32_t v);
 uint32_t or_after(const or_face *f, uint32_t v);
 uint32_t or_before(const or_face *f, uint32_t v);
 uint32_t or_degree(const or_mesh *o, uint32_t v);
-/* Also true for an isolated vertex, which has no faces. */
+/* Returns whether the vertex is on the boundary; true also for an isolated vertex, which has no
+ * faces. */
 bool or_on_boundary(const or_mesh *o, uint32_t v);
 uint32_t or_fans(const or_mesh *o, uint32_t v);
 /* Finds the neighbours of the vertex v, at most `room`; returns their number. */
@@ -162,24 +168,24 @@ uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
 uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count);
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
-/* The neighbours `left` or `right` may be OR_NONE; if `to` is NULL the new vertex is at the
- * position of the vertex v, which is split. */
+/* or_vertex_split: `left` and `right` are neighbours of the vertex v, which is split; one of them
+ * may be OR_NONE. If `to` is NULL, the new vertex is at the position of v. */
 uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
 
 uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_join(or_mesh *o, uint32_t v);
 uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
-/* An edge from the vertex u to the vertex v that is collapsed: u is deleted; v stays, at `to` or,
- * if that is NULL, at the fraction t of the way between the two. */
+/* The collapse of the edge from the vertex u to the vertex v: u is deleted; v moves to `to` or, if
+ * `to` is NULL, to the fraction t of the way from u to v. */
 typedef struct or_collapse {
     uint32_t u, v;
     double t;
     const he_vec3 *to;
 } or_collapse;
 uint64_t or_edge_collapse(or_mesh *o, const or_collapse *c);
-/* The two steps of or_edge_collapse. Refusals that apply only if v moves, where rounding may decide
- * whether it does, are added to *doubt. */
+/* The two steps of or_edge_collapse. If rounding decides whether v moves, the refusals that apply
+ * only to a moving v are added to *doubt. */
 uint64_t or_check_collapse(const or_mesh *o, const or_collapse *c, uint64_t *doubt);
 void or_draw_together(or_mesh *o, const or_collapse *c);
 
@@ -197,8 +203,8 @@ uint64_t or_face_join(or_mesh *o, uint32_t e);
 /* `start` is the origin of the stored half-edge of the face f; if `at` is NULL, the position of the
  * new vertex is not specified. */
 uint64_t or_face_poke(or_mesh *o, uint32_t f, uint32_t start, const he_vec3 *at);
-/* In each face f[i], the triangle with its stored half-edge, which leaves start[i], keeps the
- * id. */
+/* In each face f[i], the stored half-edge leaves start[i]; the triangle with this half-edge keeps
+ * the id of the face. */
 uint64_t or_face_triangulate(or_mesh *o, const uint32_t *f, const uint32_t *start, uint32_t count);
 
 typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
@@ -207,25 +213,27 @@ typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
 
 /* (ops_corner.c) `start` is the neighbour of the vertex v to which hedge's stored half-edge of v
- * leads: the face of that half-edge stays, or v moves towards the neighbour. `moved` are the
- * neighbours whose edges move to the new vertex. */
+ * leads: or_vertex_dissolve keeps the id of the face of that half-edge, and or_vertex_bevel moves v
+ * towards that neighbour. `moved` are those neighbours of v whose edges or_vertex_split_corners
+ * moves to the new vertex. */
 uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
 uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
 uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
 
 /* (ops_weld.c) or_weld merges each vertex v into to[v], which may be v itself; the merged vertex is
  * at the mean of all vertices merged into it, or stays at the position of to[v]. or_weld_near finds
- * `to` for a tolerance; it returns false if rounding decides. */
+ * `to` for a tolerance; it returns false if rounding decides which vertices are merged. */
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
 bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
 /* `starts` are the first neighbours of those fans around the vertex v that get a new vertex: hedge
- * chooses which fan stays, and in which order the others get their vertices. */
+ * chooses which fan keeps v, and in which order the other fans get their new vertices. */
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 uint64_t or_delete_isolated(or_mesh *o);
 /* `a` and `b` have the vertices of two holes in the order of hedge's boundary links. */
 uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m);
-/* The vertices of a loop in order, and the face along it, OR_NONE for a hole. */
+/* The vertices of a loop in order, and the face on the left of the loop; OR_NONE if there is a
+ * hole. */
 typedef struct or_loop {
     const uint32_t *v;
     uint32_t count;
@@ -235,15 +243,15 @@ typedef struct or_loop {
  * must be equally long. */
 uint64_t or_loop_join(or_mesh *o, or_loop a, or_loop b);
 uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
-/* Finds the vertices of a cycle of three edges, in the direction of the first one; returns false if
- * they form none. */
+/* Finds the vertices of a cycle of three edges, in the direction of the first edge; returns false
+ * if the edges form no cycle. */
 bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
 /* Returns whether the face is above the plane, after plane_split has cut all faces. */
 bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
-/* (ops_region.c) A set of faces to extrude or inset. start[f] is the origin of the stored half-edge
- * of face f, where its corners begin. If `by` is NULL, the faces move by `distance` along the
- * normal. With a factor of 0 an inset is by `distance`; its new corners are then only known to be
- * near the old ones. */
+/* (ops_region.c) A set of faces to extrude or inset; if `joined`, faces that share an edge stay
+ * joined. start[f] is the origin of the stored half-edge of face f, where its corners begin. If
+ * `by` is NULL, the faces move by `distance` along the normal. If `factor` is 0, or_face_inset
+ * insets by `distance`; the oracle then knows only that the new corners are near the old ones. */
 typedef struct or_region {
     const uint32_t *faces, *start;
     uint32_t count;
@@ -252,12 +260,12 @@ typedef struct or_region {
 uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance);
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance);
 /* or_faces_vaguely returns whether the direction of a face, or of the whole region, is so uncertain
- * that rounding decides it. A face whose corners are at only two positions (or_is_flat) has no
- * direction, which is certain. */
+ * that rounding decides it. A face whose corners are at only two positions (or_is_flat) certainly
+ * has no direction, so rounding decides nothing there. */
 bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
 bool or_is_flat(const or_mesh *o, uint32_t f);
 
-/* (ops_whole.c) If `faces` is NULL, the operation applies to all faces. */
+/* (ops_whole.c) or_reverse applies to all faces if `faces` is NULL. */
 uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
@@ -272,8 +280,8 @@ void or_compact(or_mesh *o);
 typedef enum or_scheme { OR_LOOP, OR_CATMULL_CLARK, OR_LINEAR, OR_SQRT3 } or_scheme;
 uint64_t or_subdivide(or_mesh *o, or_scheme scheme, const uint32_t *start);
 
-/* A plane through `point`. A vertex is in it if its distance is within the tolerance; NULL stands
- * for hedge's default. */
+/* A plane through `point`. A vertex is in the plane if its distance is within the tolerance; if
+ * `tolerance` is NULL, the tolerance is hedge's default. */
 typedef struct or_plane {
     he_vec3 point, normal;
     const double *tolerance;
@@ -283,19 +291,20 @@ typedef struct or_plane {
  * long as every part lies on one side of the plane. */
 uint64_t or_plane_split(or_mesh *o, const or_plane *plane, const uint32_t *faces, uint32_t count,
                         const uint32_t *start);
-/* The maximum size of the result of plane_split, and whether a vertex is so close to the limit of
- * the tolerance that rounding decides. */
+/* The maximum size of the result of plane_split. `doubtful`: the distance of a vertex is so close
+ * to the tolerance that rounding decides whether the vertex is in the plane. */
 typedef struct or_plane_size {
-    /* numbers of edges crossed and of faces cut, and corners of the longest face afterwards */
+    /* numbers of edges crossed and of faces cut by the plane, and of corners of the longest face
+     * afterwards */
     uint32_t crossed, cut, longest;
     bool doubtful;
 } or_plane_size;
 or_plane_size or_plane_measure(const or_mesh *o, const or_plane *plane);
 
 /* or_delaunay_flip applies one flip that hedge's delaunay reports; hedge chooses the order. Returns
- * false, with a sentence, unless the edge lies between two triangles, the opposite angles require a
- * flip, and edge_flip allows it. or_delaunay_done returns false if an edge in `looked` still
- * requires an allowed flip. */
+ * false, and writes a sentence to `text`, unless the edge lies between two triangles, the opposite
+ * angles require a flip, and edge_flip allows it. `looked[e]` is set for the edges to examine at
+ * the end: or_delaunay_done returns false if one of them still requires a flip that is allowed. */
 bool or_delaunay_flip(or_mesh *o, uint32_t e, bool looked[], char *text, size_t room);
 bool or_delaunay_done(or_mesh *o, const bool looked[], char *text, size_t room);
 
@@ -308,13 +317,14 @@ enum { OR_TEXT = 256 };
 void or_plane_vertices(or_mesh *o);
 /* Returns whether the faces from `first_new` on form the strip of loop_bridge. */
 bool or_strip_is_right(const or_mesh *o, uint32_t first_new);
-/* or_adopt takes over the ids that hedge gave to new elements, then calls or_derive. It returns
- * false, with a sentence, if hedge's mesh has other new elements. or_decline is called if hedge
- * refused for a reason in `may`: it takes the oracle back to the state before the operation. */
+/* or_adopt copies the ids that hedge gave to new elements, then calls or_derive. It returns false,
+ * and writes a sentence to `text`, if the new elements of hedge's mesh differ from the oracle's.
+ * or_decline must be called if hedge refused for a reason in `may`: it restores the oracle's state
+ * from before the operation. */
 void or_decline(or_mesh *o);
 bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
-/* Returns whether hedge's mesh equals this one in all counts, cycles, ends, links, rings and
- * positions; if not, `text` says why. */
+/* Returns whether hedge's mesh equals the oracle's in all counts, cycles, ends, links, rings and
+ * positions; if not, writes the reason to `text`. */
 bool or_matches(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
 
 #endif

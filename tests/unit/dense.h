@@ -20,10 +20,10 @@ he_mesh *dense_built(he_soup *takes);
  * is height(x, y) for x and y from 0 to 1, or 0 if `height` is NULL; all coordinates are multiplied
  * by `scale`. */
 he_mesh *dense_grid(uint32_t side, double (*height)(double x, double y), double scale);
-double dense_waves(double x, double y); /* a height with waves, for dense_grid() */
+double dense_waves(double x, double y); /* a height function with waves, for dense_grid() */
 he_mesh *dense_torus(uint32_t side);
-/* Makes a mesh of triangles of the primitive shape `name`; `value` is the value of its parameter
- * `param`, which may be NULL. */
+/* Makes the primitive shape `name` as a mesh of triangles. Sets its parameter `param` to `value`
+ * unless `param` is NULL. */
 he_mesh *dense_shape(const char *name, const char *param, double value);
 /* Makes a closed cube; each of the six sides has side x side cells of two triangles. */
 he_mesh *dense_cube(uint32_t side);

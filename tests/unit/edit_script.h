@@ -11,16 +11,16 @@
  *     append mesh=012,023*                 another mesh; "*" adds the columns of
  *                                          script_add_columns() and numbers `locked` on faces
  *
- * and a script is a list of operations separated by ";". A name that is not found fails the
- * test. */
+ * and a script is a list of operations separated by ";". The test fails if a script has the name of
+ * an operation, argument or element that does not exist. */
 #ifndef TESTS_UNIT_EDIT_SCRIPT_H
 #define TESTS_UNIT_EDIT_SCRIPT_H
 
 #include "mesh/delta.h"
 #include "op/op.h"
 
-/* Makes a mesh of faces written like "012,023". Its vertices are in general position if `positions`
- * is NULL. */
+/* Makes a mesh of faces written like "012,023". If `positions` is NULL, the vertices get positions
+ * in general position (no special cases, such as three on a line). */
 he_mesh *script_mesh(const char *faces, const he_vec3 *positions);
 
 /* Adds attribute columns for every kind of element and with every rule by which edits can set
@@ -46,7 +46,8 @@ void assert_equal(const he_mesh *m, const he_mesh *other);
  * ascending order, as in "345". */
 void assert_loops(const he_mesh *m, const char *lengths);
 he_mesh *copy_of(const he_mesh *m);
-/* Requires that the list has exactly the ids in `expected`, which are separated by blanks. */
+/* Requires that the list has exactly the ids in the text `expected`, where they are separated by
+ * blanks. */
 void assert_ids(const he_ids *list, const char *expected);
 
 int euler_of(const he_mesh *m); /* Euler characteristic, V - E + F */

@@ -7,7 +7,7 @@
 
 #include "format/io/format.h"
 
-/* The content of a file, and the name of its format. */
+/* The bytes of a file in memory, and the name of its format. */
 typedef struct format_file {
     const char *format;
     const void *bytes;
@@ -87,8 +87,7 @@ const char *face_label(const he_import *import, const char *name, size_t face);
 /* Returns the warning with this code about this subject, or NULL if there is none. */
 const he_warning *find_warning(const he_warnings *warnings, const char *code, const char *subject);
 
-/* Requires a warning that counts `count` places in the file, of which the first is at line
- * `line`. */
+/* Requires a warning that reports `count` places in the file, the first of them at line `line`. */
 void expect_warning(const he_import *import, const char *code, const char *subject, uint64_t count,
                     uint64_t line);
 
@@ -98,8 +97,8 @@ he_mesh *build_import(he_import *import);
 /* Reads a text file and makes a mesh of it; the caller must free the mesh. */
 he_mesh *mesh_of_text(const char *format, const char *text);
 
-/* Writes a mesh to a file in memory through a buffer of `size` bytes; returns the content, ended by
- * NUL, which the caller must free. */
+/* Writes a mesh to a file in memory through a buffer of `size` bytes; returns the bytes of the
+ * file, ended by NUL, which the caller must free. */
 char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh, size_t size,
                     he_warnings *warnings, size_t *out_length);
 
@@ -107,7 +106,8 @@ char *write_encoded(const char *format, const char *encoding, const he_mesh *mes
 char *write_pieces(const char *format, const he_mesh *mesh, size_t size, he_warnings *warnings);
 
 /* Writes a mesh to files in memory through buffers of several sizes; the files must be equal.
- * Returns the content, which may have any bytes and which the caller must free. */
+ * Returns the bytes of one of the equal files, which may have any values; the caller must free
+ * them. */
 char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
                   he_warnings *warnings, size_t *length);
 

@@ -14,7 +14,7 @@ enum { QUERY_SPECIMENS = 16 };
 extern const char *const query_specimens[QUERY_SPECIMENS];
 
 /* Deletes the component that consists of all vertices, edges and faces with at least these ids: the
- * mesh then has rows of deleted elements. */
+ * mesh then has array entries of deleted elements. */
 void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32_t face);
 
 /* Makes a mesh of two triangles and an isolated vertex, and deletes the second triangle. */

@@ -26,11 +26,12 @@ he_repair_plan repair_plan_of(unsigned which);
  * a test can see where the value came from after a repair. */
 void repair_copy_soup(const he_soup *from, he_soup *to);
 
-/* Returns the account of what one kind of repair did. */
+/* Returns the report of what one kind of repair did, such as how many faces it changed. */
 const he_repair_account *repair_account_of(const he_repaired *done, he_repair repair);
 
-/* Requires that after a repair each attribute value is still at its element, and that each corner
- * is at its old vertex or at the vertex into which the old one was welded. */
+/* Requires that after a repair each attribute value still belongs to the element that had it
+ * before, and that each corner is at its old vertex or at the vertex into which the old one was
+ * welded. */
 void repair_expect_carried(const he_soup *before, const he_soup *after, const he_repaired *done,
                            bool welded);
 

@@ -10,7 +10,7 @@ typedef struct scenario {
     const char *mesh;
     const char *prepare; /* a script that runs before the operation, or NULL */
     he_status expected;
-    /* by how much a successful operation changes the numbers of vertices, edges and faces */
+    /* changes of the numbers of vertices, edges and faces if the operation succeeds */
     int change[3];
 } scenario;
 

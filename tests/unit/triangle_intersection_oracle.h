@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 /* Returns whether two triangles intersect. Triangles without area meet nothing; triangles that
- * share a corner or an edge meet only if they do so elsewhere, too. */
+ * share a corner or an edge meet only if they also intersect in other points. */
 bool oracle_triangles_meet(const he_vec3 a[3], const he_vec3 b[3]);
 
 #endif

@@ -12,8 +12,8 @@ export class Address {
         this.#stage = stage;
     }
 
-    // Writes the open mesh, the selection and the camera into the page's address. The entry in the
-    // browser's history is replaced, so moving the camera does not fill that history.
+    // Writes the open mesh, the selection and the camera into the page's address. It replaces the
+    // newest entry of the browser's history, so that moving the camera does not fill the history.
     write() {
         const { mesh, selection } = this.#session;
         if (mesh !== null) {

@@ -35,8 +35,8 @@ function rotation(axis, degrees) {
     return matrix;
 }
 
-// Returns the map that first scales and then rotates about the point `about` (around x, y and z one
-// after another, in degrees), and then moves.
+// Returns the map that first scales, then rotates (around the x, y and z axes one after another,
+// angles in degrees), and then translates; `about` is the fixed point of scaling and rotation.
 export function compose({ scale, rotate, translate, about }) {
     const there = about.map((value) => -value);
     return [

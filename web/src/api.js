@@ -10,12 +10,12 @@ const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 
 // Number of edits in one page of a mesh's history.
 const HISTORY_PAGE = 20;
 
-// Milliseconds to wait before the state of a job is requested again: JOB_SOON at first, then twice
-// as long each time, up to JOB_LATEST.
+// Milliseconds between requests for the state of a job: JOB_SOON at first, then each time twice as
+// many, at most JOB_LATEST.
 const JOB_SOON = 60;
 const JOB_LATEST = 1000;
 
-// Media types by file name extension; the server refuses others.
+// Media type of each extension of file names; the server refuses files with another extension.
 const MEDIA_TYPES = {
     obj: 'model/obj',
     off: 'model/x-off',
@@ -47,8 +47,8 @@ function unreachable() {
     });
 }
 
-// Returns the problem that is in the text of an answer, or, if the text is none, makes a problem
-// from the answer's status.
+// Returns the problem that is in the text of an answer, or, if the text is not a problem document,
+// makes a problem from the answer's status.
 function problemOf(status, text) {
     try {
         const problem = JSON.parse(text);
@@ -56,7 +56,7 @@ function problemOf(status, text) {
             return new Problem({ ...problem, status });
         }
     } catch {
-        // The answer is no JSON, so it comes from a gateway in front of the server.
+        // The answer is not JSON, so it comes from a gateway in front of the server.
     }
     const detail = `The server answered with status ${status}.`;
     return new Problem({ status, title: 'Request failed', detail });
@@ -105,8 +105,8 @@ function meshPath(mesh) {
     return `v1/meshes/${encodeURIComponent(mesh)}`;
 }
 
-// Returns a description of the token that requests carry now: {name, role, prefixes, expires};
-// `name` is null if the server asks for no tokens.
+// Returns a description of the access token that the page's requests carry now: {name, role,
+// prefixes, expires}; `name` is null if the server does not require tokens.
 export async function getToken() {
     const bearer = token();
     try {
@@ -149,8 +149,8 @@ export function getElement(mesh, kind, id) {
     return getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}`);
 }
 
-// Asks several questions about one revision and returns the answers in order; the answer to a
-// failed question is its problem.
+// Sends several queries about one revision of a mesh in one request and returns the answers in
+// order; the answer to a failed query is a problem.
 export async function query(mesh, queries) {
     return (await postJson(`${meshPath(mesh)}/query`, { queries })).results;
 }
@@ -165,13 +165,14 @@ export function getAttributes(mesh, signal) {
     return getJson(`${meshPath(mesh)}/attributes`, signal);
 }
 
-// Returns {revision, materials: [{name, base_color, ...}]}; fails with 410 if the revision is gone.
+// Returns {revision, materials: [{name, base_color, ...}]}; fails with status 410 if the server no
+// longer has the revision.
 export function getMaterials(mesh, revision, signal) {
     return getJson(`${meshPath(mesh)}/materials?revision=${revision}`, signal);
 }
 
-// Returns the values of a label attribute of faces, by id, as a Uint32Array; fails with 410 if the
-// revision is gone.
+// Returns the values of a label attribute of faces, by id, as a Uint32Array; fails with status 410
+// if the server no longer has the revision.
 export async function getFaceLabels(mesh, name, revision, signal) {
     const path = `${meshPath(mesh)}/attributes/faces/${encodeURIComponent(name)}`;
     const headers = { Accept: 'application/octet-stream', Prefer: 'wait=30' };
@@ -184,7 +185,7 @@ export async function getOperations() {
     return (await getJson('v1/operations')).operations;
 }
 
-// Returns the ids of neighbours of another kind, such as the faces of a vertex.
+// Returns the ids of an element's neighbours of some kind, such as the faces of a vertex.
 export async function getAdjacent(mesh, kind, id, relation) {
     return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
 }
@@ -208,7 +209,7 @@ export function getGeometryChanges(mesh, { revision, layout }) {
 }
 
 // Reads an answer that begins with a header of geometry.js. The length is taken from this header,
-// because Content-Length may be that of a compressed body.
+// because Content-Length is the compressed length if the body is compressed.
 async function readArrays(path, onProgress, signal) {
     const answer = await request(path, { signal });
     const reader = answer.body.getReader();
@@ -249,7 +250,8 @@ async function readArrays(path, onProgress, signal) {
 // Reads a mesh as a coarse mesh followed by refinements; calls `onBytes` with the bytes as they
 // arrive, see progressive.js.
 export async function getProgressive(mesh, onBytes, signal) {
-    // The server must answer with bytes, however long it takes to make them, and not with a job.
+    // The answer must be the bytes even if it takes long to compute; the server must not answer
+    // with a job.
     const headers = { Prefer: 'wait=30' };
     const answer = await request(`${meshPath(mesh)}/progressive`, { signal, headers });
     const reader = answer.body.getReader();
@@ -268,10 +270,10 @@ async function readOn(reader) {
 
 // --- events ---
 
-// Listens to the events of a mesh that follow `since`, the id of an event or a revision; if `since`
-// is null, to the events from now on. Calls onOpen when the server has answered, onEvent with the
-// name, the data and the id of each event, and onError, once, when the stream has ended. Returns an
-// object with close().
+// Listens to the events of a mesh. The first event is the one after `since`, which is the id of an
+// event or a revision; if `since` is null, the next one that happens. Calls onOpen when the server
+// has answered, onEvent with the name, the data and the id of each event, and onError, once, when
+// the stream has ended. Returns an object with close().
 export function listen(mesh, since, { onOpen, onEvent, onError }) {
     const closing = new AbortController();
     follow(`${meshPath(mesh)}/events`, since, { onOpen, onEvent }, closing.signal)
@@ -302,7 +304,8 @@ async function follow(path, since, { onOpen, onEvent }, signal) {
 
 // --- edits ---
 //
-// An edit names the revision it is meant for; the server answers 412 if the mesh has changed.
+// An edit request names the revision that it is meant for; the server answers 412 if the mesh has
+// changed.
 //
 // If `work` is not null, the server may run the edit as a job. Then work.begin(cancel) is called
 // once, with a function that cancels the job, and work.show(job) with each state of the job.
@@ -313,7 +316,7 @@ export function edit(mesh, operation, revision, work = null) {
 }
 
 // Returns what an edit of the present mesh would change, without changing anything; null if the
-// server would need long to find that out.
+// server would need a long time to compute that.
 export async function tryEdit(mesh, operation, signal) {
     const answer = await request(`${meshPath(mesh)}/edits`, {
         method: 'POST',
@@ -348,7 +351,7 @@ async function finish(first, work) {
         stop = resolve;
     });
     work?.begin(async () => {
-        // DELETE is not sent to a job that has ended, because it would delete the job's result.
+        // A job that has ended is not cancelled: DELETE would then delete its result.
         if ((await getJson(path)).finished === null) {
             await request(path, { method: 'DELETE' });
         }
@@ -370,8 +373,8 @@ async function finish(first, work) {
 }
 
 // Creates a mesh from `batch`, {file, beside}: a file and the files that it refers to. The server
-// applies `repairs`. Calls `onProgress` with the fraction sent, 0 to 1. Returns the summary of the
-// new mesh. Uses XMLHttpRequest because fetch does not report how much was sent.
+// applies `repairs`. Calls `onProgress` with the fraction that has been sent, 0 to 1. Returns the
+// summary of the new mesh. Uses XMLHttpRequest because fetch does not report how much was sent.
 export async function upload(batch, onProgress, work, repairs = []) {
     const bearer = token();
     const { status, answer } = await send(batch, onProgress, work, repairs, bearer);
@@ -392,8 +395,8 @@ function formOf(files) {
     return form;
 }
 
-// Sends a file, or a form if several files belong together. The promise resolves for an answer 401,
-// too, so that upload() can ask the user for a token.
+// Sends a file, or a form if several files belong together. An answer with status 401 does not
+// reject the promise, so that upload() can ask the user for a token.
 function send({ file, beside }, onProgress, work, repairs, bearer) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;

@@ -41,8 +41,8 @@ export function foldAngle(left, right, direction) {
 
 const degrees = (value) => `${formatMeasure(value)}\u00b0`;
 
-// Returns whether `answer` is no error. A question to the server fails if the element it is about
-// was deleted meanwhile.
+// Returns whether `answer` is no error. A question to the server fails if the element that it asks
+// about was deleted meanwhile.
 const lives = (answer) => answer !== undefined && !('status' in answer);
 
 async function ids(ask, relations, of) {

@@ -5,16 +5,16 @@
 //              (the face)
 //
 // An arrow is as long as its edge, but its thickness stops growing when the edge is long on the
-// screen. So each point is a place on the edge plus a `spread`, which is multiplied by a scale from
-// 0 to 1.
+// screen. So each point is the sum of a place on the edge and a vector away from it, the point's
+// `spread`, which is multiplied by a scale from 0 to 1.
 
 import { normalOfFace, pointAt } from './geometry.js';
 
-// Where an arrow begins and ends along its edge, as parts of the edge's length.
+// Where an arrow begins and ends along its edge, as fractions of the edge's length.
 const START = 0.16;
 const END = 0.84;
-// The distance of an arrow from its edge, and its widths, as parts of the edge's length; they are
-// smaller if the face is thin.
+// The distance of an arrow from its edge, and its widths, as fractions of the edge's length; if the
+// face is thin, they are fractions of a smaller length.
 const OFFSET = 0.1;
 const HEAD = 0.15;
 const BODY_WIDTH = 0.022;
@@ -40,8 +40,8 @@ function unit(a) {
 }
 
 // Returns the arrow of a half-edge as nine points (three triangles): {size, places, spreads}; null
-// if the edge has no length or its face no plane. `halfedge` is {origin, target, face, across};
-// `across` is the face of its twin, in whose plane a boundary half-edge is drawn.
+// if the edge has length 0 or the face has no normal. `halfedge` is {origin, target, face, across};
+// `across` is the face of its twin, in whose plane the arrow of a boundary half-edge is drawn.
 export function arrowOf(geometry, { origin, target, face, across }) {
     const from = pointAt(geometry, origin);
     const edge = subtract(pointAt(geometry, target), from);
@@ -83,7 +83,7 @@ export function pointsOf({ places, spreads }, scale) {
     return places.map((place, i) => along(place, spreads[i], scale));
 }
 
-// Returns the middle of an arrow's body, where tests look for its colour.
+// Returns the middle of an arrow's body, the point where tests check the arrow's colour.
 export function middleOf(arrow, scale) {
     const [first, , third] = pointsOf(arrow, scale);
     return along(first, subtract(third, first), 0.5);

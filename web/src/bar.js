@@ -29,8 +29,8 @@ export function isReady({ mesh, busy, connection }, mayEdit) {
     return mayEdit && mesh !== null && !busy && connection !== 'gone';
 }
 
-// Shows the state of the session. `ready`: the mesh may be edited now; `isDrawn`: the browser can
-// draw the mesh.
+// Shows the state of the session. `ready` says whether the mesh may be edited now, `isDrawn`
+// whether the browser can draw the mesh.
 export function showState(session, ready, isDrawn) {
     const { mesh, split } = session;
     const steps = session.shown?.history;

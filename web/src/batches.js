@@ -17,10 +17,11 @@ function names(text, file) {
 }
 
 // Returns a list with one `{ file, beside }` for each upload: `file` is the file that the server
-// reads, `beside` are the files that it refers to. If there is one mesh file, all other files are
-// sent with it; if there are several, the files whose names each mesh file contains. Images are
-// left out, because the server does not read them. A file that no mesh file refers to is sent
-// alone, so that the server says what is wrong with it.
+// reads, `beside` are the files that it refers to. If one of the mesh files has a format that
+// refers to other files, it is sent with all files that are not meshes; if several have, each is
+// sent with the files whose names occur in its text. Images are left out, because the server does
+// not read them. A file that no mesh file refers to is sent alone, so that the server says what is
+// wrong with it.
 export async function batchesOf(files) {
     const meshes = files.filter((file) => has(MESHES, file));
     const referring = meshes.filter((file) => has(REFERRING, file));

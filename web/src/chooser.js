@@ -13,9 +13,9 @@ export class Chooser {
     #onChange;
     #operations = [];
 
-    // `onChange(isChosen)` is called when another operation is selected; `isChosen` is true if the
-    // user chose it in the list. `onEnter(name)` is called when the user presses Enter in the
-    // search field.
+    // `onChange(isChosen)` is called when another operation becomes the selected one; `isChosen` is
+    // true if the user chose it in the list. `onEnter(name)` is called when the user presses Enter
+    // in the search field.
     constructor({ select, search }, { onChange, onEnter }) {
         [this.#select, this.#search, this.#onChange] = [select, search, onChange];
         select.addEventListener('change', () => onChange(true));
@@ -81,7 +81,7 @@ export class Chooser {
 }
 
 // Returns the name of the operation to select: the operation with the name `text`, if there is one;
-// else the first operation whose name contains all the words; else the one that was selected
+// else the first operation whose name contains all words of `text`; else the one that was selected
 // before; else the first of `operations`.
 function bestOf(operations, text, words, before) {
     const names = operations.map(({ name }) => name);

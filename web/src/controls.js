@@ -69,7 +69,7 @@ export class Flag {
     }
 }
 
-// A choice of yes or no that may be left out.
+// A choice between yes and no, or no value.
 export class Whether extends Choice {
     constructor() {
         super([['', 'unchanged'], ['yes', 'yes'], ['no', 'no']], '');
@@ -171,7 +171,7 @@ export class Ids {
     }
 }
 
-// A field for a number, which may stay empty.
+// A field for a number; it may be empty.
 export class Numeral {
     node;
     #name;
@@ -180,8 +180,8 @@ export class Numeral {
     constructor(name, placeholder, step = 'any') {
         this.#name = name;
         this.node = make('input', { type: 'number', step, placeholder });
-        // The focus is given up, because otherwise scrolling with the wheel over the field would
-        // change the number.
+        // The field loses the focus when the wheel is turned, because otherwise scrolling over the
+        // field would change the number.
         this.node.addEventListener('wheel', () => this.node.blur(), { passive: true });
     }
 
@@ -212,8 +212,8 @@ export class Numeral {
 const AXES = ['x', 'y', 'z'];
 
 // A point or a vector: three numbers, which can be pasted into one of the fields together. `usual`
-// is the value of a field that is left empty while others are not; if it is undefined, no field may
-// be empty.
+// is the value of an empty field if other fields have values; if `usual` is undefined, either all
+// three fields or none must have values.
 export class Vector {
     node;
     #name;
@@ -268,7 +268,8 @@ export class Vector {
         });
     }
 
-    // Pastes several numbers: two fill this field and the next, three or more fill all fields.
+    // Handles the pasting of several numbers: two fill this field and the next, three or more fill
+    // all fields.
     #paste(event, at, onMore) {
         const words = wordsOf(event.clipboardData.getData('text'));
         if (words.length < 2) {
@@ -327,7 +328,7 @@ export class WithText {
         return !this.#text.hidden;
     }
 
-    // Shows the text area with `text` in it, or the fields with the values that they had before.
+    // Shows the text area with `text` in it, or shows the fields again with their former values.
     showText(isText, text = isText ? this.#write() : '') {
         this.#text.value = text;
         this.#text.hidden = !isText;

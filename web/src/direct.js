@@ -1,5 +1,6 @@
-// direct.js - tools that work in the view: a key or a button selects a tool, a drag shows what it
-// would do, and releasing the pointer does it. A click applies a default amount; Esc cancels.
+// direct.js - tools that work in the view: a key or a button selects a tool, a drag previews the
+// tool's edit, and releasing the pointer runs the edit. A click applies a default amount; Esc
+// cancels.
 
 import { enable } from './dom.js';
 
@@ -23,9 +24,9 @@ export class Direct {
 
     // `note` is an element that is shown while a tool is selected; it contains `hint`, `amount` and
     // a button, `giveUp`. `buttons` has one button for each tool. `acts` are four functions:
-    // begin(tool) returns a gesture or null, drag(gesture, moved) returns the gesture's result (for
-    // both see gesture.js), onShow(lines) draws a preview, or removes it if `lines` is null, and
-    // onRun(operation) does an edit.
+    // begin(tool) returns a gesture or null, and drag(gesture, moved) returns the gesture's result
+    // (see gesture.js); onShow(lines) draws a preview, or removes it if `lines` is null;
+    // onRun(operation) runs an edit.
     constructor(canvas, { note, hint, amount, giveUp, buttons }, acts) {
         this.#canvas = canvas;
         this.#elements = { note, hint, amount, buttons };
@@ -44,7 +45,7 @@ export class Direct {
         return this.#gesture !== null;
     }
 
-    // Selects a tool; returns false if it does not fit the selection.
+    // Selects a tool; returns false if the tool cannot work on the selected elements.
     arm(tool) {
         this.cancel();
         const gesture = this.#isEnabled ? this.#acts.begin(tool) : null;
@@ -131,8 +132,8 @@ export class Direct {
         }
     }
 
-    // Returns how far the pointer has moved since it was pressed; null if that is so little that it
-    // is a click.
+    // Returns how far the pointer has moved since it was pressed; null if it has moved so little
+    // that the press is a click.
     #movedTo({ clientX, clientY }) {
         const moved = [clientX - this.#down.x, clientY - this.#down.y];
         return Math.hypot(...moved) > CLICK_PIXELS ? moved : null;

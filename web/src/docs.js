@@ -201,8 +201,8 @@ function show({ info, paths, components }) {
             make('h2', {}, 'Schemas'),
             ...schemas.map(schemaSection),
         );
-    // The page scrolls to the section that its address names (#ID), because the browser looked for
-    // that section before the manual was built.
+    // The browser looked for the section that the address names (#ID) before the manual was built,
+    // so the page scrolls there now.
     document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 

@@ -24,7 +24,7 @@ export function make(tag, properties = {}, ...children) {
 const leftBehind = new WeakSet();
 
 // Enables or disables a button. If a button loses the focus because it is disabled, it gets the
-// focus back when it is enabled, unless another element has the focus by then: so a user of the
+// focus back when it is enabled, unless another element has the focus by then. So a user of the
 // keyboard can press the button again.
 export function enable(button, isEnabled) {
     if (!isEnabled && document.activeElement === button) {

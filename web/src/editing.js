@@ -20,7 +20,8 @@ const MOST_MARKED = 1000;
 // the name of the tool.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
 
-// The words for what the user has to click, for one element and for several.
+// The words for the elements that the user has to click, by kind: NAMES for one element, PLURALS
+// for several.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
 const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
 
@@ -121,7 +122,8 @@ export class Editing {
         enable(byId('remove'), isEnabled && last !== undefined);
     }
 
-    // Called when the selection or the mesh has changed; `what` has changed as Session describes.
+    // Called when the selection or the mesh has changed; `what` says what has changed, see the
+    // constructor of Session.
     follow(what) {
         this.#tools.setSelection(this.#session.selection.chosen);
         if (what === 'mesh' || what === 'selection') {
@@ -199,8 +201,8 @@ export class Editing {
         }
     }
 
-    // Tells the user which field of the form waits for a click; `wanted` describes this field (see
-    // Tools) and is undefined if no field waits.
+    // Tells the user which field of the form waits for a click; `wanted` describes this field
+    // ({name, kind, isList}, see tools.js) and is undefined if no field waits.
     #showPicking(wanted) {
         byId('pick-note').hidden = wanted === undefined;
         if (wanted !== undefined) {
@@ -253,7 +255,7 @@ export class Editing {
 
     // Starts a tool of the view, or opens the form of its operation if the tool cannot work on the
     // selected elements. While the tool is in use, the form is shown, too, so that the user can
-    // give exact numbers. `isKey`: the user pressed the tool's key, not its button.
+    // give exact numbers. `isKey` says that the user pressed the tool's key and not its button.
     start(tool, isKey) {
         const name = FORMS[tool];
         const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);

@@ -1,5 +1,5 @@
-// events.js - a parser for text/event-stream: text in, events out. EventSource cannot send
-// Authorization, so the stream is fetched like other requests.
+// events.js - a parser for text/event-stream: it is given pieces of text and returns events.
+// EventSource cannot send Authorization, so the stream is fetched like other requests.
 
 export class EventReader {
     id = ''; // id of the last event that had one

@@ -29,8 +29,8 @@ export function isList({ plural, type }) {
 }
 
 // Makes the control of a parameter. `meshes()` returns a promise of the list of meshes;
-// `pickable(param, control)` returns the control's node together with a button: after a click on
-// the button, a click in the view fills the control.
+// `pickable(param, control)` returns an element with the control's node and a button; after a click
+// on the button, a click on an element in the view fills the control.
 export function controlFor(param, meshes, pickable) {
     const { name, type, choices, default: usual, nullable = false } = param;
     if (type === 'flag') {
@@ -98,8 +98,9 @@ export function isComplete(fields) {
     );
 }
 
-// Returns the member that a field adds to the request, [name, value]; the value is undefined if the
-// field is empty. Missing values and ranges are checked by the server, which can say what is wrong.
+// Returns [name, value], the member that a field adds to the request; the value is undefined if the
+// field is empty. Missing values and ranges are not checked here: the server does that and explains
+// what is wrong.
 export function readField({ param, control }) {
     const value = control.read();
     if (Array.isArray(value) && param.plural !== undefined) {

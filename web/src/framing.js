@@ -7,10 +7,10 @@ import { middleOf, reachFrom } from './view.js';
 // direction.
 const NOWHERE = 1e-3;
 
-// Returns a ball around the selected elements and the direction in which they look, {center,
-// radius, normal}; null if nothing is selected. The ball of a single vertex contains its
-// neighbours. `normal` is the mean normal of the selected faces or, if no face is selected, of the
-// faces beside the selection; it is null if these faces have no common direction.
+// Returns {center, radius, normal}, a ball around the selected elements and the direction that they
+// face; null if nothing is selected. The ball of a single vertex contains its neighbours. `normal`
+// is the mean normal of the selected faces or, if no face is selected, of the faces beside the
+// selection; it is null if these faces have no common direction.
 export function framing(geometry, selection) {
     const marks = selection.marksIn(geometry);
     const arrows = selection.arrowsIn(geometry);

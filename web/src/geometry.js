@@ -87,8 +87,8 @@ export function wholeRows(array) {
 }
 
 // Returns a ball around all vertices that are not deleted: the middle of their bounding box, and
-// the distance from there to the farthest. The radius is never 0, because the camera must stand
-// outside the ball.
+// the distance from there to the farthest vertex. The radius is never 0, because the camera must
+// stand outside the ball.
 export function ballOf({ vertices }) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];

@@ -21,9 +21,9 @@ const ROW_BYTES = 16;
 // `rowTexels` texels.
 //
 // Returns {vertices, triangles, grown}: the indices of the changed rows, as Uint32Arrays, and
-// whether an array was replaced. Returns null, and does nothing, if the answer contains all rows
-// and the geometry must be made from it again. Throws a RangeError, and does nothing, if the answer
-// is no change of this geometry: then everything must be fetched.
+// whether an array was replaced. Returns null, and does nothing, if the answer contains all rows:
+// then the caller must make a new geometry from the answer. Throws a RangeError, and does nothing,
+// if the answer is no change of this geometry: then everything must be fetched.
 export function applyDelta(geometry, buffer, rowTexels = 2048) {
     const header = headerOf(buffer);
     if (header.base === 0) {

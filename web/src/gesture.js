@@ -1,15 +1,17 @@
-// gesture.js - computes what a drag with a tool does to the selected elements: the lines of a
-// preview, and the edit to send. Pure.
+// gesture.js - computes what a drag with a tool does to the selected elements: it returns the lines
+// of a preview and the edit to send to the server. Pure.
 //
 // Points are in view coordinates (see geometry.js); the edit is in coordinates of the mesh.
 
 import { edgesOfTriangles, hasVertex, normalOfFace, pointAt, trianglesOfFace } from './geometry.js';
 import { middleOf, pixelAtOne, reachFrom } from './view.js';
 
-// The amount that a tool applies after a click without a drag, as a part of the selection's size.
+// The amount that a tool applies after a click without a drag, as a fraction of the selection's
+// size.
 const USUAL = 0.2;
 
-// The least and the greatest inset, as parts of the way from the corners of a face to its middle.
+// The least and the greatest inset, as fractions of the way from the corners of a face to its
+// middle.
 const INSET = [0.01, 0.99];
 
 // If a normal of length 1 is shorter than this when projected to the screen, it points almost at
@@ -64,7 +66,7 @@ function endsOf({ kind, id, element }) {
     return kind === 'halfedge' ? [element.origin, element.target] : element.vertices;
 }
 
-// Returns the edges of faces that are sides of triangles at some vertices, at most MOST_LINES.
+// Returns the edges of faces that end at some of the given vertices, at most MOST_LINES edges.
 function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
     // An array is faster than a Set, which matters because millions of triangles are checked.
     const wanted = new Uint8Array(vertexCount);
@@ -80,10 +82,10 @@ function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
     return edgesOfTriangles(triangles, found).slice(0, MOST_LINES);
 }
 
-// Returns what the gesture does if the pointer has moved by (dx, dy) CSS pixels, or, if the
-// movement is null (a click), what it does with the default amount: {operation, lines, text}, where
-// `lines` are pairs of end points of a preview, `text` shows the amount, and the operation is null
-// if it would change nothing. `view` is Renderer.view.
+// Returns what the gesture does if the pointer has moved by (dx, dy) CSS pixels, as {operation,
+// lines, text}. If the movement is null (a click), the gesture applies the default amount. `lines`
+// are the end points of the preview's lines in pairs, `text` shows the amount, and `operation` is
+// null if the edit would change nothing. `view` is Renderer.view.
 export function drag(gesture, view, moved) {
     if (gesture.op === 'vertex_move') {
         return move(gesture, moved === null ? [0, 0, 0] : across(gesture, view, moved));
@@ -126,7 +128,8 @@ function along(gesture, view, [dx, dy]) {
     return (dx * x - dy * y) * pixelOf(gesture, view);
 }
 
-// Returns how far the pointer has moved, as a part of the selection's size, within INSET.
+// Returns how far the pointer has moved, as a fraction of the selection's size, limited to the
+// range INSET.
 function inwards(gesture, view, [dx, dy]) {
     const part = (Math.hypot(dx, dy) * pixelOf(gesture, view)) / (gesture.reach || 1);
     return Math.min(Math.max(part, INSET[0]), INSET[1]);
@@ -168,7 +171,7 @@ function drawOut(gesture, by) {
 }
 
 // Returns the result of extruding faces by a distance: faces that share an edge move together, as
-// with `region` in face_extrude.
+// face_extrude does with its parameter `region`.
 function pull(gesture, length) {
     const { geometry, chosen, op } = gesture;
     const [distance] = inMesh(gesture, [length]);

@@ -51,8 +51,8 @@ export class History {
     async #readOn() {
         const first = this.#shown;
         const page = await this.#readPage(this.#more.dataset.cursor);
-        // If the mesh was edited while the page was read, the list shows a newer history, to which
-        // this page does not belong.
+        // If the mesh was edited while the page was being read, the list already shows a newer
+        // history, and the page is dropped.
         if (this.#shown === first) {
             this.#append(page);
         }

@@ -22,7 +22,7 @@ const LINKS = {
 
 const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'Face' };
 
-// If a member has more ids than this, the further ids are shown after a click on a button.
+// If a member has more ids than this, the rest is shown after a click on a button.
 const MOST = 16;
 
 // The number of digits with which a measure is shown: so few that three measures fit into a line.
@@ -49,8 +49,8 @@ export class Inspector {
         this.#heirOf = heirOf;
     }
 
-    // Shows the element that was selected last, its neighbours, and the selected elements that
-    // other edits have deleted, see selection.js.
+    // Shows the element that was selected last, its neighbours, and those selected elements that
+    // were deleted by edits of the mesh, see selection.js.
     show({ chosen: selection, around, gone }) {
         const last = selection.at(-1);
         this.#gone.hidden = gone.length === 0;

@@ -3,7 +3,8 @@
 
 import { make } from './dom.js';
 
-// Each row is [keys as shown, key as in events, description, member of `acts`].
+// Each row is [the keys as the list shows them, the key in the notation of listenToKeys(),
+// description, name of the function in `acts`].
 const KEYS = [
     ['1', '1', 'Pick vertices', 'pickVertex'],
     ['2', '2', 'Pick edges', 'pickEdge'],
@@ -26,7 +27,7 @@ const KEYS = [
     ['Esc', 'escape', 'Cancel, or clear the selection', 'clear'],
 ];
 
-// Listens to the keys; `acts` has the function that each key calls.
+// Listens to the keys; `acts` has the functions that the keys call.
 export function listenToKeys(canvas, acts) {
     canvas.addEventListener('keydown', (event) => {
         const control = event.ctrlKey || event.metaKey;

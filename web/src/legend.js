@@ -4,7 +4,7 @@
 import { formatMeasure, make } from './dom.js';
 import { toScreen } from './materials.js';
 
-// If there are more materials than this, the further materials are shown after a click on a button.
+// If there are more materials than this, the rest is shown after a click on a button.
 const MOST = 50;
 
 export class Legend {

@@ -2,15 +2,15 @@
 //
 // A level is a coarse mesh, the base, with some of the vertex splits that refine it applied. Unlike
 // in geometry.js, the index of a vertex is not its id: vertices and triangles are in the order in
-// which they arrive. A level shows a number of both from the first on, and the next level adds a
-// vertex and its triangles. A split also changes what was there: the vertex that is split moves,
-// and some triangles get the new vertex as a corner. These values are exchanged with those of the
-// next level, so undoing the split exchanges them back.
+// which they arrive. A level consists of the first vertices and the first triangles in this order,
+// and the next level adds one vertex and its triangles. A split also changes earlier entries: the
+// vertex that is split moves, and some triangles get the new vertex as a corner. Applying a split
+// exchanges such entries with stored ones, and undoing it exchanges them back.
 
 import { ROW, VERTEX_ISOLATED, VERTEX_USED, wholeRows } from './geometry.js';
 import { unreadable } from './progressive.js';
 
-// The bits that say that all three sides of a triangle are edges.
+// The bits of a triangle's fourth word which say that all three sides are edges.
 const SIDES = 7 << 29;
 
 // Changed texels are recorded in blocks of this many texels. ROW is a multiple of this number, so
@@ -31,9 +31,10 @@ export class Levels {
     #placeOf; // index + 1 of each vertex by its id; #triangleOf has those of triangles
     #triangleOf;
     #faces = 0;
-    // One entry for each split: the vertex that is split and, while the split is applied, its
-    // position before, otherwise its position after; and where the lists of the triangles end that
-    // the split changes (in #moved) and adds.
+    // One entry of each array for each split. #from: the vertex that is split. #other: its position
+    // before the split if the split is applied, else its position after it. #movedEnd: where the
+    // list of the triangles that the split changes ends in #moved. #faceEnd: the number of
+    // triangles that exist after the split.
     #from;
     #other;
     #movedEnd;
@@ -41,8 +42,8 @@ export class Levels {
     #moved = new Uint32Array(1024);
     #changed;
 
-    // The first argument has the counts that ProgressiveReader passes to `begin`, the second the
-    // offset and the scale of the mesh's geometry, see `frame` in geometry.js.
+    // The first argument has the counts that ProgressiveReader passes to `begin`, the second is the
+    // `frame` of the mesh's geometry (offset and scale), see geometry.js.
     constructor({ vertices, faces, splits, vertexIds, faceIds }, { origin, scale }) {
         [this.#origin, this.#scale] = [origin, scale];
         this.#base = { vertices, faces };
@@ -171,7 +172,8 @@ export class Levels {
         return this.#find(this.#placeOf, id);
     }
 
-    // Returns the index of the element with this id. Throws a RangeError if it has not arrived.
+    // Returns the index of the element with this id. Throws a RangeError if this element has not
+    // arrived.
     #find(places, id) {
         if (!(places[id] > 0)) {
             throw unreadable();
@@ -230,7 +232,7 @@ export class Levels {
 }
 
 // Records which blocks of texels of an array have changed since they were uploaded to graphics
-// memory, among those that are shown.
+// memory, considering only the texels of the present level.
 class Changes {
     #blocks;
     #shown = 0; // number of texels shown at the last call of take(); later ones may be outdated

@@ -1,7 +1,8 @@
 // lineage.js - remembers which elements have replaced deleted elements, as far as edits have
 // reported it. Pure.
 
-// Each map of replaced elements holds at most this many entries; the oldest entries are forgotten.
+// The maximum number of entries in each map of replaced elements; beyond it the oldest entries are
+// dropped.
 const MOST = 10000;
 
 const KINDS = { vertices: 'vertex', edges: 'edge', faces: 'face' };

@@ -27,6 +27,6 @@ export function formatLink({ mesh, kind, id, camera }) {
     if (camera) {
         members.set('camera', camera.map((value) => Number(value.toPrecision(6))).join());
     }
-    // A fragment may contain commas without escaping.
+    // A fragment may contain commas, so they are not escaped.
     return `#${members}`.replaceAll('%2C', ',');
 }

@@ -1,5 +1,5 @@
-// live.js - the event stream of a mesh, which reports edits of all clients. It is opened again when
-// it ends, unless the mesh was deleted. This module does not touch the page.
+// live.js - the event stream of a mesh, which reports edits of all clients. When the stream ends it
+// is opened again, unless the mesh was deleted. This module does not touch the page.
 //
 //            first open         ends            opens
 //   opening ------------> on ---------> lost ---------> on ...

@@ -206,7 +206,8 @@ function showSelection() {
     address.write();
 }
 
-// Shows the materials. `change` is a result of Materials.note(), or null if any may have changed.
+// Shows the materials. `change` is a result of Materials.note(), or null if all materials may have
+// changed.
 function showMaterials(change) {
     const { materials } = session;
     if (change === null) {
@@ -239,8 +240,8 @@ function showWhatMayBeDone() {
     history.setEnabled(ready);
 }
 
-// Ends the showing of levels of detail. It is called when another mesh or revision is shown, to
-// which the levels do not belong.
+// Ends the showing of levels of detail. It is called when another mesh or revision is shown,
+// because the levels belong to the earlier one.
 function endLevels() {
     refining.end();
     if (session.loading === null) {

@@ -56,8 +56,9 @@ export class Materials {
         return this.#names[this.labels[face] ?? this.#fallback] ?? '';
     }
 
-    // Reads all materials from the server. Edits passed to note() meanwhile are applied afterwards.
-    // If read() is called again before it has ended, only the later call counts.
+    // Reads all materials from the server. Edits that are passed to note() during the reading are
+    // applied afterwards. If read() is called again before it has ended, only the later call
+    // counts.
     async read(signal) {
         const reading = {};
         this.#reading = reading;
@@ -79,8 +80,8 @@ export class Materials {
         held.forEach((edit) => this.note(edit));
     }
 
-    // Applies an edit event. Returns the argument for Surface.updateMaterials(), or null if nothing
-    // changed.
+    // Applies an edit event to the materials. Returns the argument for Surface.updateMaterials(),
+    // or null if nothing changed.
     note(edit) {
         if (this.#held !== null) {
             this.#held.push(edit);
@@ -179,7 +180,7 @@ async function readAll(mesh, signal) {
             return { revision, materials, column, values };
         } catch (error) {
             // With 410 the server says that it no longer has this revision, because the mesh was
-            // edited meanwhile: then the newest revision is read.
+            // edited meanwhile: then the materials of the newest revision are read.
             if (error.status !== 410 || tries === TRIES) {
                 throw error;
             }

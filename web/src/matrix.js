@@ -18,8 +18,8 @@ class Steps {
     #vectors;
     #about;
 
-    // `pickable(name, control)` returns a control's node with a button after which a click in the
-    // view fills the control.
+    // `pickable(name, control)` returns an element with the control's node and a button; after a
+    // click on the button, a click in the view fills the control.
     constructor(pickable) {
         const all = [...STEPS, ['about', 'Around the point', 0]];
         this.#vectors = Object.fromEntries(

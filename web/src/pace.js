@@ -2,8 +2,8 @@
 // to play all levels from coarse to fine. Pure.
 //
 // Each step of the slider refines a mesh by about the same part of its faces, because that is what
-// the eye notices. If there are few levels, each has a position; of many levels, the fine ones
-// share positions.
+// the eye notices. If there are few levels, each has its own position of the slider; if there are
+// many, several fine levels share a position.
 
 // The largest position of the slider; the smallest is 0.
 const MOST = 1000;
@@ -40,8 +40,8 @@ export class Pace {
         }
         const faces = this.#faces * this.#growth ** (position / this.positions);
         const level = Math.round((faces - this.#faces) / FACES);
-        // The result is at least the position itself, so that different positions of the slider
-        // have different levels.
+        // The result is at least the whole part of the position, so that two positions which are
+        // whole numbers show different levels.
         return Math.min(Math.max(level, Math.floor(position)), this.#levels);
     }
 

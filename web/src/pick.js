@@ -1,9 +1,10 @@
 // pick.js - chooses one element from the contents of the id buffer around the pointer. Pure.
 //
-// The id buffer is an image in which each pixel has the id of what is visible there. From it the
-// renderer reads which triangles and vertices are near the pointer. In edge mode only edges can be
-// picked, in vertex mode only vertices, and so on. If an edge or a vertex is visible near the
-// pointer, it is chosen; otherwise an edge or a corner of the face under the pointer.
+// The id buffer is an image in which each pixel has the kind and the id of the element that is
+// visible there. From it the renderer reads which triangles and vertices are near the pointer. In
+// edge mode only edges can be picked, in vertex mode only vertices, and so on. In these two modes a
+// visible edge or vertex near the pointer is chosen; if there is none, an edge or a corner of the
+// face under the pointer.
 
 import { edgesOfTriangles, faceOf, pointAt, trianglesOfFace } from './geometry.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
@@ -16,9 +17,10 @@ const TRIANGLE = 1;
 const VERTEX = 2;
 
 // Returns which elements a square of `size` x `size` pixels of the id buffer contains: {under,
-// away, triangles, vertices}. `triangles` and `vertices` are indices, nearest to the middle of the
-// square first; `under` is the nearest triangle, or -1 if there is none, and `away` its distance in
-// pixels. `ids` has four numbers for each pixel: kind, id, 0, 0.
+// away, triangles, vertices}. `triangles` and `vertices` are lists of indices, sorted by distance
+// from the middle of the square; `under` is the triangle nearest to the middle, or -1 if there is
+// none, and `away` is its distance in pixels. `ids` has four numbers for each pixel: kind, id, 0,
+// 0.
 export function readSquare(ids, size) {
     const radius = (size - 1) / 2;
     const found = [];

@@ -156,7 +156,8 @@ export class ProgressiveReader {
     }
 }
 
-// Returns the error to throw for invalid bytes, also by the functions that receive the rows.
+// Returns the error that is thrown for invalid bytes; the functions that receive the rows throw it,
+// too.
 export function unreadable() {
     return new RangeError('This page cannot read the levels of detail that the server sent.');
 }

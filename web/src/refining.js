@@ -1,6 +1,6 @@
 // refining.js - shows levels of detail of the open mesh: plays them from coarse to fine as they
 // arrive, and has a slider to choose one. While a level is shown nothing can be picked or edited,
-// because the elements of the level are not those of the mesh.
+// because the elements of a level are not elements of the mesh.
 
 import * as api from './api.js';
 import { formatCount } from './dom.js';
@@ -35,8 +35,8 @@ export class Refining {
     // `button` begins and ends the showing of levels; `box` is shown meanwhile and contains
     // `slider`, `faces` (the number of faces shown), `hint`, `progress` (what has arrived), `play`
     // and `done`. `onBegin()` is called when the coarsest level is shown, `onEnd()` when the mesh
-    // is to be shown again, `onStale()` if the showing ends because the server sends levels of
-    // another revision than the one shown.
+    // must be shown again, `onStale()` if levels are no longer shown because the server sends
+    // levels of another revision than the one shown.
     constructor(elements, stage, { onBegin, onEnd, onStale, onError }) {
         [this.#elements, this.#stage] = [elements, stage];
         this.#acts = { onBegin, onEnd, onStale, onError };
@@ -48,8 +48,8 @@ export class Refining {
             this.#position = Number(slider.value);
             this.#schedule();
         });
-        // The Esc key must also work while the focus is on the button, until the coarsest level is
-        // shown.
+        // Until the coarsest level is shown, the focus may be on the button, so the Esc key must
+        // work there, too.
         for (const element of [button, box]) {
             element.addEventListener('keydown', (event) => {
                 if (event.key === 'Escape') {
@@ -69,7 +69,7 @@ export class Refining {
         return this.#mesh !== null;
     }
 
-    // Reads the levels of the mesh in a Content and plays them as they arrive.
+    // Reads the levels of the mesh in a Content (see revision.js) and plays them as they arrive.
     async begin({ mesh, revision, geometry, summary }) {
         this.end();
         const reading = new AbortController();

@@ -1,5 +1,6 @@
-// revision.js - reads and updates everything that is shown of a mesh, a Content. Only this module
-// decides which arrays and which answers of the server belong together. Its members are
+// revision.js - reads and updates all data of a mesh that the page shows, an object of class
+// Content. Only this module decides which arrays and which answers of the server belong together.
+// Its members are
 //
 //   mesh        the id of the mesh
 //   geometry    the arrays to draw, see geometry.js; changes are applied to them in place
@@ -53,14 +54,15 @@ export class Content {
         return this.geometry.triangleCount > LARGE;
     }
 
-    // Whether summary and boundary are of the revision that is shown, or newer.
+    // Whether `summary` and `boundary` belong to the revision that is shown, or to a newer one.
     get hasFacts() {
         return this.summary.revision >= this.revision;
     }
 
-    // Reads what has changed in the arrays, or all arrays (`whole`). The returned function puts it
-    // into the Content and returns the result of applyDelta(), or null if all arrays are new. It
-    // throws a RangeError if the changes belong to other arrays: then all arrays must be read.
+    // Reads the changes of the arrays or, if `whole` is true, all arrays. The returned function
+    // puts them into the Content and returns the result of applyDelta(), or null if all arrays are
+    // new. The function throws a RangeError if the changes do not belong to the present arrays:
+    // then all arrays must be read.
     async readGeometry(whole) {
         if (whole) {
             const buffer = await api.getGeometry(this.mesh, () => {});

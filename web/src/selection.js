@@ -1,8 +1,9 @@
 // selection.js - the selected elements of a mesh, which stay selected while the mesh changes. This
 // module does not touch the page.
 //
-// While an element is being read from the server, the user may select another one, and the mesh may
-// change. The last selection counts, and is read again if the mesh has changed since.
+// While a selected element is being read from the server, the user may select another one, and the
+// mesh may change. Only the last selection counts; its elements are read again if the mesh has
+// changed.
 
 import * as api from './api.js';
 import { describe } from './around.js';
@@ -24,7 +25,7 @@ export class Selection {
         this.#onChange = onChange;
     }
 
-    // Starts with an empty selection in a mesh.
+    // Clears the selection, and from then on selects elements of another mesh.
     reset(mesh) {
         this.#mesh = mesh;
         this.#choice++;
@@ -35,7 +36,8 @@ export class Selection {
         return this.chosen.at(-1);
     }
 
-    // Selects an element; `also`: elements of its kind that were selected before stay selected.
+    // Selects an element; if `also` is true, elements of the same kind that were selected before
+    // stay selected.
     async select(kind, id, also = false) {
         const choice = ++this.#choice;
         const change = this.#change;
@@ -46,8 +48,8 @@ export class Selection {
         } finally {
             if (choice === this.#choice) {
                 this.#take(kind, id, also, read);
-                // The other selected elements, or the answers that were just read about this
-                // element, may be outdated by now.
+                // If the mesh has changed meanwhile, the other selected elements, or the answers
+                // about this element, are outdated and read again.
                 if (change !== this.#change || this.#seen !== this.#change) {
                     await this.#readAgain();
                 }
@@ -106,8 +108,8 @@ export class Selection {
     }
 
     // Called when the mesh has changed: reads the selected elements again. Returns a function that
-    // puts them into this object, which does nothing if the user selected something else or the
-    // mesh changed again meanwhile.
+    // puts the results into this object; it does nothing if the user has selected something else or
+    // the mesh has changed again.
     async read() {
         const change = ++this.#change;
         const choice = this.#choice;

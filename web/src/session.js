@@ -27,8 +27,8 @@ export class Session {
     #onError;
     #withBoundary = true;
     #opening = null;
-    // What is kept about the open mesh beside its Content: {live, latest, hasMissed, lineage,
-    // materials}; `latest` is its newest revision as far as events and answers have told,
+    // What is stored about the open mesh in addition to its Content: {live, latest, hasMissed,
+    // lineage, materials}; `latest` is the newest revision that events and answers have named,
     // `hasMissed` says that events may have been missed.
     #followed = null;
     #running = null; // promise of #fetchAll() while it fetches changes
@@ -122,8 +122,8 @@ export class Session {
         return followed;
     }
 
-    // If events may have been missed, fetches the changes that these events would have reported.
-    // While the mesh is still being opened, does nothing: open() calls this again at its end.
+    // If events may have been missed, fetches the changes that they would have reported. While the
+    // mesh is still being opened, does nothing: open() calls this again at its end.
     #catchUp(followed) {
         if (followed.hasMissed && followed === this.#followed) {
             followed.hasMissed = false;
@@ -139,7 +139,8 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             this.#readMaterials(followed);
-            // If this page itself has replaced the mesh, it may have fetched the new mesh already.
+            // If this page itself has replaced the mesh, it may have fetched the new mesh before
+            // this event.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });
@@ -175,16 +176,17 @@ export class Session {
             return;
         }
         this.#fetch(wanted).catch((error) => {
-            // Without a connection the event stream ends, too. The page shows that the connection
-            // is lost, so it shows no error of this request.
+            // The request failed because the connection is lost. The event stream then ends, too,
+            // and the page shows the lost connection, so it shows no error of this request.
             if (error.status !== 0) {
                 this.#onError(error);
             }
         });
     }
 
-    // Fetches changes until the newest known revision is shown; `once`: makes at least one request;
-    // `whole`: fetches all arrays again. Calls while it is fetching return the same promise.
+    // Fetches changes until the newest known revision is shown; `once` makes it send at least one
+    // request; `whole` makes it fetch all arrays again. A call during a fetch returns the promise
+    // of that fetch.
     #fetch({ once = false, whole = false }) {
         this.#wanted.once ||= once;
         this.#wanted.whole ||= whole;
@@ -202,7 +204,7 @@ export class Session {
             try {
                 await this.#advance(whole);
             } catch (error) {
-                // The changes belong to other arrays than those shown, for example because the mesh
+                // The changes belong to arrays other than those shown, for example because the mesh
                 // was replaced: then all arrays are fetched.
                 if (whole || !(error instanceof RangeError || error.status === 400)) {
                     throw error;

@@ -22,8 +22,8 @@ export class Stage {
 
     // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
     // for the kind of element to pick. `geometry()` returns the arrays that are shown, or null.
-    // `onPick(chosen, also)` is called after a click with the result of choose(); `also`: the Shift
-    // key was held. `onRest()` is called when the camera has come to rest.
+    // `onPick(chosen, also)` is called after a click with the result of choose(); `also` says that
+    // the Shift key was held. `onRest()` is called when the camera has come to rest.
     constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;
@@ -61,13 +61,15 @@ export class Stage {
         this.#draw(label, () => this.#renderer?.show(geometry, label));
     }
 
-    // Called when the arrays were changed, see applyDelta(): draws the change.
+    // Called when the arrays were changed; the arguments are as in applyDelta(). Draws the changed
+    // mesh.
     update(change, label) {
         this.#draw(label, () => this.#renderer?.update(change, label));
     }
 
     // Shows a level of detail until the mesh is shown again. Nothing can be picked or marked in the
-    // level. Throws a RangeError if it is too large; then the mesh shown before stays.
+    // level. Throws a RangeError if it is too large; then the mesh that was shown before stays
+    // visible.
     showLevel(geometry, label) {
         this.#renderer.show(geometry, label);
         this.#isLevel = true;
@@ -99,8 +101,8 @@ export class Stage {
         }
     }
 
-    // The renderer if the mesh is drawn and marks can be drawn on it, or null. See Renderer for the
-    // marks.
+    // The renderer if the mesh is drawn and marks can be drawn on it, or null. Renderer has the
+    // functions that draw the marks.
     get #marked() {
         return this.#isLevel ? null : this.#renderer;
     }
@@ -145,7 +147,8 @@ export class Stage {
         this.#renderer?.fit();
     }
 
-    // Moves the camera to the ball that framing() returned, or to the whole mesh (null).
+    // Moves the camera so that it sees the ball that framing() returned or, if it is null, the
+    // whole mesh.
     frame(found) {
         if (found === null) {
             this.#renderer?.fit();

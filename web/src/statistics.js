@@ -43,7 +43,8 @@ function factsOf({ counts, euler, genus, closed, manifold, degrees, area, volume
     return rows.map(([name, title, value]) => pair('div', name, title, value));
 }
 
-// Returns how many faces have how many corners, as in "12 × 3, 6 × 4".
+// Returns the numbers of faces by number of corners, as in "12 × 3, 6 × 4": 12 triangles and 6
+// faces with 4 corners.
 function degreesOf(degrees) {
     const parts = Object.entries(degrees).map(
         ([degree, count]) => `${formatCount(count)} \u00d7 ${degree}`,

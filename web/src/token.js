@@ -22,9 +22,9 @@ export function askBy(show) {
     ask = show;
 }
 
-// Called when the server has refused the token `refused`, or a request without one (null). Returns
-// whether there is another token to try. The user is asked only once, however many requests are
-// refused at a time.
+// Called when the server has refused the token `refused`, or a request without a token (null).
+// `reason` says why this token is of no use. Returns whether there is now another token to try. If
+// several requests are refused at once, the user is asked only once.
 export async function renewToken(refused, reason = UNKNOWN) {
     if (token() === refused) {
         asked ??= ask(refused === null ? '' : reason).finally(() => {

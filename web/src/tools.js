@@ -17,7 +17,7 @@ import {
     readField,
 } from './fields.js';
 
-// The function, by kind of element, that returns the ids of those elements of this kind to which a
+// By kind of element: the function that returns the ids of the elements of this kind to which a
 // selected element of another kind refers.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
@@ -138,8 +138,8 @@ export class Tools {
         this.#onArm(param && { name: param.name, kind: kindOf(param), isList: isList(param) });
     }
 
-    // Called when the user has typed into a field. If its parameter is one of several alternatives,
-    // the fields of the other alternatives are cleared.
+    // Called when the user has typed into a field. If the parameter of the field is one of several
+    // alternatives, the fields of the other alternatives are cleared.
     #typed(target) {
         const field = this.#fields.get(target.closest('.field').dataset.name);
         const { group } = field.param;
@@ -168,8 +168,8 @@ export class Tools {
         }
     }
 
-    // The elements that the form's fields name, {kind, id} each; none until the user has chosen an
-    // operation.
+    // The elements that the form's fields name, {kind, id} each; the list is empty until the user
+    // has chosen an operation.
     get elements() {
         const fields = this.#isChosen ? [...this.#fields.values()] : [];
         return fields
@@ -355,7 +355,8 @@ function keyOf(selection) {
     return selection.map(({ kind, id }) => `${kind}:${id}`).join();
 }
 
-// Returns whether an operation deletes elements; such an operation is never preselected.
+// Returns whether an operation deletes elements; the page never selects such an operation by
+// itself.
 function isDeletion({ name }) {
     return name.endsWith('_delete');
 }

@@ -20,8 +20,8 @@ export class Trial {
         this.#attempt = attempt;
     }
 
-    // Makes a dry run of an operation soon; only the last call counts. `operation` is null if the
-    // form is incomplete: then nothing is shown.
+    // Makes a dry run of an operation after DELAY; a later call replaces it. `operation` is null if
+    // the form is incomplete: then nothing is shown.
     ask(operation) {
         this.clear();
         this.#asked = operation;
@@ -64,7 +64,7 @@ export class Trial {
                 this.#say(words, false);
             }
         } catch (error) {
-            // A lost connection (status 0) is shown in the page's bar, so it is not shown in the
+            // Status 0 means a lost connection, which the page shows in its bar and not in the
             // form.
             if (!running.signal.aborted && error.status !== 0) {
                 this.#sayRefused(error);

@@ -15,9 +15,9 @@ export class Uploads {
 
     // `send(batch, onProgress, work, repairs)` uploads one batch, see batches.js; `onDone(summary,
     // file)` is called with the summary of the new mesh; `work` shows the progress, see work.js.
-    // `onError(error, again)` is called if an upload fails; if the file could be read with repairs,
-    // `again` is {label, run}, where run() uploads it again with these repairs. Nothing can be
-    // dropped on the page while `isOpen()` is false.
+    // `onError(error, again)` is called if an upload fails; if the server could read the file with
+    // repairs, `again` is {label, run}, where run() uploads the file again with these repairs.
+    // Nothing can be dropped on the page while `isOpen()` is false.
     constructor({ input, work, area }, { isOpen, send, onDone, onError }) {
         this.#work = work;
         this.#isOpen = isOpen;

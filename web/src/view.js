@@ -15,8 +15,8 @@ function unit(vector) {
     return vector.map((value) => value / length);
 }
 
-// Returns how far from the middle of a ball the camera must be to see the whole ball in a canvas of
-// width / height = aspect; the unit is the radius of the ball.
+// Returns how far from the middle of a ball the camera must be to see the whole ball in a canvas
+// whose width / height is `aspect`; the unit is the radius of the ball.
 export function fitDistance(aspect) {
     const vertical = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const narrow = Math.atan(vertical * Math.min(aspect, 1));
@@ -47,9 +47,10 @@ export function reachFrom(place, points) {
 // the camera is at least this.
 const LEAST_SEEN = 0.3;
 
-// Returns a direction from which a surface with this normal is visible; all directions have length
-// 1 and point to the camera. Returns `direction` itself if the surface is visible from there, or if
-// `normal` is null; otherwise a direction near the normal that leans towards `direction`.
+// Returns a direction from which a surface with this normal is visible; all directions are vectors
+// of length 1 that point towards the camera. Returns `direction` itself if the surface is visible
+// from there, or if `normal` is null; otherwise a direction near the normal that leans towards
+// `direction`.
 export function turnTo(direction, normal) {
     if (normal === null) {
         return direction;
@@ -84,7 +85,8 @@ function toScreen(clip, width, height) {
 // A point is on the screen only if it is at least this far in front of the camera.
 const NEAREST = 1e-6;
 
-// Returns the distance in pixels from (x, y) to a point; Infinity if it is behind the camera.
+// Returns the distance in pixels from (x, y) to a point; Infinity if that point is behind the
+// camera.
 export function distanceToPoint(matrix, width, height, point, x, y) {
     const clip = toClip(matrix, point);
     if (clip[3] < NEAREST) {
@@ -94,8 +96,8 @@ export function distanceToPoint(matrix, width, height, point, x, y) {
     return Math.hypot(px - x, py - y);
 }
 
-// Returns the distance in pixels from (x, y) to the part of a segment that is in front of the
-// camera.
+// Returns the distance in pixels from (x, y) on the screen to the part of a segment that is in
+// front of the camera.
 export function distanceToSegment(matrix, width, height, from, to, x, y) {
     let a = toClip(matrix, from);
     let b = toClip(matrix, to);

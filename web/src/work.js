@@ -14,8 +14,8 @@ export class Work {
         button.addEventListener('click', () => this.#giveUp());
     }
 
-    // Called before work begins. If `isShown` is true, the work is shown at once; otherwise only
-    // from begin() on.
+    // Called before work begins. If `isShown` is true, the work is shown at once; otherwise it is
+    // shown only when begin() is called.
     start(title, isShown) {
         const { box, label, progress, button } = this.#elements;
         this.#title = title;

@@ -1,6 +1,6 @@
-/* ours.h - what the rows of the kernel's program in the benchmark share. A row measures the work
- * between two calls of bench_seconds; preparation before and comparison afterwards are not
- * measured. */
+/* ours.h - functions for all rows (benchmark tasks) in the program that runs hedge's kernel. A row
+ * measures its work between two calls of bench_seconds; what it prepares before and compares
+ * afterwards is not measured. */
 #ifndef TESTS_BENCH_OURS_OURS_H
 #define TESTS_BENCH_OURS_OURS_H
 
@@ -21,7 +21,7 @@ extern const bench_row bench_memory_rows[];
 extern const bench_row bench_growth_rows[];
 extern const bench_row bench_stored_rows[];
 
-/* Ends the program, and prints the title of the status, unless it is HE_OK. */
+/* Ends the program if the status is not HE_OK, and prints the title of the status. */
 void bench_require(he_status status);
 /* Returns the input as a soup that borrows the arrays of the input, so it must not be cleared. */
 he_soup bench_soup(const bench_side *side);

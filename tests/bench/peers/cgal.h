@@ -1,4 +1,5 @@
-/* cgal.h - what the rows of CGAL's program in the benchmark share: a Surface_mesh with doubles. */
+/* cgal.h - types and functions for all rows (benchmark tasks) in the program that runs CGAL; its
+ * mesh is a Surface_mesh with doubles. */
 #ifndef TESTS_BENCH_PEERS_CGAL_H
 #define TESTS_BENCH_PEERS_CGAL_H
 

@@ -1,5 +1,5 @@
-/* openmesh.h - what the rows of OpenMesh's program in the benchmark share. Positions and normals
- * are doubles, as ours are. */
+/* openmesh.h - types and functions for all rows (benchmark tasks) in the program that runs
+ * OpenMesh. Positions and normals are doubles, as in hedge. */
 #ifndef TESTS_BENCH_PEERS_OPENMESH_H
 #define TESTS_BENCH_PEERS_OPENMESH_H
 
@@ -67,8 +67,8 @@ template <class Mesh> uint64_t mesh_hash(const Mesh &mesh)
     return counts(mesh, hash);
 }
 
-/* Returns the mesh of the input, which the first call makes. A program uses only one kind of
- * mesh. */
+/* Returns the mesh of the input, which the first call makes. A program may call it for only one
+ * type of mesh. */
 template <class Mesh> Mesh &mesh_of(bench_side *side)
 {
     if (side->mesh == nullptr) {

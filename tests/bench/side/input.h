@@ -23,24 +23,26 @@ typedef struct bench_input {
     uint32_t vertices, faces, degree;
 } bench_input;
 
-/* Ends the program with a reason if there is no such input or no memory. */
+/* Makes the input `name`. Ends the program, and prints a reason, if there is no such input or
+ * memory is out. */
 void bench_input_make(const char *name, bool shuffled, uint32_t side, bench_input *out);
 void bench_input_clear(bench_input *input);
 
-/* Makes picks, the half-edges where edits are made, in a random order that is equal in every
- * program: a pick is a face and the index of the corner that the half-edge leaves. No two are of
- * one edge. `count` is the number for a mesh of 1,048,352 faces; for a smaller one it is reduced in
- * proportion. The caller must free the list. */
+/* Makes a list of picks, the half-edges where edits are made, in a random order that is equal in
+ * every program. A pick is a face and the index of the corner that the half-edge leaves; no two
+ * picks are on one edge. `count` is the number of picks for a mesh of 1,048,352 faces; for a
+ * smaller mesh the number is reduced in proportion. The caller must free the list. */
 typedef struct bench_pick {
     uint32_t face, corner;
 } bench_pick;
 
 bench_pick *bench_picks(const bench_input *input, uint32_t *count);
 
-/* Returns a hash of a face. The sum over all faces is equal for two meshes with equal faces,
- * whatever the order of the faces and the first corner of each. */
+/* Returns a hash of a face. The sum over all faces is equal for two meshes that have the same
+ * faces, whatever the order of the faces and the first corner of each. */
 uint64_t bench_face_hash(const uint32_t *vertices, size_t degree);
-/* Returns a hash of a vertex's position, to compare meshes whose vertex ids differ. */
+/* Returns a hash of a vertex's position; with it, meshes whose vertex ids differ can be
+ * compared. */
 uint32_t bench_place_hash(double x, double y, double z);
 
 #endif

@@ -1,5 +1,5 @@
-/* side.h - the frame of one program in the benchmark; compare.mjs starts the programs and compares
- * what they print.
+/* side.h - the main loop of each program in the benchmark, one for each library; compare.mjs starts
+ * the programs and compares what they print.
  *
  *     PROGRAM INPUT natural|shuffled SIDE FOLDER
  *
@@ -35,7 +35,8 @@ typedef struct bench_result {
     bool has_exact, has_near;
 } bench_result;
 
-/* The argument of the function that runs a row. The program keeps `mesh` between rows. */
+/* The argument of the function that runs a row. `mesh` belongs to the program and stays as it is
+ * between rows. */
 typedef struct bench_side {
     bench_input input;
     const char *folder;

@@ -14,8 +14,8 @@ export class Camera {
     #canvas;
     #controls;
 
-    // `onMove(isHeld)` is called each time the camera has moved, and when the user releases it;
-    // `isHeld`: a pointer or a finger is still dragging.
+    // `onMove(isHeld)` is called each time the camera has moved, and when the user ends a drag;
+    // `isHeld` says that a pointer or finger is still dragging the camera.
     constructor(canvas, onMove) {
         this.#canvas = canvas;
         this.three.up.set(...UP);
@@ -42,8 +42,8 @@ export class Camera {
         this.three.updateProjectionMatrix();
     }
 
-    // Moves the camera so that it sees a whole ball; `direction`, a vector of length 1, points from
-    // the ball to the camera.
+    // Moves the camera so that it sees a whole ball; `direction` is the vector of length 1 from the
+    // ball towards the camera.
     look(center, direction, radius) {
         const distance = fitDistance(this.three.aspect) * radius;
         this.#controls.target.set(...center);
@@ -52,9 +52,9 @@ export class Camera {
         this.#controls.update();
     }
 
-    // Moves the camera so that it sees a ball and what is around it. `normal` is the direction in
-    // which the surface in the ball looks, or null. If the camera sees the front of that surface,
-    // it comes closer from where it is; otherwise it goes around to the front.
+    // Moves the camera so that it sees a ball and what is around it. `normal` is the normal of the
+    // surface in the ball, or null. If the camera is on the front side of that surface, it keeps
+    // its direction; otherwise it moves around to the front side.
     frame({ center, radius, normal }) {
         const away = this.three.position.clone().sub(this.#controls.target).normalize();
         const direction = turnTo(away.toArray(), normal);
@@ -99,8 +99,8 @@ export class Camera {
         ).elements;
     }
 
-    // Sets the near and the far plane close to the mesh, which is within 1 of the origin: the
-    // smaller the range, the more exact is the depth buffer.
+    // Sets the near and the far plane close to the mesh, which lies within distance 1 of the
+    // origin, because the depth buffer is more exact if these planes are close together.
     setDepthRange() {
         const distance = this.three.position.length();
         const near = 0.02 * this.#controls.getDistance();

@@ -30,7 +30,7 @@ const CHOSEN = 0xffb347;
 const CHOSEN_START = 0x7a4a10; // colour at the origin of a selected half-edge
 const BOUNDARY = 0x35d0e6;
 const PREVIEW = 0xf4f6fa;
-// Colours of half-edges by their role, see around.js; also in style/details.css.
+// Colours of half-edges by their role, see around.js; style/details.css has the same colours.
 const ARROWS = {
     self: 0xffb347,
     next: 0x6be675,
@@ -97,7 +97,8 @@ export class Marks {
         this.select([], []);
     }
 
-    // Marks the selected elements and draws half-edges as arrows, see Renderer.select().
+    // Marks the selected elements and draws half-edges as arrows; the arguments are as in
+    // Renderer.select().
     select(marks, halfedges) {
         if (this.#geometry === null) {
             [marks, halfedges] = [[], []];
@@ -118,7 +119,8 @@ export class Marks {
         this.#setArrows(halfedges);
     }
 
-    // Outlines the elements that the fields of a form name; `marks` are as in select().
+    // Outlines the elements that the fields of a form name; `marks` has the form of the argument of
+    // select().
     setField(marks) {
         const edges = marks.flatMap(({ kind, id, from, to }) => {
             if (kind === 'face') {
@@ -141,8 +143,8 @@ export class Marks {
         replace(this.preview, geometry, (coordinates?.length ?? 0) > 0);
     }
 
-    // Draws the edges of boundary loops; `ends` are the ids of their vertices in pairs. The ids may
-    // be from an earlier revision, so edges whose vertices were deleted are left out.
+    // Draws the edges of boundary loops; `ends` are the ids of the edges' vertices in pairs. The
+    // ids may be from an earlier revision, so edges whose vertices were deleted are left out.
     setBoundary(ends) {
         const live = [];
         for (let i = 0; this.#geometry !== null && i < ends.length; i += 2) {
@@ -215,8 +217,8 @@ export class Marks {
         replace(dots, geometry, points.length > 0);
     }
 
-    // `ratio` is the number of screen pixels per CSS pixel, `height` the canvas height in CSS
-    // pixels.
+    // Sets the size of the picture: `ratio` is the number of screen pixels per CSS pixel, `height`
+    // the height of the canvas in CSS pixels.
     setScreen(ratio, height) {
         for (const { material } of [this.vertices, this.fieldVertices]) {
             material.uniforms.size.value = MARK_SIZE * ratio;

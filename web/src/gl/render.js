@@ -91,7 +91,7 @@ export class Renderer {
     }
 
     // Shows a mesh, or nothing (null). `label` is passed to onFrame. Throws a RangeError if the
-    // mesh is too large for a texture; then the mesh shown before stays.
+    // mesh is too large for a texture; then the mesh that was shown before stays visible.
     show(geometry, label) {
         this.#surface.show(geometry);
         this.#geometry = geometry;
@@ -112,7 +112,7 @@ export class Renderer {
     }
 
     // Called when another level of detail is to be shown: the arrays have changed within `ranges`,
-    // and their counts have changed, see Levels.
+    // and the numbers of vertices and triangles have changed, see Levels.
     refine(ranges, label) {
         this.#surface.refine(ranges);
         this.#label = label;
@@ -140,15 +140,16 @@ export class Renderer {
     }
 
     // Marks the selected elements, each {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to}
-    // or {kind: 'vertex', id}, and draws `halfedges` as arrows, see around.js. Both replace those
-    // of earlier calls.
+    // or {kind: 'vertex', id}, and draws `halfedges` as arrows, see around.js. These marks and
+    // arrows replace those of earlier calls.
     select(marks, halfedges, label) {
         this.#label = label;
         this.#marks.select(marks, halfedges);
         this.#draw();
     }
 
-    // Marks the elements that the fields of a form name; `marks` are as in select().
+    // Marks the elements that the fields of a form name; `marks` has the form of the argument of
+    // select().
     markField(marks) {
         this.#marks.setField(this.#geometry === null ? [] : marks);
         this.#draw();
@@ -228,7 +229,8 @@ export class Renderer {
     }
 
     // Returns which triangles and vertices are visible within `reach` CSS pixels of a place on the
-    // canvas, in the form of readSquare() in pick.js. Only vertices that are shown as dots count.
+    // canvas, in the form of readSquare() in pick.js. Vertices are included only if they are shown
+    // as dots.
     look(x, y, reach) {
         const ratio = this.#renderer.getPixelRatio();
         const radius = Math.ceil(reach * ratio);
@@ -293,8 +295,8 @@ export class Renderer {
     }
 }
 
-// Adds objects to a scene, to be drawn in this order. Culling is switched off, because three.js
-// cannot compute bounds from positions that are in textures.
+// Adds objects to a scene, to be drawn in this order. View frustum culling is switched off, because
+// three.js cannot compute the bounds of objects whose positions are in textures.
 function add(scene, objects) {
     objects.forEach((object, order) => {
         object.frustumCulled = false;

@@ -5,8 +5,8 @@ import { DataTexture, NearestFilter } from 'three';
 
 import { ROW } from '../geometry.js';
 
-// If more than this part of all texels has changed, the whole texture is uploaded: MANY if single
-// texels have changed, MOST if long ranges of texels have changed.
+// If more than this fraction of all texels has changed, the whole texture is uploaded: the fraction
+// is MANY for changes of single texels, MOST for changes of long ranges.
 const MANY = 1 / 8;
 const MOST = 1 / 2;
 
@@ -48,8 +48,8 @@ export class Rows extends DataTexture {
         if (ranges?.length === 0) {
             return;
         }
-        // The first upload must be of the whole texture: if a range were set now, only that range
-        // would be uploaded.
+        // The first upload must be of the whole texture: with a range set, three.js would upload
+        // only that range.
         if (this.#isSent && ranges !== null) {
             ranges.forEach(([begin, end]) => this.addUpdateRange(4 * begin, 4 * (end - begin)));
         } else {

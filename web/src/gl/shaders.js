@@ -1,5 +1,5 @@
-// shaders.js - the GLSL programs. They read the arrays of geometry.js from two textures by
-// gl_VertexID, so no vertex buffer has to repeat them.
+// shaders.js - the GLSL programs. They read the arrays of geometry.js from two textures at indices
+// made from gl_VertexID, so the arrays need not be repeated in vertex buffers.
 
 const TEXTURES = `
 precision highp float;
@@ -23,8 +23,8 @@ uvec4 triangleAt(int index) {
 `;
 
 // The vertex shader of faces, which runs for each corner of a triangle. `bary` are barycentric
-// coordinates. Normals are computed from derivatives in the fragment shader: otherwise each of the
-// three runs would have to fetch all three corners.
+// coordinates. Normals are computed from derivatives in the fragment shader: a vertex shader would
+// have to fetch all three corners in each of its three runs.
 export const SURFACE_VERTEX = `${TEXTURES}
 uniform usampler2D labels;
 uniform sampler2D palette;
@@ -65,10 +65,10 @@ void main() {
 }
 `;
 
-// The fragment shader of faces, which draws fill and polygon edges in one pass; `chosen`: the face
-// is selected. If a face is translucent, a part of its pixels is discarded in a pattern, so that
-// triangles need not be sorted. The back of a face with a one-sided material is drawn as if it had
-// no material, because the face may be oriented wrongly.
+// The fragment shader of faces, which draws fill and polygon edges in one pass; `chosen` says that
+// the face is selected. If a face is translucent, a part of its pixels is discarded in a pattern,
+// so that triangles need not be sorted. The back of a face with a one-sided material is drawn as if
+// it had no material, because the face may be oriented wrongly.
 export const SURFACE_FRAGMENT = `
 precision highp float;
 precision highp int;
@@ -101,7 +101,7 @@ void main() {
     fill *= light;
     fill = isPainted ? min(fill + glow.rgb, 1.0) : fill;
     float bright = max(max(fill.r, fill.g), fill.b);
-    // Selected faces stay recognizable in the shade.
+    // The colour of selected faces stays recognizable where the shading is dark.
     float chosenness = chosen ? (isPainted ? 0.92 : 0.8) : 0.0;
     fill = mix(fill, CHOSEN * (0.5 + 0.5 * light), chosenness);
 
@@ -112,8 +112,7 @@ void main() {
     vec3 rate = max(sqrt(dx * dx + dy * dy), vec3(1e-9)).zxy;
     vec3 line = 1.0 - smoothstep(edgeWidth - 0.6, edgeWidth + 0.6, bary.zxy / rate);
     line *= vec3(float(sides & 1u), float((sides >> 1) & 1u), float((sides >> 2) & 1u));
-    // Without this, the edges of a triangle that is only a few pixels large would cover it
-    // completely.
+    // Without this, the lines of the edges would cover a triangle that is only a few pixels large.
     line *= smoothstep(1.0, 9.0, 1.0 / rate);
     float drawn = 0.88 * max(max(line.x, line.y), line.z);
     ivec2 place = ivec2(gl_FragCoord.xy) & 3;

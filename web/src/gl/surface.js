@@ -45,7 +45,7 @@ export class Surface {
     #geometry = null;
     #allVertices = false;
 
-    // `mostRows` is the maximum height of a texture.
+    // `mostRows` is the maximum height of a texture in texels.
     constructor(mostRows) {
         this.#mostRows = mostRows;
         const dots = (fragment, uniforms) =>
@@ -68,7 +68,8 @@ export class Surface {
         this.pickDots = new Points(this.dots.geometry, dots(DOT_PICK, dotUniforms));
     }
 
-    // Returns a material that draws triangles; `isChosen`: in the colour of selected faces.
+    // Returns a material for drawing triangles; if `isChosen` is true, it has the colour of
+    // selected faces.
     material(isChosen) {
         const uniforms = { chosen: { value: isChosen }, edgeWidth: this.#edgeWidth };
         return this.#material(SURFACE_FRAGMENT, uniforms);
@@ -96,7 +97,7 @@ export class Surface {
     }
 
     // Shows a mesh, or nothing (null). Throws a RangeError if the mesh is too large for a texture;
-    // then the mesh shown before stays.
+    // then the mesh that was shown before stays visible.
     show(geometry) {
         const arrays = this.#arraysOf(geometry);
         const { vertices, triangles } = this.#textures;
@@ -118,8 +119,8 @@ export class Surface {
         this.#setRanges();
     }
 
-    // Called when the arrays have changed within some ranges, and their counts have changed: see
-    // Levels.takeChanges().
+    // Called when the arrays have changed within some ranges, and the numbers of vertices and
+    // triangles have changed: see Levels.takeChanges().
     refine(ranges) {
         for (const [name, texture] of Object.entries(this.#textures)) {
             texture.value.updateWithin(ranges[name]);
@@ -144,8 +145,9 @@ export class Surface {
         );
     }
 
-    // Called when the materials have changed; `change` is {palette, places}: whether the palette
-    // was replaced, and which texels of `labels` have changed (null: any).
+    // Called when the materials have changed; `change` is {palette, places}: `palette` says whether
+    // the palette was replaced, and `places` lists the changed texels of `labels` (null: all may
+    // have changed).
     updateMaterials(materials, change) {
         const { labels, palette } = this.#looks;
         labels.value = labels.value.update(materials.labels, change.places);
@@ -159,7 +161,7 @@ export class Surface {
         this.#isColored.value = isColored;
     }
 
-    // Called when the contents of the graphics memory are lost: everything is uploaded again.
+    // Called when the contents of the graphics memory are lost: all textures are uploaded again.
     forget() {
         [this.#textures, this.#looks]
             .flatMap((textures) => Object.values(textures))
