@@ -27,7 +27,7 @@ struct st_step {
 };
 
 struct st_revision {
-    /* What the log keeps of the mesh after the revision: its time, name of action and counts. */
+    /* What the log keeps of the mesh at this revision (st_point). */
     st_point point;
     uint64_t inverts;
     st_action action;

@@ -84,7 +84,7 @@ void st_log_unreserve(st_revision_log *log);
 /* Returns true if the reserved delta fits into the budget, so that its edit can be undone. */
 bool st_log_fits(const st_revision_log *log);
 
-/* What the log is told about a change that is added to it. */
+/* Describes a change that is added to the log. */
 typedef struct st_logged {
     uint64_t revision; /* the revision that the change led to */
     st_action action;  /* ST_EDIT or ST_REPLACE */

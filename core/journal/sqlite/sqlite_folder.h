@@ -7,9 +7,9 @@
  *     fresh      exists from before the database is made until the first start is over
  *
  * THE MARK. A damaged byte in the write-ahead log (-wal) makes SQLite silently drop that commit and
- * all after it. The mark reveals this loss: it is the number of the last commit, written after each
- * commit, alternately to two places of the file, so that one of them is always intact. A database
- * whose last commit is older than the mark has lost commits. */
+ * all after it. The mark reveals this loss: it contains the number of the last commit, and is
+ * written after each commit, alternately to two places of the file, so that one of them is always
+ * intact. A database whose last commit is older than the mark has lost commits. */
 #ifndef HE_JOURNAL_SQLITE_FOLDER_H
 #define HE_JOURNAL_SQLITE_FOLDER_H
 
