@@ -11,7 +11,7 @@ typedef struct api_blob {
     /* Reads up to `size` bytes from position `at`. Returns how many were read, or -1 on failure.
      * Several threads may call it at the same time. */
     int64_t (*read)(void *self, uint64_t at, char *buffer, size_t size);
-    void (*free)(void *self); /* frees the blob; NULL: it is borrowed and must not be freed */
+    void (*free)(void *self); /* frees the blob; NULL: the blob is borrowed and must not be freed */
 } api_blob;
 
 #endif

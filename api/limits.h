@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 /* The largest bodies of requests. A parsed control document (a JSON body other than a mesh) costs
- * at most API_MAX_*_VALUES * 64 bytes of cJSON nodes plus its strings. A list of edits costs its
- * text plus the nodes of one operation at a time. */
+ * at most API_MAX_*_VALUES * 64 bytes of cJSON nodes plus its strings. A list of edits needs memory
+ * for its text plus the nodes of one operation at a time. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
 #define API_MAX_MATERIALS      ((size_t)16 << 20) /* text of the materials in a mesh document */
@@ -19,9 +19,9 @@
 /* The largest mesh document or file, unless api_options.max_upload is set. */
 #define API_DEFAULT_UPLOAD ((uint64_t)1 << 30)
 
-/* Limits of compressed bodies. The decompressed size counts against the limits above, and so does
- * the compressed size. Each gzip member or zstd frame may decompress to API_DECOMPRESS_RATIO times
- * the compressed bytes that were read from it; the whole body may exceed the sum of these by
+/* Limits of compressed bodies. Both the compressed and the decompressed size of a body must respect
+ * the limits above. Each gzip member or zstd frame may decompress to API_DECOMPRESS_RATIO times the
+ * compressed bytes that were read from it; the whole body may exceed the sum of these by
  * API_DECOMPRESS_FREE bytes. (Mesh files decompress to ten times their size, zeros to a thousand
  * times.) After API_DECOMPRESS_TURN decompressed bytes the thread serves other requests. A zstd
  * frame may use a window of 8 MiB, the largest that RFC 9659 allows. The decoders of all bodies in
@@ -78,10 +78,12 @@ enum {
      * rows of the delta, the record of changed elements (16 bytes each). */
     API_MAX_EDITS_ELEMENTS = 1 << 26,
     API_MAX_EDITS_ROWS = 1 << 26,
-    /* How many times a cached degree is used before the half-edges are counted again
-     * (edit_cost.h). */
+    /* How many times the cached degree of a vertex or face is used before its half-edges are
+     * counted again (edit_cost.h). */
     API_HUB_USES = 256,
-    API_MAX_IDS = 1 << 24,     /* ids per list, including the ids that references expand to */
+    /* Ids per list in a request, including the ids for which references to earlier results
+     * stand. */
+    API_MAX_IDS = 1 << 24,
     API_MAX_NAMED_MESHES = 16, /* meshes that one request may name besides its own */
     API_MAX_AS = 64,           /* characters of a result name ("as") */
     API_MAX_QUERIES = 10000,   /* questions per query request */
@@ -92,12 +94,13 @@ enum {
      * elements than API_MAX_WALK, a request may take as many steps as one pass over the mesh. A
      * step takes at most 10 ns, so API_MAX_STEPS is up to a second of work. */
     API_MAX_STEPS = API_HALFEDGE_STEPS * API_MAX_WALK,
-    API_JOB_TIMES = 100, /* a query that runs as a job may take this many times API_MAX_STEPS */
+    /* A query that runs as a job may take API_JOB_TIMES * API_MAX_STEPS steps. */
+    API_JOB_TIMES = 100,
     /* Additional steps, per element of the mesh, for the first search for self-intersections in a
      * request. Ordinary surfaces need half of them. */
     API_MEET_STEPS = 320,
-    /* The number of pairs of intersecting faces after which a search stops. A pair of polygons may
-     * count several times. */
+    /* The number of pairs of intersecting triangles after which a search for intersecting faces
+     * stops. A pair of polygons may count several times. */
     API_MAX_PAIRS = 1 << 20
 };
 
@@ -146,7 +149,7 @@ enum {
 #define API_PROGRESSIVE_PER_SECOND 1e6
 /* How much work a list of operations may do while it holds the mesh's lock, on a worker thread and
  * on a thread of the job pool. A list that exceeds its budget is rolled back and started again, on
- * the pool or as a job. The unit is the work of transforming one element (API_EDIT_PER_SECOND);
+ * the job pool or as a job. The unit is the work of transforming one element (API_EDIT_PER_SECOND);
  * slower operations count more per element. One row of the delta counts as half an element; one
  * step around a vertex of high degree counts as a sixteenth of an element. API_MAX_EDITS_STEPS
  * limits the steps of all operations of a list, even in a job, which reaches it after half a

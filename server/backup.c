@@ -34,9 +34,9 @@ static void free_backup(void *self)
     he_mem_free(b);
 }
 
-/* Makes a backup of the store in a file and returns the file's descriptor; the file has no name any
- * more. A file that a killed process may have left under this name is replaced. Returns -1 with a
- * sentence in `message` on failure. */
+/* Makes a backup of the store in a file and returns the file's descriptor; the file's name is
+ * removed, so that the file vanishes when it is closed. A file that a killed process may have left
+ * under this name is replaced. Returns -1 with a sentence in `message` on failure. */
 static int make_file(const char *folder, char *message, size_t size)
 {
     char path[PATH_MAX], why[ST_SQLITE_MESSAGE];

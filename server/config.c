@@ -307,8 +307,8 @@ bool srv_option_is_switch(const srv_option *row)
     return row->kind == SRV_FLAG || row->kind == SRV_ACTION;
 }
 
-/* Prepares an option for a value of one source (the file, the environment or the flags): before the
- * first item of a list, removes the items that came from sources which this source overrides. */
+/* Prepares an option for a value from one source (the file, the environment or the flags): if the
+ * value is the source's first item of a list, removes the items that came from other sources. */
 static void begin_list(srv_config *config, const srv_option *row, bool *seen)
 {
     size_t i = (size_t)(row - srv_options);

@@ -17,8 +17,9 @@
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
 /* The values of the options --log and --log-format, in the order in which the table of options
- * names their words. SRV_LOG_AUTO logs requests unless stderr is a terminal, where their lines
- * would bury more important lines. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
+ * lists the words that these options allow. SRV_LOG_AUTO logs requests unless stderr is a terminal,
+ * where their lines would bury more important lines. SRV_FORMAT_AUTO is text on a terminal and JSON
+ * elsewhere. */
 typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_kind;
 typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
@@ -40,7 +41,8 @@ typedef struct srv_config {
     uint64_t log;        /* srv_log_kind */
     uint64_t log_format; /* srv_log_format */
     uint64_t log_level;  /* srv_level of server/log/line.h */
-    uint64_t slow;       /* milliseconds from which on a request is logged as slow; 0: none is */
+    /* A request that takes at least this many milliseconds is logged as slow; 0: no request is. */
+    uint64_t slow;
 
     uint64_t max_upload; /* bytes */
     /* Limit of the daemon's memory in bytes; 0: three quarters of st_memory_limit_find. */
@@ -66,11 +68,12 @@ typedef struct srv_config {
     /* Paths given with --backup, --restore (files) and --dump (a folder); NULL if not given. */
     const char *backup, *restore, *dump;
     bool help, version, print_config, healthcheck, verify, new_token;
-    /* The URL that --healthcheck asks; NULL: /livez at the address of `listen`. */
+    /* The URL to which --healthcheck sends its request; NULL: /livez at the address of `listen`. */
     const char *healthcheck_url;
     /* Path of the file that --verify reads; NULL: the store is verified. */
     const char *verified;
-    const char *token_name, *token_role; /* arguments of --new-token; NULL if not given */
+    /* The arguments of --new-token; NULL if the option is not given. */
+    const char *token_name, *token_role;
 
     /* Texts that the configuration owns: copies of lists, into which the items of srv_names point,
      * and the contents of the configuration file. */

@@ -64,8 +64,8 @@ typedef struct srv_option_value {
 
 /* Sets an option. Returns false with a sentence in `message` if the value is refused. Items that
  * one source (the file, the environment or the flags) gives for a list add up, and replace those of
- * sources that it overrides. So `seen` has an entry per row that says whether the present source
- * has set that option before; all are false at first. */
+ * sources that it overrides. So `seen` has an entry for each option, which says whether the source
+ * that is being read has set this option already; all entries are false when a source begins. */
 bool srv_option_set(srv_config *config, const srv_option_value *given, bool *seen, char *message,
                     size_t size);
 

@@ -3,15 +3,16 @@
 #include <stdatomic.h>
 
 /* The entry for the tree of boxes of a mesh, in which requests find the faces near a ray or a
- * point. The tree is being made, is ready, or could not be made. While it is being made, `bvh` is
- * NULL and `abandoned` is false; then one of them is set, under the lock of st_derived_begin. */
+ * point. The tree is being made, is ready, or could not be made. While the tree is being made,
+ * `bvh` is NULL and `abandoned` is false; afterwards one of these members is set, under the lock of
+ * st_derived_begin. */
 typedef struct api_bvh {
     /* Number of users: 1 while the entry is kept with the mesh, and 1 for each request that uses
      * the tree. */
     _Atomic uint32_t uses;
     uint64_t revision;
     he_bvh *bvh;
-    bool abandoned; /* the tree could not be made */
+    bool abandoned; /* true if the tree could not be made */
 } api_bvh;
 
 void api_bvh_release(api_bvh *tree)

@@ -2,10 +2,10 @@
  * answered.
  *
  * The first request that needs the tree makes it, on the job pool unless the mesh is small. The
- * tree is then kept with the mesh until a question is about a later revision or memory is short. A
- * request that needs the tree while another request is making it waits on the job pool. A request
- * can use a tree that it has got until its end, even if the tree is no longer kept with the
- * mesh. */
+ * tree is then kept with the mesh, until a question is asked about a later revision of the mesh or
+ * memory is short. A request that needs the tree while another request is making it waits on the
+ * job pool. A request that has got a tree can use it until the request ends, even if the tree is no
+ * longer kept with the mesh. */
 #ifndef HE_API_ASK_BVH_CACHE_H
 #define HE_API_ASK_BVH_CACHE_H
 
@@ -13,8 +13,8 @@
 #include "query/bvh.h"
 
 /* Returns the tree of a->mesh, which stays valid as long as the asker `a`. `in` is the question;
- * NULL for a request without a body. Returns NULL with the problem filled, or with a->spent set
- * (question.h). */
+ * NULL for a request without a body. Returns NULL with the problem (the body of the error answer)
+ * filled, or with a->spent set (question.h). */
 const he_bvh *api_asker_bvh(api_asker *a, const api_in *in);
 void api_bvh_release(struct api_bvh *tree);
 

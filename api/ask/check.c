@@ -26,7 +26,7 @@ typedef struct report {
     size_t broken;
     he_thresholds thresholds;
     he_defects defects;
-    bool meets; /* the client wants a search for faces that intersect */
+    bool meets; /* true if the client wants a search for faces that intersect */
     bool complete;
 } report;
 
@@ -60,7 +60,9 @@ static bool examine(api_asker *a, report *r)
         return api_fail_core(a->x, &err);
     }
     if (r->broken > 0) {
-        return true; /* the tests for defects rely on valid links */
+        /* The tests for defects rely on valid links, so they are not made on a mesh with broken
+         * invariants. */
+        return true;
     }
     he_progress_span(progress, r->meets ? FOUND : 1);
     r->thresholds = read_thresholds(a->x, a->mesh);

@@ -24,7 +24,8 @@ typedef struct options {
 
 /* The elements that a question wants to be measured. */
 typedef struct selection {
-    const uint32_t *ids; /* NULL: all live elements are measured, in the order of ids */
+    /* Ids of the elements; NULL: all live elements are measured, in the order of ids. */
+    const uint32_t *ids;
     size_t count;
 } selection;
 
@@ -257,7 +258,7 @@ typedef struct asked {
     api_target target;
     const measure *measure;
     options options;
-    bool as_text; /* the values will be written as JSON */
+    bool as_text; /* true if the values will be written as JSON */
 } asked;
 
 static bool read_name(const api_in *name, he_kind kind, const measure **out)

@@ -185,7 +185,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_query_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* no estimate: the cost is charged while the questions are answered */
+    (void)out; /* the cost is not estimated: it is charged while the questions are answered */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

@@ -224,7 +224,7 @@ typedef struct asked {
     api_target target;
 } asked;
 
-/* More relations than any kind of element has. */
+/* A number greater than that of the relations of any kind of element. */
 enum { MOST_RELATIONS = 8 };
 
 /* Lists the names of the relations of one kind of element, followed by NULL. */

@@ -41,22 +41,23 @@ typedef struct api_asker {
     /* the computing steps that are left; charging steps also polls the progress of the exchange */
     he_budget budget;
     const char *asked; /* name of the current question, for the message of a refusal */
-    /* The request runs on a worker thread, which must not compute for long: the budget is small,
-     * and a request that needs more moves to the job pool. */
+    /* True if the request runs on a worker thread, which must not compute for long: the budget is
+     * small, and a request that needs more steps starts again on the job pool. */
     bool on_worker;
-    bool reads_only; /* only the body is read: nothing is searched or written */
-    bool spent; /* the budget is used up: the request starts again on the job pool or as a job */
+    bool reads_only; /* true if the body is only checked: nothing is searched or written */
+    /* True if the budget is used up: the request starts again on the job pool or as a job. */
+    bool spent;
     double seconds; /* estimated duration of the work announced by api_asker_waits, in seconds */
-    /* The search for intersections that gets additional steps (API_MEET_STEPS) was made; further
-     * searches of the request get none. */
+    /* True after the first search for intersecting faces. That search gets additional steps
+     * (API_MEET_STEPS); further searches of the request get none. */
     bool has_met;
     he_ids first, second;
     struct api_bvh *tree; /* the tree of boxes (bvh_cache.h); NULL until a question needs it */
 } api_asker;
 
-/* Calls the function `answer`, which finds the mesh in x->content of the exchange. `answer` writes
- * to x->out and answers; or it fills the problem; or it sets the member `spent` of the asker, and
- * the request starts again on another thread. */
+/* Calls the function `answer`, which finds the mesh in x->content of the exchange. `answer` has
+ * three outcomes: it writes to x->out and answers the request; or it fills the problem; or it sets
+ * the member `spent` of the asker, and the request starts again on another thread. */
 void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 /* Checks the body before a job is made, so that a mistake is reported at once: calls the function
  * `answer` with an asker that only reads the body (`reads_only` is set) and may look up ids in the
@@ -70,13 +71,14 @@ bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *
 bool api_question_ask(api_asker *a, const api_in *question);
 bool api_walk_ask(api_asker *a, const api_in *walk);
 
-/* Returns true if the question is about the neighbours of many elements. Then api_question_dense
- * finds its answer; the caller clears `out`. */
+/* api_question_is_dense returns true if the question is about the neighbours of many elements. Then
+ * api_question_dense finds the answer and puts it into `out`, which the caller clears. */
 bool api_question_is_dense(const api_in *question);
 bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
 
-/* Returns true if the question is about a measure of many elements. Then api_measure_dense finds
- * the values and their number; the caller frees `out`. A missing value is NaN. */
+/* api_measure_is_dense returns true if the question is about a measure of many elements. Then
+ * api_measure_dense finds the values and their number; the caller frees `out`. A missing value is
+ * NaN. */
 bool api_measure_is_dense(const api_in *question);
 bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count);
 
@@ -97,16 +99,17 @@ typedef struct api_target {
 } api_target;
 
 bool api_target_is_dense(const api_in *of);
-/* Reads the elements that a question is about, which must be live. */
+/* Reads which elements a question is about; they must be live. */
 bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))
 /* Reads {"vertex":5}, which must be a live element of one of the kinds in the bit set `kinds`. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
-/* Announces work on the whole mesh that takes `seconds`. Returns false, with a->spent set, if all
- * announced work takes longer than the client will wait; the request then starts again as a job. */
+/* Announces that the asker will do work on the whole mesh, which takes about `seconds`. Returns
+ * false, with a->spent set, if all work announced by this request takes longer than the client will
+ * wait; the request then starts again as a job. */
 bool api_asker_waits(api_asker *a, double seconds);
 /* Returns how many half-edges may still be visited with the steps that are left. api_asker_pay
- * takes the steps for visited half-edges from the budget. */
+ * subtracts the steps for visited half-edges from the budget. */
 uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
 /* Ends a request that needs more steps than are left. Sets a->spent on a worker thread or if the

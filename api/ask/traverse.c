@@ -407,7 +407,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_traverse_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* no estimate: the cost is charged during the walk */
+    (void)out; /* the cost is not estimated: it is charged during the walk */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

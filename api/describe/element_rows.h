@@ -1,4 +1,5 @@
-/* element_rows.h - macros for rows of the table of routes that differ only in the kind of element.
+/* element_rows.h - macros for those rows of the table of routes that differ only in the kind of
+ * element (vertex, edge, face...).
  *
  * The macros make rows such as list_vertices, get_vertex and list_vertex_faces. `one` and `many`
  * are the singular and plural name of the kind, `what` is the name of a relation in

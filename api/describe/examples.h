@@ -8,13 +8,13 @@
  *
  *     "differs"   texts that are different in every session. Each has two regular expressions, one
  *                 for what comes before the text ("after") and one for the text itself ("form");
- *                 "shown" is what the file has in its place.
- *     "before"    requests that are sent first and are not shown. A request with "job" becomes a
- *                 job, whose id is replaced in the file by the value of "job". After a request
- *                 with "runs" one job that waits is run.
- *     "examples"  the session. "route" names a row of the table of routes. A body is "request" or
- *                 "response". A body that is not JSON, or that has blanks between its values, is
- *                 "request_text" or "response_text", a list of texts that are joined.
+ *                 "shown" is the fixed text that the file has in place of it.
+ *     "before"    requests that are sent first and are not shown. A request with a member "job"
+ *                 becomes a job, whose id is replaced in the file by the value of "job". After a
+ *                 request with a member "runs", one of the waiting jobs is run.
+ *     "examples"  the session. "route" names a row of the table of routes. The bodies are "request"
+ *                 and "response". A body that is not JSON, or that has blanks between its values,
+ *                 is "request_text" or "response_text", a list of texts that are joined.
  *
  * To add an example, write its route, target, request and the media types, and run
  * `make examples`. */
@@ -37,7 +37,7 @@ typedef struct api_examples {
 bool api_examples_read(api_examples *examples);
 void api_examples_clear(api_examples *examples);
 
-/* Selects a body of an example: that of the request or that of the answer. */
+/* Selects one of the two bodies of an example: that of the request or that of the answer. */
 typedef enum api_example_part { API_EXAMPLE_REQUEST, API_EXAMPLE_RESPONSE } api_example_part;
 
 /* Returns the first example of a successful request to `route` whose body `part` has this media
@@ -46,10 +46,11 @@ uint32_t api_example_find(const api_examples *examples, api_example_part part, c
                           const char *media);
 /* Returns the first example of a refused request. */
 uint32_t api_example_problem(const api_examples *examples);
-/* Appends a body of an example as it is sent. Returns false if the example has no such body. */
+/* Appends the body `part` of an example as it is sent. Returns false if the example has no such
+ * body. */
 bool api_example_body(const api_examples *examples, uint32_t example, api_example_part part,
                       api_text *text);
-/* Appends the value with this index in examples->json, as JSON without blanks. */
+/* Appends the value that has this index in examples->json, as JSON without blanks. */
 void api_example_value(const api_examples *examples, uint32_t value, api_text *text);
 
 #endif

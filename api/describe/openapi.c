@@ -266,7 +266,8 @@ static bool is_stream(const api_route *route)
     return route->produces[0] != NULL && strcmp(route->produces[0], EVENT_STREAM) == 0;
 }
 
-/* The names of headers that the document describes only once, in its components. */
+/* The names of the rate-limit headers, which the document describes only once, in its
+ * components. */
 static const char *const rate_headers[] = {"RateLimit-Policy", "RateLimit", NULL};
 static const char *const coding_headers[] = {"Content-Encoding", "Vary", NULL};
 
@@ -365,8 +366,8 @@ static void write_success(api_out *out, const api_examples *examples, const api_
     api_out_object_end(out);
 }
 
-/* The refusals that have a header of their own. All other refusals are described by the component
- * "problem". */
+/* The refusals whose answers have a special header. All other refusals are described by the
+ * component "problem". */
 typedef struct refusal {
     int status;
     const char *name, *header, *doc;
@@ -504,7 +505,7 @@ static void write_doc(api_out *out, const api_route *route)
     }
 }
 
-/* Writes the member "security": a request needs a token, or, with GET, a ticket, or nothing,
+/* Writes the member "security", a list of alternatives: a token; for GET, a ticket; or nothing,
  * because a server may have no tokens. The required role is written where OAuth has scopes, which
  * OpenAPI 3.1 allows for other schemes, too. */
 static void write_security(api_out *out, const api_route *route)
@@ -725,7 +726,7 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key_string(out, "url", url != NULL ? url : "/");
     api_out_object_end(out);
     api_out_array_end(out);
-    /* Routes without a "security" of their own need no token. */
+    /* This is the default for routes that write no member "security": they need no token. */
     api_out_key(out, "security");
     api_out_array_begin(out);
     api_out_array_end(out);

@@ -1,5 +1,5 @@
-/* page_records.h - the tables of JSON members (api/json/record.h) of answers about the server
- * itself. */
+/* page_records.h - tables of the JSON members (api/json/record.h) that the answers about the server
+ * itself have. */
 #ifndef HE_API_DESCRIBE_PAGE_RECORDS_H
 #define HE_API_DESCRIBE_PAGE_RECORDS_H
 

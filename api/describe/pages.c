@@ -15,7 +15,7 @@ static const char viewer_policy[] =
 static const char text_policy[] =
     "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/* The values of the JSON members of all answers in this file. Each answer has the members of one of
+/* The values of the JSON members of all answers in this file. Each answer is written from one of
  * the tables below. */
 typedef struct facts {
     const char *status, *store, *memory;

@@ -6,8 +6,8 @@
 
 /* Returns the table of routes. The server passes it to api_service_new. */
 api_route_table api_routes(void);
-/* Returns the statuses that every route may answer, including those of refusals by the server
- * itself; ends in 0. */
+/* Returns the HTTP statuses that every route may answer, including those with which the server
+ * itself refuses requests; the list ends in 0. */
 const int *api_route_common(void);
 
 #endif

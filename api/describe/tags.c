@@ -52,7 +52,7 @@ const char *api_tag_of(const char *path)
 {
     size_t i = 0;
     while (strncmp(path, beginnings[i].begin, strlen(beginnings[i].begin)) != 0) {
-        i++; /* the last row matches: every path begins with "/" */
+        i++; /* not reached: the last row matches every path, because every path begins with "/" */
     }
     return beginnings[i].tag;
 }

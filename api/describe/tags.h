@@ -4,7 +4,7 @@
 
 #include "api/json/json_out.h"
 
-/* Returns the group of the route with this path; a literal. */
+/* Returns the name of the group of the route with this path, a string literal. */
 const char *api_tag_of(const char *path);
 /* Writes the member "tags": each group with a sentence about it. */
 void api_tags_write(api_out *out);

@@ -1,4 +1,4 @@
-/* attribute_path.h - finds the attribute that the path of a request names (x->kind,
+/* attribute_path.h - finds the attribute that the path of a request names (by x->kind and
  * x->attribute). */
 #ifndef HE_API_DOCUMENT_ATTRIBUTE_PATH_H
 #define HE_API_DOCUMENT_ATTRIBUTE_PATH_H

@@ -18,8 +18,8 @@ enum {
     IN_ROW
 };
 
-/* One attribute that was read: a column whose rows are not filled yet, and the values for these
- * rows. */
+/* One attribute that was read: a column (the array of an attribute's values) that is not filled
+ * yet, and the values for it. */
 typedef struct item {
     he_column *column;
     unsigned char *values;
@@ -35,7 +35,8 @@ struct api_attributes_in {
     /* --- members about the attribute that is being read --- */
     api_members head; /* the text of all members but "values" */
     bool has_values;
-    /* has_words: the values include true or false. has_numbers: the values include a number. */
+    /* has_words: true if the values include true or false. has_numbers: true if the values include
+     * a number. */
     bool has_words, has_numbers;
     double *numbers;
     size_t number_count, number_capacity;
@@ -149,7 +150,8 @@ static bool take_row(api_attributes_in *in, const double *row, size_t count)
 
 /* --- the end of an attribute's object --- */
 
-/* Converts a double to the type of a column and writes it to a row. */
+/* Converts a double to the type of a column's values and writes it to `row`, the memory of one
+ * value. */
 static bool pack_number(const he_column *column, double value, unsigned char *to)
 {
     float single = (float)value;

@@ -25,9 +25,9 @@ typedef struct api_attributes_in api_attributes_in;
 api_attributes_in *api_attributes_in_new(void); /* returns NULL when memory is out */
 void api_attributes_in_free(api_attributes_in *in);
 
-/* Refuses the value that the lexer reads next, somewhere inside the member "attributes", if it may
- * not stand there. If the value is an array of numbers that has arrived completely, reads it at
- * once and sets `*taken`. */
+/* Refuses the value that the lexer reads next, somewhere inside the member "attributes", if the
+ * document must not have such a value there. If the value is an array of numbers that has arrived
+ * completely, reads it at once and sets `*taken`. */
 bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken,
                               api_problem *problem);
 /* Handles a token inside the member "attributes", up to the token that closes its array. If a

@@ -354,8 +354,8 @@ static bool take(api_document_in *in, he_token token)
     return true;
 }
 
-/* Handles one token, or several vertices or faces at once. Sets `*cut` when the piece has been read
- * to its end. */
+/* Handles one token, or several vertices or faces at once. Sets `*cut` when all of the piece has
+ * been read. */
 static bool step(api_document_in *in, bool *cut)
 {
     bool taken = false, done;

@@ -16,8 +16,8 @@
  * the limits allow (413). he_build refuses faces with too few corners and corners that name no
  * vertex.
  *
- * The reader needs memory for the soup, the gathered members, and the text of a number that is
- * cut. */
+ * The reader needs memory for the soup, the gathered members, and the text of a number that two
+ * pieces of the document share. */
 #ifndef HE_API_DOCUMENT_DOCUMENT_IN_H
 #define HE_API_DOCUMENT_DOCUMENT_IN_H
 

@@ -24,19 +24,19 @@ struct api_document_out {
     const he_mesh *mesh;
     /* The document's text before the vertices, and later pieces of the attributes and its end. */
     api_text text;
-    bool from_text; /* `begin` and `end` are positions in `text`, not in `buffer` */
+    bool from_text; /* true if `begin` and `end` are positions in `text`, not in `buffer` */
     uint32_t *rank; /* number of each live vertex in the document; NULL if no vertex was deleted */
     /* One half-edge of each edge, in the order in which the document has the edges. It is the
      * half-edge in that face of the edge which is written first. NULL if no attribute needs this
      * list. */
     uint32_t *edges;
     size_t column; /* index of the attribute that is being written */
-    bool begun;    /* the attribute's members before "values" were written */
+    bool begun;    /* true if the attribute's members before "values" were written */
     phase phase;
     uint32_t next; /* id of the next vertex or face, or index of the next value of an attribute */
-    bool listed;   /* the present list has an item already */
-    /* While faces are written: a face is begun, and `corner` is its next corner. While attributes
-     * are written: the present attribute has a value already. */
+    bool listed;   /* true if the list being written has an item already */
+    /* While faces are written: true if a face is begun, whose next corner is `corner`. While
+     * attributes are written: true if a value of the present attribute was written already. */
     bool open;
     he_halfedge corner;
     /* Positions of the bytes in `buffer` or `text` that the server has not read yet. */
@@ -200,9 +200,9 @@ static uint64_t count_places(const api_document_out *out, he_kind domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* Returns the row in an attribute's column that holds the value of element number `i` of the
- * document; HE_NONE if that element is deleted. Vertices and faces are counted with the deleted
- * ones. */
+/* Returns the index in an attribute's column at which the value of element number `i` of the
+ * document is; HE_NONE if that element is deleted. For vertices and faces, `i` counts deleted
+ * elements, too. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {

@@ -51,7 +51,7 @@ bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem)
            add(m, x, (api_bytes){"\":", 2}, place, problem);
 }
 
-/* Appends the bytes that the lexer has passed since the last call. */
+/* Appends to the gathered members the bytes that the lexer has passed since the last call. */
 static bool add_passed(api_members *m, const he_lexer *x, api_problem *problem)
 {
     const char *from = m->from != NULL ? m->from : x->begin;

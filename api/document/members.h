@@ -19,8 +19,8 @@ typedef struct api_members {
     api_text text;
     size_t values;
     /* --- about the member that is being gathered --- */
-    /* First byte of the lexer's present piece that is still to be appended; NULL: the first byte of
-     * the piece. */
+    /* First byte that is still to be appended of the piece that the lexer reads now; NULL: the
+     * first byte of that piece. */
     const char *from;
     size_t depth, name_most;
 } api_members;
@@ -32,7 +32,8 @@ void api_members_empty(api_members *m);
 /* Begins to gather a member, and appends its name. The lexer must have passed the colon after the
  * name. */
 bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem);
-/* Appends the value of the member; `*done` is false if the piece ended before the value did. */
+/* Appends the value of the member; sets `*done` to false if the piece ended before the value
+ * did. */
 bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *problem);
 /* Parses all members that were gathered, as one object. */
 bool api_members_parse(api_members *m, api_document *out, api_in *root, api_problem *problem);

@@ -10,7 +10,7 @@ enum { SNIFF_BYTES = 512 };
 
 typedef struct part {
     char *name;
-    api_part_kind kind; /* what the name or the media type of the file says about its format */
+    api_part_kind kind; /* how to read the file, as far as its name or its media type says */
     /* The content of the file. It is empty if the file was known to be the mesh file when it began,
      * because its bytes were passed on. */
     api_text bytes;
@@ -200,7 +200,8 @@ static api_parts_step take(api_exchange *x, api_parts *p, const char *bytes, siz
         return API_PARTS_BYTES;
     }
     if (is_wanted(p, &one->kind)) {
-        /* This is a second mesh file: the body is refused when all of it was read. */
+        /* This is a second mesh file: the body will be refused, but only when all of it was
+         * read. */
         return API_PARTS_MORE;
     }
     api_text_add(&one->bytes, bytes, length);

@@ -3,11 +3,12 @@
  *
  *     api_parts_new -> api_parts_next ... -> api_parts_end -> api_parts_beside
  *
- * The format of a file is shown by its name, or else by its media type. The mesh file is the only
- * file that shows a known format or, with ?format=, the only one that shows that format. If there
- * is no such file, the mesh file is the only one whose first bytes show a format, which is known
- * only at the end of the body. A single file has the format of ?format= whatever its name is. A
- * body without a mesh file by these rules, or with several, is refused as unclear_parts.
+ * The format of a file in the body is known from its name, or else from its media type. The mesh
+ * file is the only file whose format is known by these or, with ?format=, the only one with that
+ * format. If there is no such file, the mesh file is the only one whose first bytes show a format;
+ * which file this is, is known only at the end of the body. A single file has the format of
+ * ?format= whatever its name is. A body without a mesh file by these rules, or with several, is
+ * refused as unclear_parts.
  *
  * The hash for the Idempotency-Key covers the files and not the boundary, so a request that is
  * repeated with another boundary is recognised. */
@@ -42,11 +43,12 @@ typedef struct api_parts_piece {
  * of the body is wrong or memory is out. */
 api_parts *api_parts_new(api_exchange *x);
 void api_parts_free(api_parts *parts);
-/* Reads the body from *at, at most to `end`, and moves *at past the bytes that it has read. */
+/* Reads the body from *at on, at most to `end`, moves *at past the bytes that it has read, and
+ * returns why it stopped. */
 api_parts_step api_parts_next(api_exchange *x, api_parts *parts, const char **at, const char *end,
                               api_parts_piece *out);
 /* Ends the body. If only now it is known which file is the mesh file, out->kind says how to read it
- * and out->bytes is its whole content, valid until `parts` is freed; otherwise out->bytes is NULL.
+ * and out->bytes is the whole file, valid until `parts` is freed; otherwise out->bytes is NULL.
  * Returns false with the problem filled. */
 bool api_parts_end(api_exchange *x, api_parts *parts, api_parts_piece *out);
 /* Returns the files other than the mesh file; they are valid as long as `parts`. */

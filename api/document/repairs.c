@@ -39,8 +39,8 @@ static void write_ids(api_out *out, const char *key, const he_repair_account *ac
 }
 
 /* Selects faces from the account of the repair drop_degenerate, which lists pairs of a face and the
- * number of faces that replaced it. With `gone` the faces that nothing replaced are selected, else
- * the faces that others replaced. */
+ * number of faces that replaced it. If `gone` is true, selects the faces that nothing replaced,
+ * else the faces that others replaced. */
 static he_repair_account degenerate_ones(const he_repair_account *account, bool gone)
 {
     he_repair_account some = {.count = 0};

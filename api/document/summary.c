@@ -282,10 +282,10 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
         return;
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
-        /* Without the summary the length of the answer is unknown, and so is whether GET would
-         * compress the answer. HEAD is answered as if GET would not compress it. In every
-         * precondition the ETag of the uncompressed answer counts as much as that of the compressed
-         * answer. */
+        /* Without the summary the length of the answer is not known, so it is not known either
+         * whether GET would compress the answer. HEAD is answered as if GET would not. That is
+         * harmless, because preconditions accept the ETags of the compressed and of the
+         * uncompressed answer alike. */
         x->codings.best = API_IDENTITY;
         const api_stream nothing = {.length = -1, .read = read_nothing};
         api_answer_stream(x, 200, "application/json", &nothing);

@@ -1,7 +1,7 @@
 /* summary.h - computes and writes the summary of a mesh.
  *
  * To count components and boundary loops and to measure area and volume, the whole mesh must be
- * visited. So a summary is computed once for each revision and kept with it (st_cache_get,
+ * visited. So a summary is computed once for each revision and kept in the cache (st_cache_get,
  * st_cache_put). */
 #ifndef HE_API_DOCUMENT_SUMMARY_H
 #define HE_API_DOCUMENT_SUMMARY_H
@@ -17,8 +17,8 @@ extern const api_record api_summary_record, api_mesh_item_record, api_counts_rec
 
 enum { API_SUMMARY_DEGREES = 128 };
 
-/* The part of a summary that is computed from the content. It is plain data, so that the store can
- * keep it. */
+/* The part of a summary that is computed from the mesh data. It has no pointers, so that the store
+ * can keep it as bytes. */
 typedef struct api_summary {
     he_topology topology; /* topology.degrees is not set */
     he_degree_count degrees[API_SUMMARY_DEGREES];
@@ -37,8 +37,8 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 /* Writes the members of a summary (id, name, revision, counts and so on) into an object that the
  * caller has begun. */
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
-/* Writes what the card of a mesh (the description that the store keeps of each mesh) has: id, name,
- * revision, some counts, and the damage of a damaged mesh. */
+/* Writes what the store describes of each mesh, even when it is not in memory: id, name, revision,
+ * some counts, and, for a damaged mesh, what is damaged. */
 void api_write_brief(api_out *out, const st_card *card);
 
 /* The handler of GET /v1/meshes/{mesh}, which answers 200 with the summary, from the cache if
@@ -47,7 +47,8 @@ void api_summary_get(api_exchange *x);
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 /* Handles GET and HEAD of a mesh that is not in memory. Answers 304 if the client has the present
  * summary. Answers HEAD if the client accepts an uncompressed answer; the headers are those of such
- * an answer, even if GET would compress it. HEAD does not notice that stored content is damaged. */
+ * an answer, even if GET would compress it. HEAD does not notice that the stored mesh data is
+ * damaged. */
 void api_summary_cold(api_exchange *x, st_cold *cold);
 /* Answers a request that has written to the mesh with the summary of the mesh. The handler of the
  * request calls it. */
@@ -57,8 +58,8 @@ void api_answer_summary(api_exchange *x);
  * the object. */
 void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
                        void (*extra)(api_exchange *x));
-/* Answers 201, with Location and the summary that x->mesh had when this request created it with the
- * name `name`. Calls api_publish. */
+/* Answers 201, with the header Location and the summary that x->mesh had when this request created
+ * it under the name `name`. Calls api_publish. */
 void api_answer_created(api_exchange *x, const char *name, const api_summary *summary,
                         void (*extra)(api_exchange *x));
 

@@ -21,8 +21,8 @@ enum { SNIFF_BYTES = 512 };
 /* A guess of how many bytes a file has for each vertex or corner; used only to estimate time. */
 enum { ELEMENT_BYTES = 5 };
 
-/* The progress that is reached after each step of making a mesh. The last step, after FILL_SHARE,
- * is computing the summary. */
+/* The progress (0 to 1) that is reached after each step of making a mesh. After FILL_SHARE, only
+ * the summary remains to be computed. */
 static const double READ_SHARE = 0.2, SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7,
                     FILL_SHARE = 0.75;
 
@@ -51,7 +51,7 @@ typedef struct upload {
     he_report report;
     he_repair_plan plan;
     he_repaired repaired;
-    size_t vertices, faces; /* numbers of elements as read, before repairs */
+    size_t vertices, faces; /* numbers of vertices and faces that were read, before repairs */
     attribute *attributes;
     size_t attribute_count;
     he_ids bowties;
@@ -230,8 +230,8 @@ static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t len
     return false;
 }
 
-/* Ends a multipart body. If it is known only now which file is the mesh file, reads that file.
- * Passes the other files to the reader. */
+/* Ends a multipart body. If it is known only now which file is the mesh file, reads that file. Then
+ * passes the other files to its reader. */
 static bool end_parts(api_exchange *x, upload *u)
 {
     api_parts_piece late;

@@ -17,7 +17,8 @@ void api_write_results(api_out *out, const he_op *op, const he_results *results)
  * "replaced":true is added. */
 void api_write_changes(api_out *out, const he_changes *changes);
 
-/* Returns the name of the action that made a revision: "edit", "undo", "redo" or "replace". */
+/* Returns the name of the kind of action that made a revision: "edit", "undo", "redo" or
+ * "replace". */
 const char *api_action_name(st_action action);
 
 #endif

@@ -13,7 +13,7 @@ enum { BATCH = 32 * 1024 };
 
 struct api_backfill {
     api_backfills *all;
-    st_mesh *mesh; /* a reference to the mesh is held */
+    st_mesh *mesh; /* the mesh; the backfill counts as one reference to it */
     st_mesh_info info;
     uint64_t to;
     /* While a task of this backfill is queued or running on the job pool, only that task uses the

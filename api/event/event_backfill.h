@@ -15,7 +15,8 @@
 
 typedef struct api_backfill api_backfill;
 
-/* What all backfills of a service share. The pool must end its tasks before the store is freed. */
+/* What all backfills of a service share. The job pool must have ended its tasks before the store is
+ * freed. */
 typedef struct api_backfills {
     st_pool *pool;
     _Atomic size_t count; /* number of backfills that exist */
@@ -33,7 +34,7 @@ void api_backfill_free(api_backfill *c);
 void api_backfill_wake(api_backfill *c, void (*wake)(void *context), void *context);
 
 typedef enum api_backfill_step {
-    API_BACKFILL_TEXT, /* `text`, which must be empty before, now has events */
+    API_BACKFILL_TEXT, /* `text`, which must be empty before the call, now has events */
     API_BACKFILL_WAIT, /* the events are being made; `wake` will be called */
     API_BACKFILL_DONE, /* there are no more events */
     /* The history does not reach back far enough, memory is out, or the pool accepts no task. */

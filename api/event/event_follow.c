@@ -33,13 +33,13 @@ bool api_event_render(const st_mesh_info *info, const st_change *change, char **
 }
 
 typedef struct stream {
-    st_mesh *mesh; /* a reference to the mesh is held */
+    st_mesh *mesh; /* the mesh; the stream counts as one reference to it */
     st_listener listener;
     bool listens;
     uint64_t incarnation;
     api_backfill *missed; /* makes the missed events; NULL if there are none, or all were sent */
     uint64_t caught_up;   /* the revision of the last of the missed events */
-    api_text text;        /* bytes to send before anything else */
+    api_text text;        /* text that is sent before anything else */
     size_t sent;
     bool finishing; /* the server is stopping */
     bool ended;     /* the stream ends after `text` */

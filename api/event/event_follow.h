@@ -15,8 +15,9 @@
 bool api_event_render(const st_mesh_info *info, const st_change *change, char **bytes,
                       size_t *length);
 
-/* Opens a stream of the changes after the revision in `since`, or after the present revision if
- * `since` has none. `info` gets the description of the mesh. The caller frees the source.
+/* Opens a stream of the changes of a mesh after the revision in `since`, or after the present
+ * revision if `since` has none. `info` gets the description of the mesh. The caller frees the
+ * stream.
  * Returns ST_ABSENT if the mesh was deleted.
  * Returns ST_LISTENERS if the mesh has too many listeners.
  * Returns ST_NO_MEMORY if memory is out. */

@@ -7,20 +7,21 @@
 
 #include <string.h>
 
-/* What a delta did in one attribute slot of a mesh, the place of one attribute column. If one
- * column replaced another, `dropped` and `added` are both set. */
+/* What a delta changed in one attribute slot of a mesh, which is the place of one attribute column.
+ * If a column replaced another column, `dropped` and `added` are both set. */
 typedef struct slot {
-    /* Rows that the delta changed; in an added column, rows that do not have the default value. */
+    /* Indices of the values that the delta changed; in an added column, of those that are not the
+     * default. */
     he_ids rows;
     const he_column *dropped; /* the column that the delta removed, else NULL */
-    bool added;               /* the delta added the column that is now in the slot */
+    bool added;               /* true if the delta added the column that is now in the slot */
 } slot;
 
 typedef struct touched {
     he_ids vertices, halfedges, faces;
     slot *slots;
     size_t slot_count;
-    bool materials; /* the delta changed the list of materials */
+    bool materials; /* true if the delta changed the list of materials */
 } touched;
 
 static void touched_clear(touched *t)

@@ -1,5 +1,5 @@
-/* event_values.h - the values of all elements that a change wrote, from which a client can keep an
- * exact copy of the mesh.
+/* event_values.h - the new values of all elements that a change wrote, with which a client can keep
+ * an exact copy of the mesh up to date.
  *
  *     "values":{"vertices":[[id,x,y,z,halfedge]],"halfedges":[[id,next,prev,origin,face]],
  *               "faces":[[id,halfedge]],"attributes":{"faces":{"group":[[id,v,...]]}}}
@@ -15,7 +15,7 @@
 #include "mesh/delta.h"
 
 /* Writes what a delta changed into an object that the caller has begun: the member `values`, and
- * attributes_added and attributes_dropped if columns were added or removed. `mesh` is the mesh
+ * attributes_added and attributes_dropped if attributes were added or removed. `mesh` is the mesh
  * after the delta was applied, or, with `undone`, after it was undone.
  * Returns HE_NO_MEMORY if memory is out; the text written so far is then unusable. */
 HE_NODISCARD he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *delta,

@@ -14,7 +14,8 @@
  * that keeps a copy of the mesh applies an edit whose `base` is the copy's revision, ignores edits
  * up to that revision, and fetches the mesh again on any other edit, on `stale` and on `resync`.
  *
- * Each function appends one whole message to `text`, in which failure is sticky (text.h). */
+ * Each function appends one whole message to `text`. If an append fails, `text` stays marked as
+ * failed (text.h). */
 #ifndef HE_API_EVENT_EVENTS_H
 #define HE_API_EVENT_EVENTS_H
 
@@ -31,18 +32,19 @@ void api_event_begin(api_text *text, const st_mesh_info *info, bool place);
 
 /* Appends an event that describes the change that led to info->revision. Of `change` it reads the
  * action, the delta, the sets of changed elements if they were found already, and the mesh after
- * the change. A change that replaces the content becomes a `resync`. */
+ * the change. A change that replaces the whole mesh data becomes a `resync`. */
 void api_event_edit(api_text *text, const st_mesh_info *info, const st_change *change);
 /* Appends an `edit` with "stale":true, which announces a revision whose change cannot be sent. */
 void api_event_stale(api_text *text, const st_mesh_info *info);
 void api_event_metadata(api_text *text, const st_mesh_info *info);
 /* Appends a `resync`, which tells the listener to fetch the mesh again. Reasons: "replaced" (the
- * whole content, or a compact), "gap" (the listener was too slow, and the history no longer has the
- * revisions that it missed), "busy" (too many backfills), "incarnation" (the position that the
- * client sent belongs to another mesh that had this id), "future" (that position is later than the
- * present one), "lost" (the newest changes could not be made durable; the stream ends). */
+ * mesh data was replaced as a whole, or compacted), "gap" (the listener was too slow, and the
+ * history no longer has the revisions that it missed), "busy" (too many backfills), "incarnation"
+ * (the position that the client sent belongs to another mesh that had this id), "future" (that
+ * position is later than the present one), "lost" (the newest changes could not be made durable;
+ * the stream ends). */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
-/* Appends a message with this event name and this data. */
+/* Appends a message with the given event name and data. */
 void api_event_add(api_text *text, const char *name, const api_text *data);
 /* Appends a `bye`, after which the stream ends. Reasons: "deleted", "stopping", "token" (the
  * client's token is no longer valid), and on the stream of a job "ended". */

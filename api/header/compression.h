@@ -1,4 +1,4 @@
-/* compression.h - lets zlib and zstd take their memory from base/mem.h; for compressor.c and
+/* compression.h - lets zlib and zstd take their memory from base/mem.h; used by compressor.c and
  * decompressor.c.
  *
  * The functions of zstd that take an allocator are declared only if ZSTD_STATIC_LINKING_ONLY is
@@ -26,7 +26,8 @@ typedef struct api_compression_memory {
      * memory. */
     bool (*make_room)(void *context);
     void *context;
-    bool refused; /* an allocation failed because of the ceiling, not because memory was out */
+    /* True if an allocation failed because of the ceiling, not because memory was out. */
+    bool refused;
 } api_compression_memory;
 
 /* api_compression_zlib and api_compression_zstd set the allocator of a stream. `memory` must live

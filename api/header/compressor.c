@@ -16,8 +16,8 @@ struct api_compressor {
     ZSTD_CCtx *zstd;
     bool begun; /* the compressor was started */
     bool as_it_is;
-    bool read;  /* the whole body was read: what is not compressed yet is in `in` */
-    bool ended; /* all bytes of the output were returned to the caller */
+    bool read;  /* true if the whole body was read: what is not compressed yet is in `in` */
+    bool ended; /* true if all bytes of the output were returned to the caller */
     bool failed;
     size_t from, to;
     /* The bytes `from` to `to` were read and are not compressed yet. The array has one byte more

@@ -16,10 +16,10 @@
 
 typedef struct api_compressor api_compressor;
 
-/* An uncompressed body, which is borrowed: either its bytes, or a function that reads it, like the
- * member `read` of api_answer. */
+/* An uncompressed body, which is borrowed: either all its bytes, or a function `read` that reads it
+ * piece by piece, like the member `read` of api_answer. */
 typedef struct api_plain {
-    const char *bytes; /* the whole body; NULL: it is read with `read` */
+    const char *bytes; /* the whole body; NULL: the body is read with `read` */
     size_t length;
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;

@@ -69,7 +69,8 @@ bool api_coding_choose(const char *accept_encoding, api_codings *out)
     for (api_coding c = 0; c < API_CODING_COUNT; c++) {
         int weight = q[c] >= 0 ? q[c] : c == API_ZSTD ? -1 : others;
         if (weight < 0) {
-            /* Identity is allowed, with the lowest preference. */
+            /* The header does not name identity, so identity is allowed, with the lowest
+             * preference. */
             weight = c == API_IDENTITY ? 1 : 0;
         }
         out->allowed[c] = weight > 0;

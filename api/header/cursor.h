@@ -21,9 +21,8 @@ void api_cursor_write(const char *collection, const st_mesh_info *info, uint64_t
  * another mesh. */
 bool api_cursor_pins(const char *text, const st_mesh_info *info, uint64_t *revision);
 /* Reads the position in a cursor.
- * Returns false with bad_cursor, or with revision_gone if the cursor belongs to another mesh. That
- * may be a mesh which had this id before, or one with another id; the cursor does not show
- * which. */
+ * Returns false with bad_cursor, or with revision_gone if the cursor belongs to another mesh: to an
+ * earlier mesh with the same id, or to a mesh with another id (the cursor does not show which). */
 bool api_cursor_read(const char *text, const char *collection, const st_mesh_info *info,
                      uint64_t *position, api_problem *problem);
 

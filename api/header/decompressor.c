@@ -23,18 +23,18 @@ struct api_decompressor {
      * written (to: decompressed). */
     uint64_t from, to;
     size_t turn; /* bytes decompressed in this call of api_decompressor_feed */
-    bool inside; /* a gzip member or zstd frame has begun and not ended */
+    bool inside; /* true if a gzip member or zstd frame has begun and not ended */
     api_decompressor_room *room;
-    /* The place of this decoder in the list of decoders that can be evicted; NULL: it has none and
-     * cannot be evicted. */
+    /* The entry of this decoder in the list of decoders that can be evicted; NULL: it has no entry
+     * and cannot be evicted. */
     api_decompressor_place *place;
     api_compression_memory memory;
     z_stream zlib;
     bool has_zlib;
-    bool deflated; /* the header of the present gzip member was read */
+    bool deflated; /* true if the header of the present gzip member was read */
     ZSTD_DCtx *zstd;
-    size_t wanted; /* bytes that zstd still needs to complete the next header or block */
-    bool skipped;  /* the present frame is a skippable one */
+    size_t wanted; /* number of bytes that zstd still needs to complete the next header or block */
+    bool skipped;  /* true if the present frame is a skippable one */
     unsigned char head[ZSTD_FRAMEHEADERSIZE_MAX]; /* the first bytes of the present frame */
     size_t head_length;
     char piece[API_DECOMPRESS_PIECE];
@@ -54,9 +54,9 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
 
 enum { EMPTY, BUSY, WAITING, TAKING, GONE };
 
-/* Finds a place for a zstd decoder in the list of decoders that can be evicted to free their
- * memory. Decoders of gzip need little memory and get no place. If no place is free, this decoder
- * cannot be evicted. */
+/* Enters a zstd decoder in the list of decoders that can be evicted to free their memory. If the
+ * list is full, this decoder cannot be evicted. Decoders of gzip need little memory and are not
+ * entered. */
 static void find_place(api_decompressor *u)
 {
     for (size_t i = 0; u->place == NULL && i < API_DECOMPRESS_PLACES; i++) {
@@ -384,8 +384,8 @@ static bool feed_zstd(api_decompressor *u, const unsigned char *bytes, size_t le
                 return false;
             }
         } else {
-            /* zstd gets no more than the next header or block at once, so that a refusal names the
-             * offset of the block at fault. */
+            /* In each step zstd gets no more than the next header or block, so that a refusal names
+             * the offset of the block at fault. */
             size_t left = length - at, most = u->wanted < left ? u->wanted : left;
             keep_head(u, bytes + at, most);
             if (!decode(u, bytes + at, most, &taken, problem)) {

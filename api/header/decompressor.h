@@ -36,10 +36,10 @@ typedef struct api_decompressor api_decompressor;
 
 enum { API_DECOMPRESS_PIECE = 32 * 1024, API_DECOMPRESS_PLACES = API_MAX_DECOMPRESSING >> 20 };
 
-/* The place of a decoder that can be evicted, that is, whose memory another request may free. The
- * decoder's request (the owner, below) needs exclusive access while it decompresses; another
- * request (the newcomer), which needs memory, needs it while it evicts the decoder. Each gains
- * exclusive access by changing the state from WAITING to another.
+/* The list entry of a decoder that can be evicted, that is, whose memory another request may free.
+ * Two requests need exclusive access to the decoder: its own request (the owner, below) while it
+ * decompresses, and a request that needs memory (the newcomer) while it evicts the decoder. Each
+ * gains exclusive access by changing the state from WAITING to another.
  *
  *     EMPTY --owner--> BUSY <--owner--> WAITING --newcomer--> TAKING --newcomer--> GONE
  *       ^--------owner---'                                                          |
@@ -52,15 +52,16 @@ typedef struct api_decompressor_place {
     _Atomic uint64_t began, bytes;
 } api_decompressor_place;
 
-/* The state that all decoders of a service share. Initially it is all zeros. */
+/* The state that all decoders of a service share. Initially all bytes of the struct are zero. */
 typedef struct api_decompressor_room {
     _Atomic size_t lent; /* bytes that all decoders have allocated, at most API_MAX_DECOMPRESSING */
-    _Atomic uint64_t arrived; /* compressed bytes of all bodies since the server started */
+    /* Compressed bytes of all bodies that arrived since the server started. */
+    _Atomic uint64_t arrived;
     api_decompressor_place places[API_DECOMPRESS_PLACES];
 } api_decompressor_room;
 
 /* Makes a decoder. `coding` must not be identity. `take` receives the decompressed pieces and
- * returns false to stop. `room` limits the memory of all decoders of a service together, and must
+ * returns false to stop. `room` limits the total memory of all decoders of a service, and must
  * outlive the decoder. Returns NULL with the problem filled. */
 api_decompressor *api_decompressor_new(api_coding coding, api_decompressor_room *room,
                                        bool (*take)(void *context, const char *bytes,

@@ -3,7 +3,7 @@
  * A tag is "INCARNATION-METADATA-REVISION-REPRESENTATION". The first three parts change with the
  * mesh. REPRESENTATION is one word for what was sent ("summary", "obj", "page"), followed by the
  * content coding if the answer has one ("obj-gzip"). Tags are strong: two answers of one URL with
- * equal tags are equal byte for byte (8.8.3.3). */
+ * equal tags are equal byte for byte (RFC 9110 8.8.3.3). */
 #ifndef HE_API_HEADER_ETAG_H
 #define HE_API_HEADER_ETAG_H
 

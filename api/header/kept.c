@@ -17,7 +17,7 @@ typedef struct form {
 } form;
 
 struct api_kept {
-    /* The compressed bodies, indexed by coding; NULL: not made yet. */
+    /* The compressed forms of the body, indexed by coding; NULL: not made yet. */
     _Atomic(form *) forms[API_IDENTITY];
     char etag[TAG];
     size_t length;

@@ -137,7 +137,8 @@ static int closeness(piece range, const char *type)
     }
     for (size_t i = 0; i + 1 < range.length; i++) {
         if (lower(range.at[i]) != lower(type[i])) {
-            return 0; /* the NUL at the end of a type that is shorter than the range also differs */
+            /* Also true if the type ends first: its NUL differs from the range's character. */
+            return 0;
         }
     }
     return 2;

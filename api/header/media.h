@@ -16,8 +16,8 @@ bool api_media_is(const char *content_type, const char *type);
 
 /* Returns the index in `offers` (which ends in NULL) of the type that an Accept header prefers: the
  * one with the highest q, and the first of those with equal q. Returns -1 if the header refuses all
- * offers. A NULL header accepts everything. The most specific range that matches an offer gives its
- * q, as RFC 9110 12.5.1 says. Malformed ranges are skipped. */
+ * offers. A NULL header accepts everything. The q of an offer is that of the most specific range of
+ * the header that matches it (RFC 9110 12.5.1). Malformed ranges are skipped. */
 int api_media_choose(const char *accept, const char *const *offers);
 
 /* One entry of a weighted list such as Accept-Encoding: "gzip;q=0.5". */

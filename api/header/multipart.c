@@ -26,8 +26,9 @@ struct api_multipart {
     /* How many of the `matched` bytes belong to the end of the line before the content of a part,
      * so that they cannot be content of the part. */
     size_t implied;
-    bool inside;      /* the content of a part is being read */
-    char close;       /* the last byte that was read after a delimiter; 0: none was read */
+    bool inside; /* true if the content of a part is being read */
+    /* The last byte that was read of the line after a boundary; 0: none was read. */
+    char close;
     size_t parts;     /* number of parts begun */
     uint64_t head_at; /* offset in the body of the headers of the present part */
     size_t head_length;

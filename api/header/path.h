@@ -1,9 +1,9 @@
 /* path.h - splits and decodes the target of a request: its path and its query.
  *
  * The raw path is split at '/' and each segment decoded afterwards, so that an encoded slash (%2F)
- * never separates segments. It is allowed in the last segment, because attribute names may contain
- * a slash, and refused elsewhere. %00, malformed escapes and bytes that are not UTF-8 are refused
- * everywhere. */
+ * never separates segments. An encoded slash is allowed in the last segment, because attribute
+ * names may contain a slash, and refused elsewhere. %00, malformed escapes and bytes that are not
+ * UTF-8 are refused everywhere. */
 #ifndef HE_API_HEADER_PATH_H
 #define HE_API_HEADER_PATH_H
 
@@ -14,7 +14,7 @@
 typedef struct api_path {
     const char *segments[API_MAX_SEGMENTS]; /* the decoded segments; their memory is in the arena */
     size_t count;                           /* 0 for "/" */
-    bool has_slash;                         /* the last segment contains an encoded slash */
+    bool has_slash;                         /* true if the last segment contains an encoded slash */
 } api_path;
 
 /* Splits a path into segments and decodes them. Returns false with bad_path (400), with

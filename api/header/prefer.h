@@ -6,9 +6,11 @@
 #include <stdbool.h>
 
 typedef struct api_prefer {
-    bool minimal;       /* return=minimal: the client wants no body */
-    bool respond_async; /* respond-async: the client wants 202 and a job rather than to wait */
-    double wait;        /* wait=N: seconds that the client will wait; negative: not given */
+    bool minimal; /* true if the header has return=minimal: the client wants no body */
+    /* True if the header has respond-async: the client wants 202 and a job rather than to wait. */
+    bool respond_async;
+    /* The N of wait=N: seconds that the client will wait; negative: not given. */
+    double wait;
 } api_prefer;
 
 /* Reads the header Prefer, which may be NULL. Unknown preferences are ignored, as the RFC

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Each row: X(constant, name, true if the header is a list). Several lines of a list are joined to
- * one value (RFC 9110 5.3). */
+/* Each row: X(constant, name, true if the header is a list). If a request has several lines of such
+ * a header, they are joined to one value (RFC 9110 5.3). */
 #define API_REQUEST_HEADER_MAP(X)                 \
     X(ACCEPT, "Accept", true)                     \
     X(ACCEPT_ENCODING, "Accept-Encoding", true)   \
@@ -29,8 +29,8 @@ typedef enum api_request_header {
 } api_request_header;
 #undef API_REQUEST_HEADER_CONSTANT
 
-/* Returns the header with this name, which is compared without letter case; API_REQUEST_HEADERS for
- * a header that no handler reads. */
+/* Returns the constant of the header with this name, whatever its letter case; API_REQUEST_HEADERS
+ * for a header that no handler reads. */
 api_request_header api_request_header_find(const char *name, size_t length);
 
 bool api_request_header_is_list(api_request_header header);

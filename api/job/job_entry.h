@@ -14,26 +14,29 @@ typedef struct api_job_listener api_job_listener;
  * and except `work` while the work runs. */
 typedef struct api_job_entry {
     api_job_table *table;
-    /* Description of the job; phase and progress are copied here only when it has ended. */
+    /* Description of the job. Its members phase and progress are set only when the job has
+     * ended. */
     api_job facts;
     char *body;    /* facts.body, owned by the entry */
     api_blob blob; /* facts.blob, owned by the entry */
     /* The memory of the strings in facts.headers. If the job was loaded from the store after a
      * restart, this is also the memory of the other strings in `facts`. */
     char *texts;
-    api_job_work work; /* work.self is NULL when the work has ended */
-    /* The mesh whose listeners get events of the job, with a reference held. NULL if the job has no
-     * mesh or has ended. */
+    api_job_work work; /* the work of the job; work.self is NULL when the work has ended */
+    /* The mesh whose listeners get events of the job; the entry counts as one reference to it. NULL
+     * if the job has no mesh or has ended. */
     st_mesh *about;
-    st_wait wait;      /* waits, after the work has ended, until the result of the job is durable */
+    /* The wait, after the work has ended, until the result of the job is durable. */
+    st_wait wait;
     bool changed;      /* the work changed a mesh */
-    bool is_kept;      /* the store has a record of the job */
-    bool interrupted;  /* the job was queued or running when the server last stopped */
-    api_job_state end; /* the final state, set before clients may see it */
-    double ended;      /* time of the end, set together with `end` */
-    uint64_t noted;    /* position in the journal of the record of the job's end; 0: none */
-    st_wait accepted;  /* waits until the record that the job was accepted is durable */
-    uint32_t uses; /* number of references: of the list of jobs, the thread pool and listeners */
+    bool is_kept;      /* true if the store has a record of the job */
+    bool interrupted;  /* true if the job was queued or running when the server last stopped */
+    api_job_state end; /* the final state of the job, set before clients may see it */
+    double ended;      /* time at which the job ended, set together with `end` */
+    /* Position in the journal at which the end of the job was recorded; 0: not recorded. */
+    uint64_t noted;
+    st_wait accepted; /* the wait until it is durably recorded that the job was accepted */
+    uint32_t uses;    /* number of references: of the list of jobs, the thread pool and listeners */
     bool listed;
     struct api_job_entry *next, *previous; /* neighbours in the list, in the order of job numbers */
     api_job_listener *waiting;             /* listeners to wake when the job changes */
@@ -51,13 +54,14 @@ struct api_job_table {
     pthread_mutex_t lock;
     api_job_entry *first, *last;
     size_t count;
-    size_t bytes; /* bytes of all answers that are kept */
+    size_t bytes; /* number of bytes of all answers that are kept */
     uint64_t submitted;
     size_t listeners;
     bool stopped;
     /* Number of jobs that ended in each final state since the server started. */
     uint64_t ended[API_JOB_STATES];
-    /* waited: times of jobs in the queue; ran: times running; in microseconds. */
+    /* Statistics of how long jobs waited in the queue (`waited`) and ran (`ran`), in
+     * microseconds. */
     st_histogram waited, ran;
 };
 
@@ -67,7 +71,8 @@ static inline bool api_job_entry_has_ended(const api_job_entry *job)
 {
     return job->facts.state >= API_JOB_DONE;
 }
-/* Finds the job with the wanted id. Returns NULL if there is none or the client may not see it. */
+/* Finds the job with the wanted id. Returns NULL if there is no such job or the client may not see
+ * it. */
 api_job_entry *api_job_entry_find(const api_job_table *table, api_job_wanted wanted);
 static inline bool api_job_entry_is_seen(const api_job_entry *job, const api_token *viewer)
 {
@@ -77,7 +82,7 @@ static inline bool api_job_entry_is_seen(const api_job_entry *job, const api_tok
 const api_job *api_job_entry_facts(api_job_entry *job);
 void api_job_entry_release(api_job_entry *job);
 
-/* Counts the job as started, for metrics. The caller must hold the table's lock. */
+/* Counts the job as started, in the metrics. The caller must hold the table's lock. */
 void api_job_count_begin(api_job_entry *job);
 void api_job_count_end(api_job_entry *job);
 
@@ -85,8 +90,9 @@ void api_job_count_end(api_job_entry *job);
 /* Returns the id of the job's mesh: the mesh that it made, if it made one, else the mesh that it
  * was started on. */
 const char *api_job_entry_mesh(const api_job *facts);
-/* Records the job in the store, from its facts, `end` and `ended`, so that it survives a restart.
- * Sets *position to 0 if the store keeps nothing on disk.
+/* Records the job in the store, from its members `facts`, `end` and `ended`, so that it survives a
+ * restart. Sets *position to the record's position in the journal, or to 0 if the store keeps
+ * nothing on disk.
  * Returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY if the store cannot record it. */
 st_status api_job_keep(api_job_entry *job, uint64_t *position);
 /* Deletes the store's record of a job. Fails with the errors of api_job_keep. */

@@ -20,7 +20,7 @@ struct api_job_listener {
 
     void (*wake)(void *context);
     void *context;
-    bool waiting; /* the listener is in the job's list `waiting` */
+    bool waiting; /* true if the listener is in the job's list `waiting` */
     api_job_listener *next;
 };
 

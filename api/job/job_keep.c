@@ -1,8 +1,8 @@
 /* job_keep.c - keeps jobs across a restart: stores and loads them.
  *
  * A job is recorded when it is accepted and when it ends. If its work changed a mesh, the journal's
- * record of that change also shows that the job was done. So a job without a recorded end or change
- * has changed nothing. */
+ * record of that change also shows that the job was done. So a job with neither a recorded end nor
+ * a recorded change has changed nothing. */
 #include "api/job/job_entry.h"
 #include "api/json/problem.h"
 #include "base/mem.h"
@@ -97,8 +97,8 @@ st_status api_job_forget(const api_job_entry *j)
 
 enum { TEXTS = 2 + API_JOB_HEADERS };
 
-/* Copies those texts of a stored job for which api_job has only a pointer. Returns false when
- * memory is out. */
+/* Copies those texts of a stored job to which api_job only points. Returns false when memory is
+ * out. */
 static bool copy_texts(api_job_entry *j, const st_job *job)
 {
     const char *from[TEXTS] = {job->operation, job->phase};

@@ -89,7 +89,8 @@ static void take_out(api_job_table *table, api_job_entry *j)
 
 static void forget(api_job_table *table, api_job_entry *j)
 {
-    /* If the record cannot be deleted now, it is deleted later because of its age. */
+    /* If the store cannot delete the job's record now, it deletes the record later because of its
+     * age. */
     (void)api_job_forget(j);
     take_out(table, j);
 }
@@ -237,8 +238,8 @@ static void end(api_job_entry *j)
     st_release(about);
 }
 
-/* Replaces the answer by a problem, because the job's change could not be made durable, or may not
- * be. When memory is out, only the status remains. */
+/* Replaces the answer by a problem, because the job's change could not be made durable, or because
+ * that is not known. When memory is out, only the status of the problem is kept. */
 static void answer_lost(api_job_entry *j)
 {
     api_problem problem = {0};
@@ -365,7 +366,8 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    /* `about` is read without the lock, because it is released only when the job ends. */
+    /* The member `about` can be read without the lock, because it does not change before the job
+     * ends. */
     tell_listeners(j->about, &facts);
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
@@ -412,7 +414,8 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
 static void stop_if_lost(api_job_entry *j)
 {
     if (j->accepted.end == ST_WAIT_LOST) {
-        /* The client will not get the answer 202, so it does not know the job. */
+        /* The client will not get the answer 202, because the job's record was lost, so it will
+         * never ask for the job. */
         atomic_store(&j->stop, true);
     }
 }

@@ -11,9 +11,10 @@
  * Requests that take long but do not become jobs also run on that pool. Answers are kept for a
  * while, up to API_JOBS_KEPT jobs and API_JOBS_BYTES of answers; the jobs that ended first are
  * dropped first. The store keeps a record of each job, so that no job is lost by a restart; a job
- * that had not ended is then failed, as interrupted. Except its answer, a job frees all its
- * resources before clients can see its end, and they see the end only when it is durable. An answer
- * may be a file of many megabytes: it is moved into the table and lent to readers, not copied.
+ * that had not ended then counts as failed, with the problem `interrupted`. A job frees all its
+ * resources except the answer before clients can see its end, and they see the end only when it is
+ * durable. An answer may be a file of many megabytes: it is moved into the table and lent to
+ * readers, not copied.
  *
  * The table has one lock, held for at most as long as it takes to copy an answer. Progress is
  * reported without the lock, except when listeners have to be woken. The reporting thread may then
@@ -38,7 +39,8 @@ enum {
 };
 
 typedef struct api_job_table_options {
-    st_store *store; /* keeps the records of jobs, and says what is durable */
+    /* The store, which keeps the records of jobs and knows which of them are durable. */
+    st_store *store;
     /* Runs the task on another thread. Returns false when too many tasks wait already. */
     bool (*submit)(void *pool, const st_task *task);
     void *pool;
@@ -48,24 +50,24 @@ typedef struct api_job_table_options {
 /* Makes a table with the jobs that the store has kept. Returns NULL when memory is out or the jobs
  * cannot be read. */
 api_job_table *api_job_table_new(const api_job_table_options *options);
-/* Frees the table. No job may be running, or waiting for the pool or the journal. */
+/* Frees the table. No job may be running, or waiting for the job pool or the journal. */
 void api_job_table_free(api_job_table *table);
 /* Cancels all jobs and accepts no more. */
 void api_job_table_stop(api_job_table *table);
 
-/* The answer of a job's work. It is borrowed until the work is freed, except `body` and `blob`,
- * which the table takes. */
+/* The answer of a job's work. Its pointers are borrowed until the work is freed, except `body` and
+ * `blob`, which the table takes over. */
 typedef struct api_job_outcome {
     int status;
     const char *location; /* value of the header Location; "": none */
     char *body;           /* memory of base/mem.h; NULL: none */
     size_t length;
-    api_blob blob; /* the answer, if it is not in `body` */
+    api_blob blob; /* the answer's body, if it is not in `body` */
     bool shown;    /* as in api_job */
     /* Values of the answer's headers, as in api_job; NULL for a header that the answer does not
      * have. */
     const char *headers[API_JOB_HEADERS];
-    st_shown awaits; /* what must be durable before clients may see the end of the job */
+    st_shown awaits; /* the change that must be durable before clients may see the end of the job */
     bool changed;    /* the work changed a mesh */
 } api_job_outcome;
 
@@ -81,22 +83,23 @@ typedef struct api_job_work {
                 api_job_outcome *out);
     void (*free)(void *self);
     double seconds; /* estimated duration */
-    /* The mesh whose listeners get events of the job, to which the work holds a reference; NULL if
-     * there is none. */
+    /* The mesh whose listeners get events of the job; the work counts as one reference to the mesh.
+     * NULL if there is no such mesh. */
     st_mesh *about;
-    const char *holder; /* name of the token that started the job; "" if there was no token */
+    /* Name of the token of the request that started the job; "" if it had no token. */
+    const char *holder;
     /* How many queued and running jobs the token `holder` may have, including this job; 0 is no
      * limit. */
     uint64_t most;
-    /* The work has claimed the mesh `about`: other requests cannot write to the mesh until the work
-     * has ended (store/write.h). */
+    /* True if the work has claimed the mesh `about`: other requests cannot write to the mesh until
+     * the work has ended (store/write.h). */
     bool claims;
 } api_job_work;
 
-/* Starts a job: takes `work` and describes the job in `out`. `operation` must be a literal; `mesh`
- * is the id of the job's mesh or "".
+/* Starts a job that does `work`, which the table then owns; describes the job in `out`. `operation`
+ * must be a literal; `mesh` is the id of the job's mesh or "".
  * Returns ST_TOO_MANY if too many jobs wait, ST_QUOTA if the holder has as many as allowed,
- * ST_BEHIND if the journal is too far behind to record it, or ST_NO_MEMORY. */
+ * ST_BEHIND if too many changes wait to be written to the journal, or ST_NO_MEMORY. */
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out);
 
@@ -112,8 +115,8 @@ typedef struct api_job_wanted {
  * such job. */
 bool api_job_find(api_job_table *table, api_job_wanted wanted,
                   void (*show)(void *context, const api_job *job), void *context);
-/* Borrows the wanted job with its answer, until api_job_return; `*facts` gets its present
- * description. Returns NULL if there is no such job. */
+/* Borrows the wanted job with its answer until api_job_return is called; `*facts` gets the present
+ * description of the job. Returns NULL if there is no such job. */
 typedef struct api_job_entry api_job_loan;
 api_job_loan *api_job_lend(api_job_table *table, api_job_wanted wanted, api_job *facts);
 void api_job_return(api_job_loan *loan);
@@ -137,15 +140,15 @@ st_status api_job_remove(api_job_table *table, api_job_wanted wanted, bool *forg
 /* The number of jobs in each state, and statistics since the server started. */
 typedef struct api_job_measures {
     size_t in_state[API_JOB_STATES];
-    /* Number of jobs that ended in each final state; zero for other states. */
+    /* Number of jobs that ended in each final state; 0 for the states that are not final. */
     uint64_t ended[API_JOB_STATES];
     /* waited: times of jobs in the queue; ran: times running; in microseconds. */
     st_distribution waited, ran;
-    size_t bytes; /* bytes of the answers that are kept */
+    size_t bytes; /* number of bytes of all answers that are kept */
     size_t listeners, most_listeners;
 } api_job_measures;
 
-/* Measures the table of jobs. It holds the table's lock for as long as counting the jobs takes. */
+/* Measures the table of jobs. The function holds the table's lock while it counts the jobs. */
 void api_job_measure(api_job_table *table, api_job_measures *out);
 /* Opens the event stream of a job: one event for each change of the job, and the event `bye` after
  * the last one or when the server stops. The caller frees the source.

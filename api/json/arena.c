@@ -13,7 +13,7 @@ enum { FIRST_BLOCK = 1024 - 64, LARGEST_STEP = 1 << 20 };
 
 struct api_block {
     api_block *older;
-    size_t used, size; /* used: how many of `bytes` were allocated; size: how many there are */
+    size_t used, size; /* size: number of bytes in `bytes`; used: how many of them were allocated */
     alignas(max_align_t) unsigned char bytes[];
 };
 

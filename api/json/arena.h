@@ -20,7 +20,8 @@ void *api_arena_alloc(api_arena *arena, size_t size);
 void *api_arena_array(api_arena *arena, size_t count, size_t size);
 /* Returns a copy of `bytes` that ends in NUL, or NULL when memory is out. */
 char *api_arena_copy(api_arena *arena, const char *bytes, size_t length);
-/* Invalidates all allocations of the arena, but keeps its newest block for the next ones. */
+/* Invalidates all allocations of the arena, but keeps its newest block of memory for later
+ * allocations. */
 void api_arena_empty(api_arena *arena);
 void api_arena_clear(api_arena *arena); /* frees all blocks */
 

@@ -12,22 +12,24 @@
 #include "api/json/json_out.h"
 #include "mesh/column.h"
 
-/* Writes the value in `row`, the bytes of one row of a column. */
+/* Writes the attribute value of one element; `row` has the bytes of the value. */
 void api_write_value(api_out *out, const he_column *column, const unsigned char *row);
 /* Writes the components of one value into an array that the caller has opened. */
 void api_write_components(api_out *out, const he_column *column, const unsigned char *row);
 bool api_read_value(const api_in *in, const he_column *column, unsigned char *row);
-/* Reads all values of an array into packed rows. The caller frees `rows`, which come from mem.h. */
+/* Reads all values of an array into `rows`, one after the other without gaps. The caller frees
+ * `rows`, which come from mem.h. */
 bool api_read_values(const api_in *in, const he_column *column, unsigned char **rows,
                      size_t *count);
 
 /* Reads the definition of an attribute from an object: the members type, components, rule, default
- * and labels. Makes a new column without rows. The caller reads the other members. */
+ * and labels. Makes a new column (the array of an attribute's values) that has no values yet. The
+ * caller reads the other members. */
 bool api_read_column(const api_in *object, he_kind domain, const char *name, he_column **out);
 /* These three functions write members of an object that the caller has begun: api_write_head writes
  * the members from "domain" to "default"; api_write_labels writes "labels" if the column has labels
  * (the list may be long); api_write_column writes what api_write_head writes and "bytes", the size
- * of all rows. */
+ * of all values. */
 void api_write_head(api_out *out, const he_column *column);
 void api_write_labels(api_out *out, const he_column *column);
 void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);

@@ -26,9 +26,10 @@ struct cJSON;
 
 typedef struct api_in {
     const struct cJSON *value;
-    /* The array or object around the value; NULL for the outermost value. */
+    /* The cursor at the array or object that contains the value; NULL for the outermost value. */
     const struct api_in *parent;
-    size_t index;         /* index of the value in its array; unused for a member of an object */
+    /* Index of the value in its array; not used if the value is a member of an object. */
+    size_t index;
     api_problem *problem; /* the problem that is filled when the value is refused */
 } api_in;
 
@@ -48,11 +49,13 @@ typedef struct api_items {
 
 /* Limits and options for parsing a text. */
 typedef struct api_in_options {
-    size_t values;    /* how many values the text may contain at most */
-    api_items *items; /* the array whose items are left out, with `name` set; NULL: there is none */
+    size_t values; /* how many values the text may contain at most */
+    /* Describes the array whose items are left out, with `name` set; NULL: there is no such
+     * array. */
+    api_items *items;
 } api_in_options;
 
-/* One parsed item; reading the next item replaces it. {0} is no item. */
+/* One parsed item of a long array; reading the next item replaces it. {0}: no item was read yet. */
 typedef struct api_item {
     api_document document;
     api_in in;
@@ -92,7 +95,7 @@ bool api_in_only(const api_in *in, const char *const *names);
 bool api_in_object(const api_in *in); /* checks that the value is an object */
 /* Returns false if the object has no member `name`. */
 bool api_in_find(const api_in *object, const char *name, api_in *out);
-/* Refuses an object without the member `name`. */
+/* Finds the member `name`, and refuses the object if it has no such member. */
 bool api_in_need(const api_in *object, const char *name, api_in *out);
 /* Checks that the value is an array of `min` to `max` values. */
 bool api_in_array(const api_in *in, size_t min, size_t max);
@@ -108,8 +111,8 @@ const char *api_in_name(const api_in *member); /* returns the name of a member o
 /* --- reading values --- */
 bool api_in_bool(const api_in *in, bool *out);
 bool api_in_number(const api_in *in, double *out); /* reads a finite number */
-/* Reads a number. Refuses a number outside [min, max] with bad_value; with `exclusive`, also `min`
- * and `max` themselves. */
+/* Reads a number. Refuses a number outside [min, max] with bad_value; if `exclusive` is true, also
+ * `min` and `max` themselves. */
 bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out);
 /* Reads a whole number in [min, max]; max is at most 2^53. */
 bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out);

@@ -109,7 +109,7 @@ static void add_escape(api_text *text, unsigned char c)
 static void add_string(api_text *text, const char *bytes, size_t length)
 {
     api_text_add_char(text, '"');
-    size_t plain = 0; /* start of the bytes that need no escaping */
+    size_t plain = 0; /* start of the bytes that need no escaping and are not copied yet */
     for (size_t i = 0; i < length;) {
         unsigned char c = (unsigned char)bytes[i];
         if (c >= 0x20 && c < 0x80 && c != '"' && c != '\\' && c != 0x7F) {

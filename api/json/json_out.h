@@ -26,11 +26,13 @@ typedef struct api_out {
     uint64_t objects; /* bit d is set if nesting level d is an object, clear if it is an array */
     uint64_t filled;  /* bit d is set if nesting level d has a value already */
     unsigned depth;
-    bool keyed; /* a key was written, but not yet its value */
+    bool keyed; /* true if a key was written, but not yet its value */
     /* Called while a long list is written, to ask whether writing must stop; NULL: writing never
      * stops. */
     struct he_progress *progress;
-    unsigned parts; /* number of parts of lists of ids written since `progress` was set */
+    /* Long lists of ids are written in parts: how many parts were written since `progress` was
+     * set. */
+    unsigned parts;
 } api_out;
 
 void api_out_init(api_out *out, api_text *text);
@@ -48,8 +50,8 @@ void api_out_i64(api_out *out, int64_t value);
 /* Writes a number, or null for NaN and infinity, which JSON cannot express. */
 void api_out_number(api_out *out, double value);
 void api_out_string(api_out *out, const char *string);
-/* Writes a string. Each byte that is not UTF-8 becomes U+FFFD, because text of the client may be
- * quoted. */
+/* Writes a string. Each byte that is not UTF-8 becomes U+FFFD, because the string may quote invalid
+ * text of a client. */
 void api_out_string_length(api_out *out, const char *bytes, size_t length);
 /* Writes an id, or null for HE_NONE. */
 void api_out_id(api_out *out, uint32_t id);
@@ -64,7 +66,7 @@ void api_out_time(api_out *out, double seconds);
  * cannot fail. */
 size_t api_out_later(api_out *out);
 void api_out_fill(api_text *text, size_t at, uint64_t value);
-/* Writes a text that is one whole JSON value already. */
+/* Copies a text that is already one whole JSON value. */
 void api_out_raw(api_out *out, const char *json, size_t length);
 
 /* The api_out_key_* functions write a key and its value. */

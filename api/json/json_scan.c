@@ -77,7 +77,7 @@ bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *p
     he_lexer x;
     he_token token = HE_TOKEN_PART;
     size_t values = 0;
-    bool inside = false; /* the scan is inside the array of the items */
+    bool inside = false; /* true if the scan is inside the array whose items the caller parses */
     he_lexer_init(&x, NULL);
     x.depth_most = API_MAX_DEPTH;
     he_lexer_feed(&x, text.at, text.length);

@@ -14,7 +14,8 @@
  * parsed document leaves out (api_items), and counts the items. */
 bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *problem);
 
-/* Reads the next token of a control document, and counts its values in `*values`. */
+/* Reads the next token of a control document, and counts the values of the document in
+ * `*values`. */
 bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, api_problem *problem);
 
 /* Refuses the text because of the byte at offset `place`. Returns false. The caller sets the JSON

@@ -1,4 +1,4 @@
-/* known_names.h - the end of a message that refuses an unknown name: it says which names exist.
+/* known_names.h - makes the end of a message that refuses an unknown name: which names exist.
  *
  *     api_known_names known = {.wanted = "split_edge"};
  *     for each name that exists {
@@ -18,8 +18,8 @@
 
 enum { API_KNOWN_TEXT = 200 };
 
-/* The wanted name and what is known of the names that exist. The caller sets `wanted` only; all
- * names are borrowed. */
+/* The unknown name that was wanted, and a summary of the names that exist. The caller sets `wanted`
+ * only; all names are borrowed. */
 typedef struct api_known_names {
     const char *wanted;
     /* The existing name that is most like `wanted`; NULL: no name is like it. */

@@ -244,7 +244,8 @@
     X(TOO_MANY_MESHES, "too_many_meshes", 507, "There are too many meshes",                        \
       "The configured number of meshes is reached. Delete one and try again.")
 
-/* The numbers of he_status come first, then those of API_CODE_MAP. HE_OK means "no problem". */
+/* The codes of problems. The numbers of he_status come first, then those of API_CODE_MAP. HE_OK
+ * means "no problem". */
 typedef enum api_code {
     API_CODE_BASE = HE_STATUS_COUNT - 1,
 #define API_CODE_ENUM(constant, slug, status, title, text) API_##constant,
@@ -260,24 +261,28 @@ typedef struct api_problem {
     int code;                        /* an api_code or he_status; HE_OK: no problem */
     int status;                      /* HTTP status; 0 selects the status of `code` */
     char detail[API_PROBLEM_DETAIL]; /* the message: one sentence in UTF-8 */
-    bool has_pointer;                /* a JSON pointer is set; "" is the whole body */
+    /* True if a JSON pointer is set; the pointer "" means the whole body. */
+    bool has_pointer;
     char pointer[API_PROBLEM_POINTER];
     bool has_element;
     he_kind kind;
     uint32_t id;
-    bool has_revision; /* `revision` is set to the mesh's present revision (with status 412) */
+    /* True if `revision` is set, to the mesh's present revision (with status 412). */
+    bool has_revision;
     uint64_t revision;
     /* The report of defects, borrowed, from which the members "elements" and "total" are made;
      * NULL: none. */
     const he_report *report;
     /* Set of the repairs (repair.h) with which the body would be accepted; 0: none. */
     unsigned repairs;
-    /* The body is a mesh document: each element gets a JSON pointer such as "/faces/3/1". */
+    /* True if the body is a mesh document: each element of the report then gets a JSON pointer such
+     * as "/faces/3/1". */
     bool report_pointers;
     /* Types or codings that would be accepted (406, 415); ends in NULL, borrowed. */
     const char *const *supported;
-    uint64_t retry;   /* seconds until a retry makes sense; 0: unknown */
-    const char *role; /* the role that the token lacks, with 403; a literal. NULL: none */
+    uint64_t retry; /* seconds until a retry makes sense; 0: unknown */
+    /* The role that the token lacks (with status 403), a string literal; NULL: none. */
+    const char *role;
 } api_problem;
 
 /* Returns the slug of a code; never NULL. */
@@ -293,15 +298,15 @@ int api_code_find(const char *slug);
  * already is not changed: the first problem is reported. */
 bool api_problem_set(api_problem *problem, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Fills the problem from a refusal of core about a body; elements that do not exist give the status
- * 422. */
+/* Fills the problem from a refusal of core about the request's body; if an element does not exist,
+ * the status is 422. */
 bool api_problem_set_core(api_problem *problem, const he_error *err);
-/* Fills the problem from a refusal of core about the path; elements that do not exist give the
- * status 404 or 410. */
+/* Fills the problem from a refusal of core about the request's path; if the element does not exist,
+ * the status is 404 or 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Fills the problem that is sent instead of an answer if a change that the answer shows did not
- * become durable; `wait` has the reason. `changed` says that the request itself made the change
- * that was lost. */
+/* Fills the problem that is sent instead of an answer if a change that the answer would show did
+ * not become durable; `wait` has the reason. `changed` is true if the request itself made that lost
+ * change. */
 bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -315,12 +320,12 @@ enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
 int api_problem_http(const api_problem *problem);
-/* Returns the value of the header Retry-After, in `out` or as a literal; NULL if waiting does not
- * help. */
+/* Returns the value of the header Retry-After, written to `out` or a string literal; NULL if
+ * waiting does not help. */
 enum { API_RETRY = 24 };
 const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
-/* Returns the JSON object that is sent, with status 507, if there is no memory to write one; a
- * literal. */
+/* Returns the JSON object that is sent, with status 507, if there is no memory to write a problem;
+ * a string literal. */
 const char *api_problem_unwritten(void);
 /* Appends the problem as a JSON object to `text`; `request_id` may be NULL. HE_NO_MEMORY is written
  * as API_MEMORY_BUDGET if the memory budget is used up. */

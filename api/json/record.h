@@ -1,4 +1,4 @@
-/* record.h - writing plain structs as JSON objects, from tables.
+/* record.h - writes plain structs as JSON objects, as tables describe them.
  *
  * A row describes one member of the object: its name, its type in the OpenAPI document, and where
  * its value lies in a struct. Schemas (api/describe/schemas.c) and answers are both made from the
@@ -22,7 +22,8 @@
 
 /* The C type of a value in the struct. The macro API_FORM determines it. */
 typedef enum api_form {
-    API_FORM_NONE, /* the value has no C type: the row's function `write` makes it */
+    /* The value is not stored in the struct: the row's function `write` computes and writes it. */
+    API_FORM_NONE,
     API_FORM_BOOL,
     API_FORM_INT,
     API_FORM_I64,
@@ -41,7 +42,7 @@ typedef struct api_field {
     const char *doc; /* description in the OpenAPI document, may be NULL */
     api_form form;
     size_t offset;     /* offset of the value in the struct */
-    bool zero_is_none; /* 0 or "" means that there is no value */
+    bool zero_is_none; /* true if 0 or "" means that there is no value */
     /* 1 + the offset of a bool in the struct that says whether there is a value (API_KNOWN); 0:
      * there always is one */
     size_t known;
@@ -68,13 +69,13 @@ typedef struct api_record {
         const char *: API_FORM_TEXT,                                                               \
         char *: API_FORM_CHARS,                                                                    \
         he_vec3: API_FORM_VEC3)
-/* A row whose value is a member of a struct. */
+/* Makes a row of a table whose value is a member of a struct. */
 #define API_FIELD(name_, type_, struct_, member_, ...)                          \
     {                                                                           \
         .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), \
         .form = API_FORM(((struct_ *)0)->member_), __VA_ARGS__                  \
     }
-/* A row whose value a function writes. */
+/* Makes a row of a table whose value a function computes and writes. */
 #define API_FIELD_MADE(name_, type_, write_, ...)                        \
     {                                                                    \
         .name = (name_), .type = (type_), .write = (write_), __VA_ARGS__ \
@@ -86,8 +87,8 @@ void api_record_members(api_out *out, const api_record *record, const void *valu
 /* Writes the struct at `value` as an object. */
 void api_record_write(api_out *out, const api_record *record, const void *value);
 
-/* Returns true if the C type of the row's value can be written as the type of its schema. A test
- * checks all rows. */
+/* Returns true if the C type of the row's value can be written as the row's type in the OpenAPI
+ * document. A test checks all rows. */
 bool api_field_fits(const api_field *field);
 
 #endif

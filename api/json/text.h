@@ -16,7 +16,7 @@ typedef struct api_text {
     bool failed;
 } api_text;
 
-/* Bytes that belong to another object; not terminated by NUL. */
+/* Borrowed bytes, which belong to another object; they are not terminated by NUL. */
 typedef struct api_bytes {
     const char *at;
     size_t length;
@@ -28,13 +28,13 @@ static inline api_bytes api_text_bytes(const api_text *text)
     return (api_bytes){text->bytes, text->length};
 }
 
-void api_text_clear(api_text *text); /* frees the bytes; the text is {0} again */
-/* Makes the text empty and not failed; keeps memory and maximum. */
+void api_text_clear(api_text *text); /* frees the bytes and sets the text to {0} */
+/* Makes the text empty and clears `failed`; the text keeps its memory and its maximum. */
 void api_text_empty(api_text *text);
 
-/* Returns space for `size` more bytes, at text->bytes + text->length. Returns NULL and sets
- * `failed` when memory is out or the maximum would be exceeded. The caller writes there and adds
- * the number of bytes written to text->length. */
+/* Returns space for `size` more bytes, at text->bytes + text->length. The caller writes there and
+ * adds the number of bytes written to text->length. Returns NULL and sets `failed` when memory is
+ * out or the maximum would be exceeded. */
 char *api_text_room(api_text *text, size_t size);
 void api_text_add(api_text *text, const char *bytes, size_t length);
 void api_text_add_string(api_text *text, const char *string);

@@ -11,7 +11,7 @@
  *     connections  address open connections                               429 too_many_connections
  *     jobs         token   queued and running jobs          429 too_many_jobs_of_token
  *     meshes       token   existing meshes that it made     507 quota
- *     mesh_bytes   token   their memory, by their cards     507 quota */
+ *     mesh_bytes   token   memory of these meshes           507 quota */
 #ifndef HE_API_LIMIT_LIMIT_H
 #define HE_API_LIMIT_LIMIT_H
 
@@ -45,8 +45,8 @@ typedef enum api_limit {
 /* The largest burst: how many seconds' worth of requests and bytes a bucket may hold. */
 enum { API_BURST_MOST = 3600 };
 
-/* How many tokens and how many addresses have a bucket for their rates of requests and bytes
- * (rate.h) at one time. */
+/* The most tokens, and the most addresses, that can have a bucket for their rates of requests and
+ * bytes (rate.h) at one time. */
 enum { API_TOKEN_RATES = 8192, API_ADDRESS_RATES = 65536 };
 
 /* The limits of one client, indexed by api_limit; 0 is no limit. */
@@ -61,7 +61,8 @@ bool api_limit_is_bytes(api_limit limit);
 /* Returns true if tokens can have this limit; false if only addresses can. */
 bool api_limit_is_of_token(api_limit limit);
 
-/* Parses a whole number. If `bytes` is set, K, M, G or T may follow it (powers of 1024). */
+/* Parses a whole number. If `bytes` is true, K, M, G or T may follow the number (powers of
+ * 1024). */
 bool api_amount_parse(const char *text, size_t length, bool bytes, uint64_t *out);
 
 /* The kinds of clients. api_limited counts the requests and connections that each limit has refused

@@ -16,7 +16,7 @@ enum { REQUESTS, BYTES, AMOUNTS };
 typedef struct bucket {
     api_rate_key key;
     uint64_t at; /* the time at which `taken` was last computed */
-    /* The time from which on the bucket is full, because both amounts `taken` are 0 then. */
+    /* The time at which the bucket will be full again: both amounts `taken` are then 0. */
     uint64_t full;
     /* Amounts that were taken from the bucket and are not refilled yet, in millionths of a request
      * and of a byte. */
@@ -92,8 +92,8 @@ static void link_newest(api_rates *rates, uint32_t index)
     rates->newest = index;
 }
 
-/* Returns the bucket to evict: a full one if one of the oldest is full, else the oldest. The table
- * must have a bucket. */
+/* Returns the bucket to evict: the first full one among those used longest ago or, if none of these
+ * is full, the one used longest ago. The table must have a bucket. */
 static uint32_t choose_old(const api_rates *rates, uint64_t now)
 {
     uint32_t index = rates->oldest;
@@ -164,8 +164,8 @@ static uint64_t time_to_fill(uint64_t millionths, uint64_t rate)
     return rate == 0 ? 0 : quotient_up(millionths, rate);
 }
 
-/* Refills a bucket for the time since it was last refilled. Without a limit it becomes full at
- * once, so that it starts full if the client gets a limit later. */
+/* Refills a bucket for the time since it was last refilled. If there is no limit, the bucket
+ * becomes full at once, so that it is full when the client gets a limit later. */
 static void fill(bucket *b, const api_rate *rate, uint64_t now)
 {
     const uint64_t rates[AMOUNTS] = {rate->requests, rate->bytes};

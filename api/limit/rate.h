@@ -16,8 +16,9 @@
  *
  * The table is allocated at the start. A full bucket can be evicted without loss, since a new one
  * is full, too: of the API_RATE_LOOKS buckets used longest ago, the first full one is evicted, else
- * the oldest. A request takes constant time, however many clients there are. Clients can choose
- * neither which buckets share a chain nor which bucket is evicted. Threads share one lock. */
+ * the oldest. A request takes constant time, however many clients there are. Clients cannot
+ * influence which buckets share a chain of the hash table, nor which bucket is evicted. Threads
+ * share one lock. */
 #ifndef HE_API_LIMIT_RATE_H
 #define HE_API_LIMIT_RATE_H
 
@@ -34,7 +35,7 @@ typedef struct api_rate_key {
 
 /* The limits of a client's rate; 0 requests or 0 bytes is no limit. `seconds` is at least 1. */
 typedef struct api_rate {
-    uint64_t requests, bytes; /* how many requests, and how many bytes, are allowed per second */
+    uint64_t requests, bytes; /* how many requests, and how many bytes, are allowed a second */
     uint64_t seconds; /* capacity of the bucket: how many seconds of requests and bytes it holds */
 } api_rate;
 
@@ -48,7 +49,9 @@ typedef struct api_rate_left {
 } api_rate_left;
 
 typedef struct api_rate_state {
-    api_rate_left requests, bytes; /* if an amount has no limit, all its members are zero */
+    /* What is left of the client's requests and of its bytes; if one of them has no limit, all its
+     * members are zero. */
+    api_rate_left requests, bytes;
 } api_rate_state;
 
 /* Makes a table for `capacity` clients. Returns NULL when memory is out. */

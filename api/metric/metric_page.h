@@ -4,9 +4,9 @@
  *     # TYPE hedge_meshes gauge
  *     hedge_meshes 12
  *
- * api_metric_begin writes the two comment lines of a metric from its row in metric_rows.h. Its
- * samples must follow, each with the values of the row's labels in their order. Failure is sticky
- * (text.h): after a write has failed, all later writes are ignored. */
+ * api_metric_begin writes the two comment lines of a metric from its row in metric_rows.h. The
+ * samples of the metric must follow; each has the values of the row's labels in the order of the
+ * labels. Failure is sticky (text.h): after a write has failed, all later writes are ignored. */
 #ifndef HE_API_METRIC_METRIC_PAGE_H
 #define HE_API_METRIC_METRIC_PAGE_H
 
@@ -50,8 +50,8 @@ void api_metric_begin(api_metric_page *page, api_metric_id id);
 /* Writes a sample of a metric. `values` has a value for each label of the metric's row; NULL if it
  * has no labels. */
 void api_metric_put(api_metric_page *page, const char *const *values, double number);
-/* Writes a histogram. `scale` has the upper bounds of its buckets; the page shows bounds and sum
- * divided by `unit` (for example microseconds as seconds with 1e6). */
+/* Writes a histogram. `scale` has the upper bounds of its buckets. The bounds and the sum are
+ * written divided by `unit`: 1e6, for example, writes microseconds as seconds. */
 void api_metric_put_histogram(api_metric_page *page, const char *const *values,
                               const st_distribution *distribution, const uint64_t scale[ST_BOUNDS],
                               double unit);

@@ -80,7 +80,8 @@ static api_class class_of(int status)
                            : API_CLASS_NONE;
 }
 
-/* Returns the index at which the histogram of a series and class of statuses begins. */
+/* Returns the index in the array of counters at which the histogram of a series and class of
+ * statuses begins. */
 static size_t series_at(const api_metrics *metrics, int route, api_method method, api_class of)
 {
     const size_t series = route == API_NO_ROUTE ? 2 * metrics->routes + method

@@ -64,9 +64,10 @@ typedef struct api_served {
 
 void api_count_request(api_metrics *metrics, const api_served *served);
 
-/* Gets the durations of the requests of one series whose status is in one class. The series is that
- * of `route` and HEAD if `method` is API_METHOD_HEAD, else of `route` and its own method; or, if
- * `route` is API_NO_ROUTE, of the requests with this method that matched no route. */
+/* Gets the durations of those requests of one series that were answered with a status of one class.
+ * The series is that of `route` and HEAD if `method` is API_METHOD_HEAD, else of `route` and its
+ * own method; or, if `route` is API_NO_ROUTE, of the requests with this method that matched no
+ * route. */
 void api_requests_counted(const api_metrics *metrics, int route, api_method method, api_class of,
                           st_distribution *out);
 /* Returns the number of requests that were refused with this code. */

@@ -213,8 +213,8 @@ static void free_rows(void *stream)
     he_mem_free(stream);
 }
 
-/* Reads all rows of an attribute as binary data. Rows beyond the end of the column have the default
- * value. */
+/* Writes all values of an attribute as binary data. Elements after the last value that is stored
+ * have the default value. */
 static int64_t read_rows(void *stream, char *buffer, size_t size)
 {
     rows *r = stream;

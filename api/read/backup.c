@@ -17,8 +17,8 @@ static void make(api_exchange *x)
     }
 }
 
-/* Makes a backup as a job, unless the client prefers to wait, because the size of the store and so
- * the time are not known in advance. */
+/* Makes a backup as a job unless the client prefers to wait, because the time depends on the size
+ * of the store, which is not known in advance. */
 void api_admin_backup(api_exchange *x)
 {
     if (x->service->options.backup == NULL) {

@@ -137,7 +137,8 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
         c->document = api_document_out_new(x->content, x->info.name);
         return c->document != NULL || api_fail_memory(x);
     }
-    he_progress_span(&x->progress, 0.5); /* preparing the writer takes about half of a job's time */
+    /* If the request runs as a job, preparing the writer takes about half of the time. */
+    he_progress_span(&x->progress, 0.5);
     bool long_faces = format->writing != NULL && format->writing->cuts;
     if ((long_faces && he_long_faces_keep(x->content, &x->progress, &err) != HE_OK) ||
         he_writer_new(format, x->content, chosen->encoding, &x->progress, &c->writer, &err) !=

@@ -296,7 +296,7 @@ static bool name_kept(api_exchange *x)
 bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* no estimate: the cost is unknown before the slots are looked at */
+    (void)out; /* the cost is not estimated: it is not known before the kept slots are examined */
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
         return api_fail(x, API_BAD_PARAMETER, "\"since\" and \"layout\" must be given together");
     }

@@ -35,7 +35,7 @@
 
 enum { API_ROWS_AT_ONCE = 1024, API_ROW_BYTES = 16 };
 
-/* The rows of an answer, and how far the answer was read. {0} is empty. */
+/* The rows of an answer, and how far the answer was read. {0} has no rows. */
 typedef struct api_rows {
     uint64_t revision, base, layout;
     he_frame frame;
@@ -45,13 +45,14 @@ typedef struct api_rows {
     he_draw_arrays drawing;
     he_draw_arrays_walk walk;
     int part;
-    uint32_t next;     /* next row or id of the present part */
+    /* The next row or id to write, in the part of the answer that is being written. */
+    uint32_t next;
     size_t begin, end; /* `begin` to `end` is the part of `buffer` that was not read yet */
     unsigned char buffer[API_ROWS_AT_ONCE * API_ROW_BYTES];
 } api_rows;
 
 /* api_rows_take_all chooses all rows, to be sent; api_rows_take_changes chooses the rows that
- * changed after revision `since`. The slots are not needed afterwards.
+ * changed after revision `since`. `slots` is not used after the call.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_UNSUPPORTED if the changed rows are not known, so that all rows must be sent.
  * Returns HE_LIMIT if more than `most` changes would have to be visited. */
@@ -60,8 +61,8 @@ HE_NODISCARD he_status api_rows_take_changes(api_rows *rows, const he_draw_slots
                                              uint64_t since, uint64_t most, he_error *err);
 /* Returns the number of rows that the answer will contain. */
 uint64_t api_rows_count(const api_rows *rows);
-/* Prepares to read the rows from the mesh at their revision, which must not change until the last
- * row was read. On failure nothing changes.
+/* Prepares to read the rows. `mesh` must be at the revision of the rows and must not change until
+ * the last row was read. On failure nothing changes.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_LIMIT if the changed rows take more than `most` steps. */
 HE_NODISCARD he_status api_rows_draw(api_rows *rows, const he_mesh *mesh, uint64_t most,

@@ -50,7 +50,7 @@ enum { CARDS = 32 };
 /* The state of writing one page of the list of meshes. */
 typedef struct list_page {
     st_card *cards; /* an array of CARDS */
-    /* limit: how many items the page may have; given: how many were written so far. */
+    /* limit: how many items the page may have; given: how many items were written so far. */
     size_t limit, given;
     /* The search continues after this text: the id of the last mesh found or, at the beginning of a
      * range of ids, a text that sorts just before the range (go_to). */
@@ -263,7 +263,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
            api_in_string(&member, ST_MESH_NAME, &r->name);
 }
 
-/* The progress that is reached after copying; the rest is computing the summary. */
+/* The progress (0 to 1) that is reached after copying the mesh; then the summary is computed. */
 static const double COPY_SHARE = 0.4;
 
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)

@@ -54,8 +54,9 @@ typedef struct api_progressive {
 
 void api_progressive_clear(api_progressive *p);
 
-/* Writes the bytes of the base, and frees the base's mesh and the splits that are not wanted. The
- * caller must have set all members down to `high`. `progress` may be NULL.
+/* Writes the bytes of the base, and frees the base's mesh and the splits that the answer does not
+ * contain. The caller must have set the members of `p` from the first to `high`. `progress` may be
+ * NULL.
  * Returns HE_NO_MEMORY or HE_CANCELLED. */
 HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_progress *progress,
                                              he_error *err);

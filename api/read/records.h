@@ -5,9 +5,10 @@
 
 #include "api/json/record.h"
 
-/* The members of an entry of the history, and of the object in it that counts changed elements. */
+/* The JSON members of an entry of the history, and of the object in that entry that counts changed
+ * elements. */
 extern const api_record api_entry_record, api_counted_record;
-/* The members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
+/* The JSON members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
 extern const api_record api_token_record, api_ticket_record, api_reloaded_record;
 
 #endif

@@ -12,7 +12,7 @@
 
 /* The values of the JSON members that describe the rights of a token. */
 typedef struct rights {
-    const api_token *token; /* NULL: the server has no tokens */
+    const api_token *token; /* the request's token; NULL: the server has no tokens */
     const char *name, *role;
     bool ends;
     double expires;

@@ -268,7 +268,7 @@ bool api_answer_from_card(api_exchange *x)
     }
     if (status != ST_OK || mesh != NULL) {
         st_release(mesh);
-        /* The caller then loads the mesh: loading finds the content or reports the error. */
+        /* The caller then loads the mesh, which finds the mesh data or reports the error. */
         return false;
     }
     x->info = cold.info;

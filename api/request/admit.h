@@ -10,12 +10,12 @@
  * request. Returns false if the request was refused, or answered (OPTIONS). */
 bool api_admit(api_exchange *x);
 
-/* Looks for the mesh on disk if x->is_cold, which means that it is not in memory. Blocks. Returns
- * false if the request is refused. */
+/* Looks for the mesh on disk if x->is_cold, which means that the mesh is not in memory. The call
+ * may block. Returns false if the request is refused. */
 bool api_load_mesh(api_exchange *x);
 /* Tries to answer or refuse a request to a mesh that is not in memory (x->is_cold) from its card,
  * the stored description with name, revision and counts, without loading the mesh. Returns true if
- * it has answered or refused. Blocks. */
+ * the request was answered or refused. The call may block. */
 bool api_answer_from_card(api_exchange *x);
 
 /* Returns how many bytes the body of the request may have. */
@@ -25,8 +25,8 @@ uint64_t api_body_cap(const api_exchange *x);
 bool api_refuse_size(api_exchange *x);
 /* Refuses a missing or empty body where the route needs one. Always returns false. */
 bool api_refuse_empty(api_exchange *x);
-/* Refuses an upload whose format is not known; the message is `detail` and the list of formats.
- * Always returns false. */
+/* Refuses an upload whose format is not known; the message consists of `detail` and the list of
+ * known formats. Always returns false. */
 bool api_refuse_format(api_exchange *x, const char *detail);
 
 #endif

@@ -1,15 +1,15 @@
 /* answer_headers.h - the one list of the response headers that the server sends.
  *
- * A page of another origin can read only the headers named in Access-Control-Expose-Headers, and
- * those few that browsers always show. That header is made from this list. The server asserts that
+ * A page of another origin can read only the headers named in Access-Control-Expose-Headers, and a
+ * few more that browsers always show. That header is made from this list. The server asserts that
  * it sends no header that is not listed. */
 #ifndef HE_API_REQUEST_ANSWER_HEADERS_H
 #define HE_API_REQUEST_ANSWER_HEADERS_H
 
 #include <stdbool.h>
 
-/* Each row: X(name, separator). The list has, in order, the headers that
- * Access-Control-Expose-Headers must name so that a page can read them. */
+/* Each row: X(header, separator that follows it in Access-Control-Expose-Headers). The rows are the
+ * headers that Access-Control-Expose-Headers must name so that a page can read them. */
 #define API_EXPOSED_HEADERS(X)           \
     X("Accept-Encoding", ", ")           \
     X("Accept-Ranges", ", ")             \

@@ -50,10 +50,12 @@ typedef struct api_request {
     const char *headers[API_REQUEST_HEADERS];
     bool has_length; /* Content-Length was given */
     uint64_t length;
-    bool has_body;       /* a body follows; its length may be unknown */
+    bool has_body;       /* true if a body follows; its length may be unknown */
     api_rate_key client; /* key of the client's address, shared by all clients at that address */
-    bool is_beyond;      /* the address has more connections than allowed: refuse the request */
-    /* The header Origin names a configured site, whose pages may make any request. */
+    /* True if the client's address has more connections than allowed: the request must be
+     * refused. */
+    bool is_beyond;
+    /* True if the header Origin names a configured site, whose pages may make any request. */
     bool has_consent;
 } api_request;
 
@@ -63,7 +65,7 @@ typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 typedef struct api_load {
     bool reads;       /* the work changes nothing */
     double seconds;   /* estimated duration in seconds; for some work the estimate is far too low */
-    const char *mesh; /* id of the mesh that the work is about; "" if there is none */
+    const char *mesh; /* id of the mesh that the work reads or writes; "" if there is none */
 } api_load;
 
 enum { API_ANSWER_HEADERS = 16 };
@@ -81,15 +83,17 @@ typedef struct api_answer {
      * never blocks on a lock for long. */
     const char *bytes;
     int64_t length; /* -1: unknown, with `read` only */
-    bool slow;      /* `read` computes for milliseconds: do not call it on a worker thread */
+    /* True if a call of `read` may compute for milliseconds: do not call it on a worker thread. */
+    bool slow;
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
     /* The body if it has no known end, such as an event stream; then `bytes` and `read` are NULL.
      * NULL for other bodies. */
     const api_source *live;
-    bool close;     /* close the connection after this answer */
-    st_shown shown; /* what must be durable before the answer is sent (durability_wait.h) */
-    bool changed;   /* the request has changed a mesh */
+    bool close; /* true if the server must close the connection after this answer */
+    /* The changes that must be durable before the answer is sent (durability_wait.h). */
+    st_shown shown;
+    bool changed; /* true if the request has changed a mesh */
     /* Path template of the route, for logs and metrics; "-" when no route matched. */
     const char *route;
 } api_answer;
@@ -97,7 +101,9 @@ typedef struct api_answer {
 /* A file that belongs to the web page. */
 typedef struct api_asset {
     const char *type; /* media type of the file */
-    bool immutable;   /* the file's path contains a hash of its content */
+    /* True if the file's path contains a hash of its bytes, so that clients may cache it for
+     * ever. */
+    bool immutable;
     api_kept *body;
 } api_asset;
 
@@ -123,7 +129,8 @@ typedef struct api_options {
     /* How many seconds' worth of requests and bytes a client may use at once; 0 stands for one
      * second. */
     uint64_t limit_burst;
-    api_tokens *tokens; /* NULL: no token is needed, every client may do everything */
+    /* The tokens that clients may use; NULL: no token is needed, every client may do everything. */
+    api_tokens *tokens;
     /* Reads the server's files again, such as the token file. On failure returns false with a
      * sentence in `message`, and the server continues with the old contents. NULL: there are no
      * files. */
@@ -131,11 +138,13 @@ typedef struct api_options {
     void *reload_context;
     /* Writes the whole store to a file; the time grows with the size of the store. NULL: the store
      * is in memory only.
-     * Returns ST_BUSY while the last backup exists, or ST_FAILED with a sentence in `message`. */
+     * Returns ST_BUSY while the file of the last backup exists, or ST_FAILED with a sentence in
+     * `message`. */
     st_status (*backup)(void *context, api_blob *out, char *message, size_t size);
     void *backup_context;
-    api_job_table *jobs; /* NULL: nothing becomes a job, and the routes of jobs do not exist */
-    bool plain_answers;  /* never compress answers */
+    /* The table of jobs; NULL: no request becomes a job, and the routes of jobs do not exist. */
+    api_job_table *jobs;
+    bool plain_answers;          /* never compress answers */
     const he_parallel *parallel; /* threads for the parallel parts of large work; NULL: none */
     /* Threads that look up missed events in the history; NULL: listeners that missed events must
      * fetch the mesh again. */
@@ -165,8 +174,9 @@ api_metrics *api_metrics_of(const api_service *service);
  * its headers: they must live until api_free, or until api_detach, which copies them for the
  * job. */
 api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
-/* Passes a piece of the body. With API_MORE, `used` may be less than `length`: the call has worked
- * long enough. The caller serves other connections, then passes the rest. */
+/* Passes a piece of the body. If it returns API_MORE, `used` may be less than `length`, because the
+ * call has worked long enough: the caller serves other connections, then passes the rest of the
+ * piece. */
 api_step api_body(api_exchange *exchange, const char *bytes, size_t length, size_t *used);
 api_step api_end(api_exchange *exchange);
 api_step api_work(api_exchange *exchange);
@@ -174,23 +184,24 @@ api_step api_work(api_exchange *exchange);
  * 503, the server sends to the client. Returns NULL when memory is out; the caller then still owns
  * `exchange`. */
 api_exchange *api_detach(api_exchange *exchange);
-/* Sets a callback for progress, before api_work; the working thread calls `tell` as progress.h
- * says. */
+/* Sets a callback for progress; it must be called before api_work. The working thread calls `tell`
+ * as progress.h says. */
 void api_set_progress(api_exchange *exchange,
                       bool (*tell)(void *context, const char *phase, double done), void *context);
-/* Sets a callback for progress, before api_end: `tell` is called as progress.h says while api_end
- * works on a read. If `tell` stops a read, the read is started again from its beginning: api_end
- * returns API_WORK. */
+/* Sets a callback for progress; it must be called before api_end. While api_end handles a request
+ * that only reads, `tell` is called as progress.h says. If `tell` stops such a request, api_end
+ * returns API_WORK, and api_work starts it again from its beginning. */
 void api_set_worker_progress(api_exchange *exchange,
                              bool (*tell)(void *context, const char *phase, double done),
                              void *context);
 /* Sets the problem that the client gets if the callback `tell` stops the work, instead of
  * HE_CANCELLED. `tell` calls it before it returns false. */
 void api_give_up(api_exchange *exchange, int code, const char *text);
-/* Returns true if the route allows that the request becomes a job, should its client prefer one. */
+/* Returns true if the request becomes a job when its client prefers that; false if its route does
+ * not allow jobs. */
 bool api_can_be_job(const api_exchange *exchange);
-/* Returns the cost of the work. The server calls it after it got API_WORK or API_JOB, before the
- * work begins. */
+/* Returns the cost of the work of the exchange. The server calls it after api_end or api_work
+ * returned API_WORK or API_JOB, before the work begins. */
 api_load api_load_of(const api_exchange *exchange);
 const api_answer *api_answer_of(const api_exchange *exchange);
 /* Counts transferred bytes against the client's limit: those of the answer, and those of a body
@@ -202,15 +213,15 @@ typedef struct api_rate_fields {
     char policy[API_RATE_FIELD], left[API_RATE_FIELD];
 } api_rate_fields;
 void api_rate_fields_of(const api_exchange *exchange, api_rate_fields *out);
-/* Gives the store the quotas of all tokens, after the token file was read. Returns false when
- * memory is out; the old quotas then stay. */
+/* Passes the quotas of all tokens to the store; called after the token file was read. Returns false
+ * when memory is out; the old quotas then stay. */
 bool api_service_apply_quotas(api_service *service);
 /* Returns the counters of refusals by client limits (api/limit/limit.h), to which the server adds
  * the refusals that it makes before an exchange has begun. */
 api_limited *api_service_limited(api_service *service);
 void api_free(api_exchange *exchange);
 /* Sets the route and the problem code in `served`, for metrics, from an exchange that ended. If
- * `exchange` is NULL, there is no route, and the code in `served` stays. */
+ * `exchange` is NULL, sets API_NO_ROUTE and leaves the problem code as it is. */
 void api_served_as(const api_service *service, const api_exchange *exchange, api_served *served);
 
 /* Runs a whole exchange at once, with the whole body, for tests. Returns NULL when memory is out.

@@ -8,8 +8,9 @@
 
 #include "api/request/exchange.h"
 
-/* Returns true if the request asks for another revision than that of x->info. `revision` gets its
- * number, or 0 with the problem filled if the parameters of the query contradict each other. */
+/* Returns true if the request asks for another revision than that of x->info. `revision` gets the
+ * number of that revision, or 0, with the problem filled, if the parameters of the query contradict
+ * each other. */
 bool api_at_revision_wanted(api_exchange *x, uint64_t *revision);
 /* Checks a result of api_at_revision_wanted. Returns false with the problem filled if `revision` is
  * 0 or higher than the present one (404). */

@@ -119,7 +119,7 @@ bool api_fail_path(api_exchange *x, const he_error *err)
 }
 
 /* Refuses a request to a mesh whose changes were lost. If the store cannot write now, a write is
- * refused with the reason of that. */
+ * refused with the reason why it cannot. */
 static bool fail_lost(api_exchange *x)
 {
     st_health health;

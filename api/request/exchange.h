@@ -56,8 +56,8 @@ struct api_service {
     api_decompressor_room decompressing; /* counts the memory of all decoders of request bodies */
 };
 
-/* How far an exchange is: it receives the body on a worker thread, works on a thread that may
- * block, works in a job, or is answered. It only moves forward. */
+/* The phases of an exchange: it receives the body on a worker thread, works on a thread that may
+ * block, works in a job, or is answered. An exchange never returns to an earlier phase. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
 enum { API_LOCATION = 512 }; /* the most bytes that a percent-encoded path of this API has */
@@ -71,23 +71,24 @@ struct api_exchange {
     /* --- the request --- */
     api_request request;
     const api_route *route; /* the row of the table of routes; NULL: no route matched */
-    bool head;              /* the method is HEAD: the server sends no body */
+    bool head;              /* true if the method is HEAD: the server sends no body */
     const char *mesh_id;    /* id of the mesh in the path, well formed; NULL: none */
     he_kind kind; /* kind of element that {domain} in the path names, or that the route is about */
     uint32_t id;  /* {id} in the path */
     const char *code;      /* {code} in the path */
     const char *attribute; /* {name} in the path */
-    const char *job_id;    /* the text that stands for {job} in the path; it was not checked */
-    /* The client's token, with a reference held; NULL: the route is open, or the server has no
-     * tokens. */
+    const char *job_id;    /* the text in the path in the place of {job}; it was not checked */
+    /* The client's token; the exchange counts as one reference to it. NULL: the route is open, or
+     * the server has no tokens. */
     api_token *token;
-    bool rehearses_only;   /* the token allows only a dry run of this write (gate.h) */
-    bool has_bad_token;    /* the request has an unknown token */
+    bool rehearses_only;   /* true if the token allows only a dry run of this write (gate.h) */
+    bool has_bad_token;    /* true if the request has an unknown token */
     api_rates *rates;      /* the table with the client's bucket; NULL: the client has no limit */
     api_rate_key rate_key; /* key of the client's bucket */
     api_rate rate;         /* the client's rate */
     api_rate_state rate_state; /* what the bucket held after the request was admitted or refused */
-    bool at_gate;              /* the request was refused before anything in the store was read */
+    /* True if the request was refused before anything in the store was read. */
+    bool at_gate;
     api_query query;
     const char *media_in;  /* media type of the body, one of route->consumes; NULL without a body */
     const char *media_out; /* media type of the answer, one of route->produces */
@@ -95,11 +96,11 @@ struct api_exchange {
     char allow[API_ALLOW]; /* the methods that the path has, for the header Allow of a 405 */
     const char *key;       /* Idempotency-Key; NULL: none, or the route does not read it */
     he_siphash hash;       /* hash of the request, if it has an Idempotency-Key */
-    /* The store's entry of the Idempotency-Key; NULL: no key, or api_idempotency_settle has ended
-     * it. */
+    /* The store's entry of the Idempotency-Key; NULL: the request has no key, or
+     * api_idempotency_settle has ended the entry. */
     st_keyed *keyed;
-    /* Position in the journal of the record of the Idempotency-Key, for which the answer waits; 0:
-     * none. */
+    /* Position in the journal at which the Idempotency-Key was recorded; the answer is sent only
+     * when that record is durable. 0: there is no such record. */
     uint64_t noted;
     const char *own_job;  /* id of the job that does the work of this exchange; NULL: no job does */
     api_coding coding_in; /* content coding of the body */
@@ -110,39 +111,42 @@ struct api_exchange {
     uint64_t arrived;  /* bytes received, before decompression */
     uint64_t received; /* bytes after decompression */
     api_decompressor
-        *decompressor; /* decompresses the body; NULL: the body is not compressed, or has ended */
+        /* Decompresses the request's body; NULL: the body is not compressed, or has ended. */
+        *decompressor;
     api_document document;
     bool has_root;
     api_in root;   /* cursor at the outermost value of a control document */
-    api_items ops; /* operations of an edit list, which lies in `body` */
+    api_items ops; /* the operations of an edit list, whose text is in `body` */
 
     /* --- the mesh --- */
-    /* The mesh in the path, with a reference held; NULL: the path has none, or the mesh does not
-     * exist or is not in memory. */
+    /* The mesh that the path names; the exchange counts as one reference to it. NULL: the path
+     * names no mesh, or the mesh does not exist or is not in memory. */
     st_mesh *mesh;
-    bool is_cold;      /* the mesh is not in memory: it is loaded after the body has arrived */
+    /* True if the mesh is not in memory: it is loaded after the body has arrived. */
+    bool is_cold;
     st_mesh_info info; /* description of the mesh, set whenever the mesh is read or written */
     bool has_info;
-    /* Whether the answer may show more of the store than `info`; it then waits for more changes to
-     * be durable (`shown` in api_answer). */
+    /* True if the answer may show more of the store than `info`; it is then sent only after more
+     * changes are durable (`shown` in api_answer). */
     bool shows_all;
-    uint64_t since; /* the journal was durable up to this position when the exchange began */
+    /* The position in the journal up to which it was durable when the exchange began. */
+    uint64_t since;
     /* The write to the mesh; if it is a claim (api_write_claim), it outlives the handler that began
      * it. */
     st_write write;
-    /* What the handler reads: at first a copy of the route's members `reads`, `cost`, `tag` and
-     * `run`. */
+    /* What the handler reads, and how: initially a copy of the members `reads`, `cost`, `tag` and
+     * `run` of the route. */
     api_reading reading;
     const he_mesh *content; /* the mesh that the handler may read while it runs; NULL: none */
     /* The snapshot that owns `content`; NULL: `content` is read under the shared lock. */
     st_snapshot *snapshot;
-    bool keeps; /* `snapshot` is needed until the exchange is freed */
+    bool keeps; /* true if `snapshot` is needed until the exchange is freed */
 
     /* --- the handler's state, which `free_state` frees with the exchange --- */
     void *state;
     void (*free_state)(void *state);
     void (*deferred)(api_exchange *x);
-    bool is_job;          /* `deferred` is to run as a job */
+    bool is_job;          /* true if `deferred` must run as a job */
     double seconds;       /* estimated duration; 0: not estimated */
     he_progress progress; /* the threads that the work may use, and the callback for its progress */
     /* Why the work was stopped (api_give_up); the code of this problem is HE_OK if no reason was
@@ -150,7 +154,8 @@ struct api_exchange {
     api_problem given_up;
 
     /* --- the answer --- */
-    int published; /* 201 or 204 after api_publish; 0: the write has not taken effect */
+    /* The status given to api_publish, 201 or 204; 0: the write has not taken effect. */
+    int published;
     char location[API_LOCATION];
     char retry[API_RETRY];
     api_rate_fields rate_fields;
@@ -162,10 +167,10 @@ struct api_exchange {
     void *stream;
     void (*free_stream)(void *stream);
     api_source live;
-    /* Compresses the answer, or holds its uncompressed bytes (api_compressor_whole); NULL:
-     * neither. */
+    /* Compresses the answer, or has its uncompressed bytes (api_compressor_whole); NULL: the answer
+     * has no compressor. */
     api_compressor *compressor;
-    char *coded;    /* the bytes of an answer that was compressed as a whole */
+    char *coded;    /* the compressed bytes of an answer that was compressed in one call */
     api_kept *kept; /* the answer's body, if it is one that never changes (kept.h), else NULL */
     /* The answer's body, if it is a blob; freed with the exchange unless it is borrowed. */
     api_blob blob;
@@ -209,16 +214,16 @@ bool api_precondition_absent(api_exchange *x);
 
 /* --- long work --- */
 /* Arranges that `handler` runs instead of the handler that calls this function, on a thread that
- * may block. The caller must hold no lock, and must return after the call. On a thread that may
- * block already (api_work), `handler` is called at once. */
+ * may block. The caller must hold no lock, and must return after the call. If the caller is already
+ * on such a thread (api_work), `handler` is called at once. */
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
 /* Runs `handler`, whose work may be long. The work becomes a job if the client prefers that, or if
  * `seconds` is longer than the client will wait. Otherwise `handler` runs on a thread that may
  * block if `costly` is set, else it is called at once. The route must have API_LONG. Handlers that
  * read leave this to mesh_access.h. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
-/* Returns the seconds that the client will wait; longer work becomes a job. Negative: all work
- * becomes a job. HUGE_VAL: no work can. */
+/* Returns the seconds that the client will wait; longer work becomes a job. A negative result: all
+ * work becomes a job. HUGE_VAL: no work becomes a job. */
 double api_patience(const api_exchange *x);
 /* Returns true if work that takes this many seconds must become a job. */
 bool api_wants_job(const api_exchange *x, double seconds);
@@ -236,11 +241,11 @@ bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 /* --- answers: a handler calls one of these functions, once --- */
 /* Declares that the write took effect, so that a refusal would be wrong. If a problem comes up
  * later (no memory for the answer, the mesh deleted meanwhile), the client gets `status`, 201 or
- * 204, without a body. With 201, the header Location is made from x->info, which must be that of
- * the new mesh. */
+ * 204, without a body. If `status` is 201, the header Location is made from x->info, which must
+ * describe the new mesh. */
 void api_publish(api_exchange *x, int status);
-/* Answers with the text that x->out has written: api_answer_json as application/json,
- * api_answer_text as `type`. */
+/* Both functions answer with the text that x->out has written: api_answer_json with the media type
+ * application/json, api_answer_text with `type`. */
 void api_answer_json(api_exchange *x, int status);
 void api_answer_text(api_exchange *x, int status, const char *type);
 /* Answers with bytes that must stay valid as long as the service or the exchange. */
@@ -249,7 +254,7 @@ void api_answer_bytes(api_exchange *x, int status, const char *type, const char 
 /* Answers 200 with a body that never changes and outlives the exchange, or 304 if the client has it
  * (If-None-Match). */
 void api_answer_kept(api_exchange *x, const char *type, api_kept *kept);
-void api_answer_empty(api_exchange *x, int status); /* answers without a body, as with 204 */
+void api_answer_empty(api_exchange *x, int status); /* answers with `status` and without a body */
 /* If the client prefers return=minimal, answers 204 and returns true. */
 bool api_answer_minimal(api_exchange *x);
 /* An answer's body that is made while it is sent. */
@@ -260,13 +265,13 @@ typedef struct api_stream {
     void (*free)(void *self); /* NULL: the stream is borrowed */
 } api_stream;
 
-/* Answers with a stream. The exchange takes the stream and frees it at its end. */
+/* Answers with a stream. The exchange then owns the stream, and frees it when the exchange ends. */
 void api_answer_stream(api_exchange *x, int status, const char *type, const api_stream *stream);
-/* Answers with a blob. The exchange takes the blob if its `free` is not NULL. A job keeps the blob
- * without copying it. */
+/* Answers with a blob. If its `free` is not NULL, the exchange then owns the blob. A job keeps the
+ * blob without copying it. */
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
 /* Answers with a stream without a known end, which is sent while the client's token is valid. The
- * exchange takes `source` and frees it at its end. */
+ * exchange then owns `source`, and frees it when the exchange ends. */
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source);
 /* Sets a header of the answer, replacing one with this name; `value` is copied. It may be called
  * before or after the function that answers. */
@@ -276,8 +281,8 @@ void api_answer_header_format(api_exchange *x, const char *name, const char *for
 /* Sets the ETag of the answer, made from the mesh's state in x->info and the name of the
  * representation (etag.h). */
 void api_answer_etag(api_exchange *x, const char *representation);
-/* Sets the ETag. If If-None-Match names it, answers 304 and returns true. A job never does that:
- * its client asked for the result. */
+/* Sets the ETag. If If-None-Match names that tag, answers 304 and returns true. In a job it always
+ * returns false, because the client asked for the result. */
 bool api_not_modified(api_exchange *x, const char *representation);
 /* Does what api_not_modified does, with the given ETag instead of an ETag made from the mesh's
  * revision. */
@@ -286,13 +291,13 @@ bool api_not_modified_since(api_exchange *x, const char *etag);
 /* --- refusals: they fill x->problem and always return false --- */
 bool api_fail(api_exchange *x, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Refuses because of an error in the body. */
+/* Refuses the request because of a refusal of core about its body (api_problem_set_core). */
 bool api_fail_core(api_exchange *x, const he_error *err);
-/* Refuses because of an error in the path. */
+/* Refuses the request because of a refusal of core about its path (api_problem_set_path). */
 bool api_fail_path(api_exchange *x, const he_error *err);
 bool api_fail_store(api_exchange *x, st_status status);
 bool api_fail_memory(api_exchange *x);
-/* Refuses because Accept allows none of the route's types. */
+/* Refuses the request because its header Accept allows none of the route's media types. */
 bool api_fail_accept(api_exchange *x);
 
 #endif

@@ -55,8 +55,8 @@ const char *api_gate_ticket(const char *query)
     return strncmp(last, API_TICKET, strlen(API_TICKET)) == 0 ? last : NULL;
 }
 
-/* Finds the token by the ticket in the query, and removes the ticket from the query, since the
- * ticket was made for a query without it. */
+/* Finds the token by the ticket in the query, and removes the ticket from the query, because the
+ * ticket was made for the query without the ticket. */
 static bool take_ticket(api_exchange *x, const char *ticket)
 {
     const char *path = x->request.path, *query = x->request.query;
@@ -99,7 +99,8 @@ static bool enter(api_exchange *x)
     bool asks = x->service->options.tokens != NULL;
     const char *header = x->request.headers[API_HEADER_AUTHORIZATION];
     const char *ticket = header == NULL ? api_gate_ticket(x->request.query) : NULL;
-    /* The exchange forgets the secret in the header, which is not needed any more. */
+    /* The header's value, a secret, is removed from the exchange because it is not needed any
+     * more. */
     x->request.headers[API_HEADER_AUTHORIZATION] = NULL;
     if (x->route->role == API_ROLE_OPEN || (!asks && ticket == NULL)) {
         return api_rating_enter(x);

@@ -3,10 +3,11 @@
  *     api_gate_enter       may the token use the route? It looks only at method, path and token.
  *                          Refuses with 401 or 403 `forbidden`, or with 429 if the client exceeds
  *                          its rate (rating.h)
- *     api_gate_sees        may it see a mesh? A mesh outside the token's prefixes is answered with
- *                          the same bytes as one that does not exist: 404
- *     api_gate_may_create  may it make a mesh with this id? Refuses with 403 `prefix`
- *     api_gate_may_change  may it write, and not only do a dry run? Refuses with 403 `forbidden`
+ *     api_gate_sees        may the token see a mesh? A mesh outside the token's prefixes is
+ *                          answered with the same bytes as one that does not exist: 404
+ *     api_gate_may_create  may the token make a mesh with this id? Refuses with 403 `prefix`
+ *     api_gate_may_change  may the token write, and not only do a dry run? Refuses with 403
+ *                          `forbidden`
  *
  * If the server has no tokens (`tokens` of api_options is NULL), all checks pass. If it has tokens,
  * x->token is set after the gate on every route that is not open. */
@@ -16,8 +17,8 @@
 #include "api/request/exchange.h"
 
 /* Finds the token and sets x->token; sets x->rehearses_only if the token may do nothing but a dry
- * run of this write. Returns false with the problem filled; x->at_gate then says that nothing in
- * the store was read. */
+ * run of this write. If the request is refused, returns false with the problem filled and
+ * x->at_gate set, because nothing in the store was read. */
 bool api_gate_enter(api_exchange *x);
 /* Returns false if the token may not see a mesh with this id, whether or not it exists. */
 bool api_gate_sees(const api_exchange *x, const char *mesh);

@@ -35,7 +35,8 @@ void api_gather(api_exchange *x)
         api_fail_core(x, &err);
         return;
     }
-    /* One piece more than the answer is reserved, for the last read, which finds the end. */
+    /* Memory for one piece more than the answer is reserved, because the last call of `read`, which
+     * finds the end, needs space, too. */
     if (expected > 0 && api_text_room(&x->text, (size_t)expected + PIECE) == NULL) {
         api_fail_memory(x);
         return;

@@ -7,8 +7,8 @@
 
 #include "api/request/exchange.h"
 
-/* Reads a streamed answer into x->text; blobs and other answers stay as they are. Fills the problem
- * when memory is out, when the stream fails, and when the work is cancelled. */
+/* Reads a streamed answer into x->text; all other answers, such as blobs, stay as they are. Fills
+ * the problem when memory is out, when the stream fails, and when the work is cancelled. */
 void api_gather(api_exchange *x);
 
 #endif

@@ -1,6 +1,6 @@
-/* handlers.h - the handlers, which the rows of routes.c name. exchange.h says what a handler may
- * rely on. A handler whose row declares a cost has a second function that estimates it (api_reading
- * in route.h). */
+/* handlers.h - the handlers, which the rows of routes.c name. exchange.h says what is prepared
+ * before a handler runs. A handler whose row declares a cost has a second function that estimates
+ * it (api_reading in route.h). */
 #ifndef HE_API_REQUEST_HANDLERS_H
 #define HE_API_REQUEST_HANDLERS_H
 

@@ -4,13 +4,14 @@
  * Routes with the flag API_IDEMPOTENCY_KEY or API_IDEMPOTENCY_KEY_NEW read the header
  * (draft-ietf-httpapi-idempotency-key-header): 1 to API_KEY_LENGTH visible characters, quoted or
  * not, taken literally. With API_IDEMPOTENCY_KEY, keys are kept for each mesh and deleted with it.
- * With API_IDEMPOTENCY_KEY_NEW, for requests that make a mesh, they are kept for the whole store.
+ * With API_IDEMPOTENCY_KEY_NEW, for requests that make a mesh, keys are kept for the whole store.
  *
- * Two requests are equal if method, path, query, Content-Type and every byte of the decompressed
- * body are. For multipart/form-data the names, types and bytes of the files are compared, and not
- * the boundary, which clients choose anew each time. The store keeps a keyed hash of 128 bits of
- * all this, because bodies are too large to keep. Preconditions such as If-Match are not compared,
- * because the write itself has changed the revision that a repeated request would find.
+ * Two requests are equal if their methods, paths, queries, Content-Types and all bytes of their
+ * decompressed bodies are equal. For multipart/form-data the names, types and bytes of the files
+ * are compared, and not the boundary, which clients choose anew each time. The store keeps a keyed
+ * hash of 128 bits of all this, because bodies are too large to keep. Preconditions such as
+ * If-Match are not compared, because the write itself has changed the revision that a repeated
+ * request would find.
  *
  * Answers with a status 2xx are kept. Refusals and failures are not, so that the client may try
  * again when their reason is gone. */
@@ -26,8 +27,8 @@ void api_idempotency_body(api_exchange *x, const char *bytes, size_t length);
 /* Adds bytes of the body to the hash. The reader of multipart/form-data calls it with the files,
  * not their delimiters. */
 void api_idempotency_add(api_exchange *x, const char *bytes, size_t length);
-/* Looks up the key before the handler runs. Returns false if the handler must not run: the answer
- * kept under the key was sent, or the request refused. */
+/* Looks up the key before the handler runs. Returns false if the handler must not run, because the
+ * request was answered with the answer kept under the key, or refused. */
 bool api_idempotency_find(api_exchange *x);
 /* Keeps the complete answer under the key; or releases the key if the request was refused or
  * failed. */

@@ -105,7 +105,7 @@ static bool is_read_here(api_exchange *x)
 static bool obtain(api_exchange *x)
 {
     uint64_t revision;
-    x->keeps = false; /* the snapshot that an earlier attempt kept, if any, is released now */
+    x->keeps = false; /* if an earlier attempt kept a snapshot, it is released now */
     give_back(x);
     if (!lock(x)) {
         return false;

@@ -6,8 +6,8 @@
  * the mesh in x->content, described by x->info, and need not release it. A handler is called once,
  * unless it calls api_begin_elsewhere.
  *
- * A handler that changes a mesh begins a write (api_write_begin, api_write_claim). Facts about the
- * content that are needed before that, such as its size, are found by the row's `cost`
+ * A handler that changes a mesh begins a write (api_write_begin, api_write_claim). What it must
+ * know about the mesh before that, such as its size, is found by the row's `cost`
  * (API_READS_BEFORE). For the row's `begin`, which is called before the body arrives,
  * api_read_at_head obtains what `begin_reads` says. */
 #ifndef HE_API_REQUEST_MESH_ACCESS_H
@@ -15,15 +15,16 @@
 
 #include "api/request/exchange.h"
 
-/* Obtains what x->reading says the handler reads, and runs the handler. A failure fills the problem
- * (404, 410, 507). If the client has the representation already, the answer is 304. If the work is
- * too costly for a worker thread or becomes a job, the handler does not run: x->deferred is set to
- * api_read, which is then called on another thread. */
+/* Obtains the mesh as x->reading says, and runs the handler. A failure fills the problem (404, 410,
+ * 507). If the client has the representation already, the answer is 304. If the work is too costly
+ * for a worker thread or becomes a job, the handler does not run: x->deferred is set to api_read,
+ * which is then called on another thread. */
 void api_read(api_exchange *x);
-/* Obtains what the row's `begin_reads` says, and runs the row's `begin`. */
+/* Obtains the mesh as the member `begin_reads` of the route's row says, and calls the row's
+ * function `begin`. */
 void api_read_at_head(api_exchange *x);
 /* Does what api_read does, with `reading` instead of what the route's row says. A handler that has
- * changed the mesh calls this function to answer like another route. */
+ * changed the mesh calls this function to answer as another route would. */
 void api_read_as(api_exchange *x, const api_reading *reading);
 
 /* --- for handlers that read --- */

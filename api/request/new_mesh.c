@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { RANDOM = 10 }; /* number of random characters after the prefix */
+enum { RANDOM = 10 }; /* number of random characters that follow the token's prefix in an id */
 
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
                        const st_shown *from, st_mesh **out)

@@ -5,8 +5,8 @@
 #include "api/request/exchange.h"
 
 /* Makes a mesh with st_create_from, with the request's Idempotency-Key. If `id` is NULL, the server
- * chooses an id, which begins with the token's first prefix if the token has prefixes. Takes
- * `content` on success. */
+ * chooses an id, which begins with the token's first prefix if the token has prefixes. On success
+ * the mesh owns `content`, its data. */
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
                        const st_shown *from, st_mesh **out);
 

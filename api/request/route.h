@@ -27,7 +27,9 @@ typedef enum api_body_kind {
 } api_body_kind;
 
 typedef enum api_param_type {
-    API_PARAM_TEXT,   /* text of at most `max` bytes */
+    /* Text of at most `max` bytes (`max`, `min` and `choices` are members of the parameter's
+     * description). */
+    API_PARAM_TEXT,
     API_PARAM_FLAG,   /* true or false */
     API_PARAM_U64,    /* a whole number within min and max */
     API_PARAM_NUMBER, /* a finite number within min and max */
@@ -46,15 +48,16 @@ typedef struct api_parameter {
 /* What a handler reads of the mesh whose id is in the path (mesh_access.h). */
 typedef enum api_reads {
     API_READS_NONE, /* nothing */
-    API_READS_CARD, /* the description of the mesh (x->info), but not its content */
-    /* Used for a handler that writes: the function `cost` reads the content under the shared lock,
-     * which is released before the handler runs and begins a write (exchange.h). */
+    /* The description of the mesh (x->info), but not its vertices, faces and attributes. */
+    API_READS_CARD,
+    /* Used for a handler that writes: the function `cost` reads the mesh data under the shared
+     * lock, which is released before the handler runs and begins a write (exchange.h). */
     API_READS_BEFORE,
-    API_READS_LOCKED, /* the content under the shared lock: for short work */
+    API_READS_LOCKED, /* the mesh data, under the shared lock: for short work */
     /* API_READS_LOCKED on a worker thread, else API_READS_SNAPSHOT, so that writers need not
      * wait. */
     API_READS_VIEW,
-    API_READS_SNAPSHOT /* an immutable snapshot of the content */
+    API_READS_SNAPSHOT /* an immutable snapshot of the mesh data */
 } api_reads;
 
 /* What the work of a handler costs. With more than API_COSTLY_ELEMENTS elements it moves from the
@@ -75,7 +78,8 @@ typedef struct api_reading {
     /* The representation of the answer, from which its ETag is made (etag.h), if a request whose
      * If-None-Match matches may be answered 304 before the handler runs. NULL if the handler itself
      * answers If-None-Match, after checking that its target exists. A read that may become a job
-     * should have a tag here, or set one in `cost`, if it can be known before the handler runs. */
+     * should have a tag here, or set one in `cost`, if the tag can be known before the handler
+     * runs. */
     const char *tag;
     void (*run)(api_exchange *x); /* the handler */
 } api_reading;
@@ -85,8 +89,9 @@ enum {
     /* A write whose cost grows with its upload: a thread that may block works on large uploads. */
     API_COSTLY = 2,
     API_MAY_CREATE = 4, /* the mesh that the path names need not exist */
-    API_OWN_ACCEPT = 8, /* the handler itself evaluates Accept, because ?format= overrides it */
-    API_FIXED = 16,     /* the path is not under /v1: it is independent of the API version */
+    /* The handler itself evaluates the header Accept, because ?format= overrides it. */
+    API_OWN_ACCEPT = 8,
+    API_FIXED = 16, /* the path is not under /v1: it is independent of the API version */
     /* The route reads Idempotency-Key; the answer is kept with the mesh (idempotency.h). */
     API_IDEMPOTENCY_KEY = 32,
     /* The route makes a mesh and reads Idempotency-Key; the answer is kept for the whole store
@@ -96,7 +101,8 @@ enum {
     /* The route is allowed while a long edit that has claimed the mesh works on it
      * (store/write.h). */
     API_INTERRUPTS = 256,
-    /* The route takes `dry_run`, so an answer may describe a state that the mesh never had. */
+    /* The route has the parameter `dry_run`, so its answer may describe a state that the mesh never
+     * had. */
     API_REHEARSED = 512,
     /* The limits of clients do not apply to the route: monitoring must always get an answer. */
     API_UNLIMITED = 8192,
@@ -119,27 +125,29 @@ typedef struct api_told_header {
 enum { API_ROUTE_PARAMETERS = 8, API_ROUTE_HEADERS = 3, API_ROUTE_STATUSES = 20 };
 
 typedef struct api_route {
-    const char *method; /* a row with GET also answers HEAD */
+    const char *method; /* method of the route; a row with GET also answers HEAD */
     const char *path;   /* template of the path */
     const char *name;   /* operationId in the OpenAPI document */
     he_kind kind;       /* kind of the elements that the route is about, if any */
-    /* Name of the relation that the route reads; NULL: it reads the elements themselves. */
+    /* Name of the relation between elements that the route reads; NULL: it reads the elements
+     * themselves. */
     const char *relation;
-    /* Chooses the reader of an upload by x->media_in, before the body arrives. NULL if there is
-     * nothing to choose. */
+    /* Called before the body of an upload arrives: chooses the reader of the body by x->media_in.
+     * NULL if there is only one reader. */
     void (*begin)(api_exchange *x);
     /* What the function `begin` reads of the mesh: API_READS_NONE, API_READS_CARD or
-     * API_READS_LOCKED. If the mesh does not exist or is not in memory, it reads nothing. */
+     * API_READS_LOCKED. If the mesh does not exist or is not in memory, `begin` reads nothing. */
     api_reads begin_reads;
     void (*body)(api_exchange *x, const char *bytes, size_t length);
-    /* Reads the body's document into x->state before the mesh is obtained; NULL if `cost` or `run`
-     * reads it. Returns false with the problem filled, or with x->deferred set to a function that
-     * calls api_read in the end. */
+    /* Reads the body's JSON document into x->state before the mesh is obtained; NULL if `cost` or
+     * `run` reads the document. Returns false with the problem filled, or with x->deferred set to a
+     * function that calls api_read in the end. */
     bool (*decode)(api_exchange *x);
     void (*run)(api_exchange *x); /* the handler; called in api_end or in api_work */
     /* Tries to answer a request to a mesh that is not in memory, on a thread that may block, with
-     * x->info from the mesh's card (its stored description). If it sets neither an answer nor a
-     * problem, the mesh is loaded and `run` is called. NULL: the mesh is always loaded. */
+     * x->info from the mesh's card (its stored description). If this function sets neither an
+     * answer nor a problem, the mesh is loaded and `run` is called. NULL: the mesh is always
+     * loaded. */
     void (*cold)(api_exchange *x, st_cold *cold);
     api_reads reads;
     bool (*cost)(api_exchange *x, const he_mesh *mesh,
@@ -171,9 +179,10 @@ bool api_choices_parse(const char *const *choices, const char *list, unsigned *o
 
 /* The values that a path gives to the variables of its template. */
 typedef struct api_variables {
-    const char *mesh; /* {mesh}, percent-decoded but not checked; NULL: not in the template */
-    he_kind domain;   /* kind of element that {domain} names; HE_KIND_COUNT: not in the template */
-    /* {id} and so on, percent-decoded but not checked; NULL: not in the template. */
+    /* Value of {mesh}, percent-decoded but not checked; NULL: not in the template. */
+    const char *mesh;
+    he_kind domain; /* kind of element that {domain} names; HE_KIND_COUNT: not in the template */
+    /* Values of {id} and so on, percent-decoded but not checked; NULL: not in the template. */
     const char *id, *code, *name, *job;
 } api_variables;
 
@@ -191,8 +200,8 @@ const api_route *api_route_find(const api_route_tree *tree, const char *method,
                                 const api_path *path, api_variables *out, char allow[API_ALLOW]);
 
 /* Finds the first segment of a path that matches no template; NULL if the path is only too short.
- * `list` gets the literals that templates have at this place; "" if they have none, or a variable
- * that matches any text. */
+ * `list` gets the literals that templates have in place of this segment; "" if they have none, or
+ * have a variable that matches any text. */
 enum { API_CHOICES = 256 };
 const char *api_route_choices(const api_route_tree *tree, const api_path *path,
                               char list[API_CHOICES]);

@@ -142,9 +142,9 @@ static st_shown shown(const api_exchange *x)
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
-    /* Failures of the server itself depend on no mesh, so their answers wait for nothing: if they
-     * waited for a journal that cannot be written, the client would be told of the lost changes
-     * instead of this failure. */
+    /* Failures of the server itself depend on no mesh, so their answers wait for nothing. If they
+     * waited for a journal that cannot be written, the client would get a refusal about lost
+     * changes instead of this failure. */
     if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
         return (st_shown){.position = 0};
     }

@@ -8,7 +8,7 @@
 
 typedef struct stream {
     api_tokens *tokens;
-    api_token *token; /* a reference to the token is held */
+    api_token *token; /* the token; the stream counts as one reference to it */
     api_source inner;
     api_token_watch watch;
     void (*wake)(void *context);
@@ -96,7 +96,9 @@ static int64_t read_stream(void *self, char *buffer, size_t size)
     }
     int64_t got = s->inner.read(s->inner.self, buffer, size);
     if (!good && got == API_READ_WAIT) {
-        return -1; /* cuts the connection, because the source waits in the middle of an event */
+        /* -1 cuts the connection: the event cannot be completed, because the source has to wait for
+         * its rest. */
+        return -1;
     }
     if (got > 0) {
         got = good ? got : (int64_t)rest_of_event(s, buffer, (size_t)got);

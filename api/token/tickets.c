@@ -10,7 +10,8 @@
 typedef struct ticket {
     unsigned char hashes[2 * API_TOKEN_HASH]; /* hash of the ticket, then of its target */
     double expires;
-    api_token *token; /* the token that requested the ticket, with a reference held */
+    /* The token that requested the ticket, to which the ticket counts as one reference. */
+    api_token *token;
 } ticket;
 
 struct api_tickets {

@@ -33,8 +33,8 @@ typedef struct api_ticket {
 bool api_tickets_make(api_tickets *tickets, api_token *token, const char *target, double now,
                       api_ticket *out);
 /* Returns true if this text is a ticket that is valid for the target; the ticket is then used up,
- * and `out` gets its token, with a reference held. A ticket that is presented for another target
- * stays valid. */
+ * and `out` gets a reference to its token. A ticket that is presented for another target stays
+ * valid. */
 bool api_tickets_take(api_tickets *tickets, const char *text, const char *target, double now,
                       api_token **out);
 

@@ -19,8 +19,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a token may do, and the lowest role that a route requires. API_ROLE_ADMIN is 0, so that a
- * row of the table of routes without a role is closed to all but admins. */
+/* A role: what a token may do, or, in the table of routes, the lowest role that a route requires.
+ * API_ROLE_ADMIN is 0, so that a row of that table without a role is closed to all but admins. */
 typedef enum api_role {
     API_ROLE_ADMIN,   /* everything, including requests to administer the server */
     API_ROLE_WRITE,   /* read, and change meshes */
@@ -32,8 +32,8 @@ typedef enum api_role {
 enum {
     API_TOKEN_NAME = 64,
     API_TOKEN_PREFIXES = 16,
-    /* Bytes of a prefix: shorter than a mesh id, so that the server can append random
-     * characters. */
+    /* The most bytes of a prefix: fewer than a mesh id may have, so that the server can append
+     * random characters. */
     API_TOKEN_PREFIX = 48,
     API_TOKEN_HASH = 32,
     API_TOKEN_RANDOM = 43, /* number of random characters, each one of 62: together 256 bits */
@@ -51,8 +51,9 @@ typedef struct api_token {
     double expires; /* time in seconds since 1970; HUGE_VAL: never */
     unsigned char hash[API_TOKEN_HASH];
     size_t line; /* number of the token's line in the token file */
-    /* The limits set by the token's line in the file or by the server's options, 0 for none
-     * (limit.h). They change when the file is read again, also for requests that hold the token. */
+    /* The limits of the token, set by its line in the file or by the server's options; 0 is no
+     * limit (limit.h). They change when the file is read again, also for requests that hold the
+     * token. */
     _Atomic uint64_t limits[API_LIMIT_COUNT];
     /* Set of bits: the limits that the token's line sets; the others come from the server's
      * options. */
@@ -71,7 +72,7 @@ const char *api_role_name(api_role role);
 /* Returns true if the role `has` includes the rights of the role `needs`. */
 bool api_role_allows(api_role has, api_role needs);
 
-/* Returns a limit of the token, 0 for none. A NULL token has no limits. */
+/* Returns a limit of the token, or 0 if it has no such limit. A NULL token has no limits. */
 uint64_t api_token_limit(const api_token *token, api_limit limit);
 
 /* Returns true if the token is neither revoked nor expired. `now` is in seconds since 1970. */
@@ -88,7 +89,7 @@ bool api_token_sees(const api_token *token, const char *mesh);
  * this id ("" for none). Admins and a NULL token may see all jobs. */
 bool api_token_owns(const api_token *token, const char *holder, const char *mesh);
 /* Lists the token's prefixes in ascending order, without those that begin with another of its
- * prefixes. Returns their number. */
+ * prefixes. Returns the number of prefixes listed. */
 size_t api_token_ranges(const api_token *token, const char *out[API_TOKEN_PREFIXES]);
 
 void api_token_hash(const char *text, size_t length, unsigned char out[API_TOKEN_HASH]);

@@ -289,7 +289,9 @@ static bool read_line(const reader *r, const char *at, size_t length, api_token 
 /* A hash table that finds repeated names or repeated token hashes. Its chains consist of indices of
  * tokens. */
 typedef struct met {
-    uint32_t *heads, *nexts; /* index of a token, plus 1; 0: end of the chain */
+    /* heads: first token of each chain; nexts: the token after each token; both as index + 1, 0 for
+     * the end of the chain. */
+    uint32_t *heads, *nexts;
     uint64_t secret[2];
 } met;
 
@@ -310,8 +312,8 @@ static void met_free(met *m)
     he_mem_free(m->nexts);
 }
 
-/* Returns an earlier token of the list that is equal to the last token in the member of `size`
- * bytes at `offset`. If there is none, adds the last token to the table and returns NULL. */
+/* Returns an earlier token of the list whose member at `offset`, of `size` bytes, equals that
+ * member of the last token. If there is none, adds the last token to the table and returns NULL. */
 static const api_token *met_find(met *m, const api_token_list *list, size_t offset, size_t size)
 {
     uint32_t last = (uint32_t)list->count - 1;

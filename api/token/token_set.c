@@ -14,7 +14,8 @@ enum { BUCKETS = 2 * API_TOKENS, NONE = UINT16_MAX };
 struct api_tokens {
     pthread_mutex_t lock;
     api_token_list list;
-    uint16_t heads[BUCKETS]; /* indices into `list`; NONE: end of the chain */
+    /* Chains of the hash table, as indices into `list`; NONE: end of a chain. */
+    uint16_t heads[BUCKETS];
     uint16_t nexts[API_TOKENS];
     uint64_t secret[2]; /* hash key: clients cannot predict the buckets */
     api_limits defaults;

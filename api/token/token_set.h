@@ -35,7 +35,7 @@ bool api_tokens_load(api_tokens *tokens, const char *bytes, size_t length,
 /* Returns the number of tokens in force. */
 size_t api_tokens_count(api_tokens *tokens);
 
-/* Lists all tokens in force, with a reference held to each; the caller clears the list. Returns
+/* Lists all tokens in force and takes a reference to each; the caller clears the list. Returns
  * false when memory is out. */
 bool api_tokens_all(api_tokens *tokens, api_token_list *out);
 
@@ -43,9 +43,9 @@ bool api_tokens_all(api_tokens *tokens, api_token_list *out);
  * expired; the two cases are not distinguished, so that answers do not reveal which. */
 api_token *api_tokens_find(api_tokens *tokens, const char *text, size_t length, double now);
 
-/* A callback for the revocation of a token. `gone` is called at most once, with the lock of the set
- * held; it may wake other threads but do nothing else. The caller of api_tokens_watch owns the
- * memory of the watch. */
+/* A callback for the revocation of a token. `gone` is called at most once, while the lock of the
+ * token set is held; it may wake other threads but must do nothing else. The caller of
+ * api_tokens_watch owns the memory of the watch. */
 typedef struct api_token_watch {
     const api_token *token;
     void (*gone)(struct api_token_watch *watch);

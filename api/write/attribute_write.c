@@ -21,10 +21,10 @@ typedef struct writing {
     he_column *column;     /* the new column of a PUT, until the mesh owns it */
     unsigned char *values; /* new values, one row after the other */
     size_t count;
-    bool same; /* `values` is one value for all elements */
+    bool same; /* true if `values` is one value for all elements */
     api_in at; /* cursor at the values, for the JSON pointer of a refusal */
     bool has_at;
-    bool effect; /* the new values differ from the old ones */
+    bool effect; /* true if the new values differ from the old ones */
     /* Position of the revision in the answer, where it is filled in after the commit. */
     size_t revision_at;
 } writing;
@@ -81,8 +81,8 @@ static bool write_answer(api_exchange *x, writing *w)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* Ends the write that was begun: if `good`, commits it and answers; else aborts it. Dry runs, and
- * writes that change nothing, are also aborted and answered. */
+/* Ends the write that was begun: if `good` is true, commits it and answers; else aborts it. Dry
+ * runs, and writes that change nothing, are also aborted and answered. */
 static void publish(api_exchange *x, writing *w, const char *op, int status, bool good)
 {
     he_error err = {0};
@@ -302,8 +302,8 @@ static bool decode_octets(api_exchange *x, writing *w)
     return true;
 }
 
-/* Fills the new column with what the request has: a value for each live element, one value for all,
- * all rows as binary data, or nothing, which means the default. */
+/* Fills the new column with what the request has: a value for each live element, one value for all
+ * elements, all values as binary data, or nothing, which means the default value. */
 static bool fill(api_exchange *x, writing *w, const he_mesh *mesh)
 {
     he_column *column = w->column;

@@ -45,7 +45,8 @@ static bool forget_removed(api_exchange *x)
 /* Refuses failed preconditions before the client has sent the body. */
 void api_mesh_put_begin(api_exchange *x)
 {
-    bool good = x->is_cold; /* a mesh that is not in memory is checked after the body has arrived */
+    /* The preconditions of a mesh that is not in memory are checked after the body has arrived. */
+    bool good = x->is_cold;
     if (x->mesh != NULL) {
         good = (!x->info.busy || api_fail_store(x, ST_BUSY)) && api_preconditions_hold(x, NULL);
     } else if (!x->is_cold) {
@@ -89,7 +90,7 @@ static const char *first_name(const api_exchange *x)
     return name == NULL ? "" : name;
 }
 
-/* Stores a new mesh; takes `mesh` on success. If `id` is NULL, the store chooses one. */
+/* Stores a new mesh; on success the store owns `mesh`. If `id` is NULL, the store chooses one. */
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
     return api_mesh_new(x, id, first_name(x), mesh, NULL, &x->mesh);

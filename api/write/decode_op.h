@@ -23,7 +23,7 @@
 typedef struct api_found {
     const uint32_t *ids;
     size_t count;
-    bool list; /* the reference stands for a list, not a single id */
+    bool list; /* true if the reference stands for a list, not a single id */
 } api_found;
 
 /* A function that resolves references, with its context. */
@@ -36,7 +36,7 @@ typedef struct api_references {
 
 /* A function that finds the other meshes that an operation names, with its context. */
 typedef struct api_meshes {
-    /* Finds the mesh with an id; *out is NULL if its content is not loaded yet. Refuses the value
+    /* Finds the mesh with an id; *out is NULL if the mesh is not in memory yet. Refuses the value
      * at `at` and returns false if there is no such mesh. */
     bool (*find)(void *context, const api_in *at, const char *id, const he_mesh **out);
     void *context;
@@ -48,8 +48,11 @@ typedef struct api_op_scope {
     /* Names of further members that the object may have, such as expected_revision if the request
      * has a single operation; ends in NULL. NULL: none. */
     const char *const *also;
-    const api_references *references; /* NULL: references and "as" are refused */
-    const he_mesh *mesh; /* the mesh whose elements sets stand for; NULL: sets are only checked */
+    /* Resolves references; NULL: references and "as" are refused. */
+    const api_references *references;
+    /* The mesh whose elements are in the sets that an operation names; NULL: sets are only
+     * checked. */
+    const he_mesh *mesh;
     const api_meshes *meshes; /* finds other meshes; NULL: ids of other meshes are ignored */
 } api_op_scope;
 
@@ -58,7 +61,7 @@ typedef struct api_call {
     const he_op *op;
     he_arg args[HE_OP_PARAMS];
     const char *as; /* the name given with "as", borrowed from the document; NULL: none */
-    bool has_set;   /* a list of elements was given as a set */
+    bool has_set;   /* true if a list of elements was given as a set */
 } api_call;
 
 /* Decodes one operation. Lists are in the arena, which must outlive `out`. */

@@ -57,8 +57,8 @@ static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_
 }
 
 /* Returns the number of half-edges around both ends of an edge and around its faces. A hole beside
- * the edge is counted only with `holes`: operations that name an edge, such as edge_split, do not
- * walk around the hole, but those that name a half-edge do. */
+ * the edge is counted only if `holes` is true: operations that name an edge, such as edge_split, do
+ * not walk around the hole, but operations that name a half-edge do. */
 static uint64_t about_edge(const he_mesh *mesh, he_edge e, bool holes, uint64_t most)
 {
     uint64_t count = 0;
@@ -107,8 +107,8 @@ static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
     return count;
 }
 
-/* Sums over the vertices of a loop: the number of edges at each, or, with `faces`, the number of
- * corners of all faces around it. */
+/* Returns a sum over the vertices of a loop: of the number of edges at the vertex or, if `faces` is
+ * true, of the number of corners of all faces around the vertex. */
 static uint64_t along(const he_mesh *mesh, he_halfedge first, bool faces, uint64_t most)
 {
     he_halfedge h = first;
@@ -187,7 +187,8 @@ static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uin
 {
     uint32_t id = turn ? he_origin(mesh, first).i : he_face_of(mesh, first).i;
     if (id >= HE_MAX_ROWS) {
-        return steps(mesh, first, turn, most); /* not cached, because a hole has no id */
+        /* A hole has no id, so its number of half-edges is not cached. */
+        return steps(mesh, first, turn, most);
     }
     uint32_t key = 2 * id + 2 + (turn ? 0 : 1);
     size_t slot = key / 2 % (sizeof hubs->slots / sizeof hubs->slots[0]);

@@ -28,8 +28,8 @@ HE_NODISCARD he_status api_edit_cost_add(api_edit_cost *cost, const api_call *ca
 bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint64_t most);
 
 /* A cache of high degrees of vertices and faces, used while a list of operations runs. A list of a
- * megabyte can name one vertex of 60,000 edges 30,000 times. Its degree is counted again only after
- * API_HUB_USES uses, because one operation hardly changes it. {0} is empty. */
+ * megabyte can name one vertex of 60,000 edges 30,000 times. The vertex's degree is counted again
+ * only after API_HUB_USES uses, because one operation hardly changes it. {0} is empty. */
 typedef struct api_hubs {
     struct {
         uint32_t key; /* 2 * id + 2 of a vertex, 2 * id + 3 of a face; 0: the slot is empty */
@@ -39,7 +39,8 @@ typedef struct api_hubs {
 } api_hubs;
 
 /* Returns how many steps one operation takes around the elements of those parameters that have
- * HE_WALKS. Ids that are not live count nothing. Counting stops above `most`. */
+ * HE_WALKS. Ids of elements that are not live count 0 steps. Counting stops when the number exceeds
+ * `most`. */
 uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t most,
                              api_hubs *hubs);
 

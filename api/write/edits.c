@@ -26,8 +26,8 @@ typedef struct edits {
     uint64_t passes;          /* how many passes over the mesh the `whole` operations take */
     double growth;            /* the factor by which all operations together enlarge the mesh */
     uint64_t elements_beside; /* number of elements of the other meshes that operations name */
-    /* costly: the list must run on another thread than a worker thread. claims: the list must claim
-     * the mesh (store/write.h) and work on a copy. */
+    /* costly: true if the list must run on another thread than a worker thread. claims: true if the
+     * list must claim the mesh (store/write.h) and work on a copy. */
     bool costly, claims;
     double seconds;
     api_edit_cost cost;
@@ -43,7 +43,7 @@ typedef struct edits {
      * includes them. */
     uint64_t paid;
     uint64_t look;    /* work charged for each report of progress that is not free */
-    bool unlimited;   /* this thread may do any amount of work */
+    bool unlimited;   /* true if this thread may do any amount of work */
     he_progress told; /* the original x->progress, to which tell_and_charge forwards */
     api_hubs hubs;
     api_result_names names;
@@ -60,8 +60,8 @@ typedef struct edits {
     size_t revision_at;
 } edits;
 
-/* The progress that a long edit has reached after copying the mesh, after running the operations,
- * and after finding the changes; the rest is writing the answer. */
+/* The progress (0 to 1) that a long edit has reached after copying the mesh, after running the
+ * operations, and after finding the changes; then the answer is written. */
 static const double COPY_SHARE = 0.2, OPS_SHARE = 0.7, CHANGES_SHARE = 0.95;
 
 static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
@@ -256,8 +256,9 @@ static attribute_count count_attributes(const he_mesh *mesh)
     return count;
 }
 
-/* Checks that an operation has not added too many attributes or labels. It may add some from
- * another mesh, with the first material, or for corners that a weld keeps apart. */
+/* Checks that an operation has not added too many attributes or labels. An operation may add
+ * attributes of another mesh, the attribute `material` with the first material, or attributes for
+ * corners that a weld keeps apart. */
 static bool within_attributes(attribute_count before, const he_mesh *mesh, const api_in *in)
 {
     attribute_count after = count_attributes(mesh);
@@ -504,7 +505,7 @@ static bool claim(api_exchange *x, edits *e)
     return api_write_claim(x, e->has_expected ? &e->expected : NULL) && foresee(x, e);
 }
 
-/* Commits the write and answers if `good` is set. Otherwise rolls it back, and starts the list
+/* If `good` is true, commits the write and answers. Otherwise rolls it back, and starts the list
  * again elsewhere if it exceeded the limits of limit_work. */
 static void end_edit(api_exchange *x, edits *e, bool good)
 {

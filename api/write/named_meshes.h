@@ -18,20 +18,22 @@ typedef struct api_named_mesh {
 } api_named_mesh;
 
 typedef struct api_named_meshes {
-    api_meshes meshes; /* finds these meshes; passed to api_decode_op */
+    api_meshes meshes; /* the function that finds these meshes; passed to api_decode_op */
     api_exchange *asker;
     api_named_mesh other[API_MAX_NAMED_MESHES];
     size_t count;
-    /* The state of each mesh that the mesh's snapshot shows. */
+    /* The description (name, revision and so on) of each mesh at the time of its snapshot. */
     st_shown shown[API_MAX_NAMED_MESHES];
-    /* How many of these meshes are not in memory; if any, api_named_meshes_load must be called. */
+    /* How many of these meshes are not in memory; unless this is 0, api_named_meshes_load must be
+     * called. */
     size_t cold;
 } api_named_meshes;
 
 /* Initializes an empty list. The function `find` of its member `meshes` adds each mesh once, and
  * refuses a mesh that does not exist and more meshes than API_MAX_NAMED_MESHES. */
 void api_named_meshes_init(api_named_meshes *named, api_exchange *asker);
-/* Loads the meshes that are not in memory. Blocks. Returns false with x->problem filled. */
+/* Loads the meshes that are not in memory; the call may block. On failure returns false with
+ * x->problem filled. */
 bool api_named_meshes_load(api_exchange *x, api_named_meshes *named);
 /* Returns the present number of elements of all other meshes that operations name, from which the
  * cost of the request is estimated. */

@@ -52,7 +52,7 @@ static const uint32_t unbound = HE_NONE;
 /* What a reference names: a result of an earlier operation, or an item of a list result. */
 typedef struct value {
     const api_result_name *name;
-    size_t row;    /* number of the result among the results of the operation */
+    size_t row;    /* index of the result among the results of the operation */
     int64_t index; /* index of the item; -1: the whole result */
 } value;
 

@@ -246,8 +246,8 @@ void he_reader_free(he_reader *reader)
     }
 }
 
-/* Returns `status`. If it is a failure, stores the error, which all later calls of the reader
- * will return. */
+/* Returns `status`. If that is a failure, stores the error, so that all later calls of the reader
+ * return it. */
 static he_status settle(he_reader *reader, he_status status, const he_error *failure, he_error *err)
 {
     if (status != HE_OK) {

@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Continues a checksum with `size` bytes. `before` is the checksum of all bytes before these `size`
- * bytes, 0 if there are none before. */
+/* Continues a checksum with `size` bytes. `before` is the checksum of all earlier bytes, 0 if there
+ * are none. */
 uint32_t st_crc32c(uint32_t before, const void *bytes, size_t size);
 /* Computes what st_crc32c computes, but by a table, for processors without a CRC-32C
  * instruction. */

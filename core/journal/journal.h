@@ -18,9 +18,9 @@
  *
  * LOSS. When the disk is full or a sync failed, all queued records are lost, and so will be all
  * records appended into rooms (st_room) that were reserved before: such records still get
- * positions, but are lost. The journal reserves no further room until all rooms of before were used
- * or given back and all losses were reported; so no record that can become durable builds on one
- * that cannot. */
+ * positions, but are lost. The journal reserves no further room until all rooms that were reserved
+ * before the loss were used or given back, and all losses were reported; so no record that can
+ * become durable builds on one that cannot. */
 #ifndef HE_JOURNAL_JOURNAL_H
 #define HE_JOURNAL_JOURNAL_H
 
@@ -39,37 +39,41 @@ typedef enum st_status {
     ST_LISTENERS, /* the limit of listeners is reached */
     ST_AHEAD,     /* the requested revision does not exist yet */
     ST_GONE,      /* the requested revision is no longer in the history */
-    ST_ELSEWHERE, /* no number of undos or redos leads to the requested revision */
+    ST_ELSEWHERE, /* neither undo nor redo, however often, leads to the requested revision */
     ST_BUSY,      /* a long edit has claimed the mesh */
-    ST_LOST,      /* the mesh has a change that was lost: it must be loaded again */
+    ST_LOST,      /* a change of the mesh was lost: the mesh must be loaded again */
     ST_COLD,      /* the mesh is not in memory; only the disk knows whether it exists */
     ST_LOADING,   /* another thread has been loading the mesh for too long */
     ST_DAMAGED,   /* the stored mesh is damaged */
     ST_NEWER,     /* a newer release has stored the mesh */
-    ST_BEHIND,    /* the disk is slow: the queue is full */
+    ST_BEHIND,    /* the journal's queue is full, because the disk is slow */
     ST_FULL,      /* the disk is full */
     ST_FAILED,    /* the disk failed: no more changes until a restart */
     ST_TOO_LARGE, /* the change takes more than ST_MOST_BODY bytes */
     ST_QUOTA      /* the holder (owner) of the mesh may not have more meshes or bytes */
 } st_status;
 
-/* The most bytes that the bodies of one group of records may have together, or one encoded edit
- * that is stored in parts: SQLite refuses a row above 10^9 bytes, and a thread that loads the mesh
- * holds the encoded edit as one block of memory. */
+/* The most bytes of the bodies of one group of records together, and of one encoded edit that is
+ * stored in parts: SQLite refuses a row above 10^9 bytes, and a thread that loads the mesh holds
+ * the encoded edit as one block of memory. */
 enum { ST_MOST_BODY = 900000000 };
 
 /* A room: memory reserved for one group of records, and its share of the journal's queue. Each kind
  * of journal (in memory, on disk) extends this struct by members of its own. */
 typedef struct st_room {
-    /* Memory for bodies, which the caller writes before it appends the group. */
+    /* Memory for the bodies (encoded data) of the records, which the caller writes before it
+     * appends the group. */
     unsigned char *bytes;
     size_t size;
 } st_room;
 
 typedef struct st_room_need {
     size_t records; /* most records, at least one */
-    size_t bytes;   /* most bytes that the bodies of all records of the group have together */
-    bool freeing;   /* the group is a removal, which is accepted even if the disk is full */
+    /* The most bytes that the bodies (encoded data) of all records of the group will have
+     * together. */
+    size_t bytes;
+    /* True if the group is the removal of a mesh, which is accepted even if the disk is full. */
+    bool freeing;
 } st_room_need;
 
 /* Reads one stored mesh; each kind of journal (in memory, on disk) defines its own struct. */
@@ -110,10 +114,10 @@ enum { ST_HEALTH_TEXT = 200 };
 /* The state of the journal: whether changes are accepted. */
 typedef struct st_health {
     st_status status; /* ST_OK if changes are accepted, else ST_FULL or ST_FAILED */
-    uint64_t fulls;   /* how often the disk was full since the start */
+    uint64_t fulls;   /* how often the disk became full since the journal was opened */
     /* Number of stored keys of requests that were found damaged, at the start or later. */
     uint64_t damaged_keys;
-    /* With ST_FAILED: the system's message about the failure, "" if there was none. */
+    /* If `status` is ST_FAILED, the system's message about the failure; "" if there was none. */
     char reason[ST_HEALTH_TEXT];
 } st_health;
 
@@ -142,8 +146,8 @@ typedef struct st_journal_measures {
     st_distribution checkpoints;
     uint64_t behind; /* number of records and notes that wait to be committed */
     uint64_t lost;   /* number of records and notes that will never be durable */
-    /* `queued` and `most_queued` are the bytes of the queue, reserved rooms included: now, and
-     * allowed at most. */
+    /* The bytes of the queue, reserved rooms included: how many there are now (`queued`), and how
+     * many are allowed (`most_queued`). */
     uint64_t queued, most_queued;
     uint64_t log; /* bytes of the write-ahead log (-wal) in use */
 } st_journal_measures;
@@ -176,10 +180,11 @@ typedef struct st_journal {
      * Returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY as `reserve` does. */
     st_status (*note)(void *self, const st_note *note, uint64_t *position);
 
-    /* Writes a large content to the disk before it is published; the result is called a stage. The
-     * function waits, so only threads that may wait can call it, without a lock. No other thread
-     * may change the content meanwhile: only the caller has it, or it belongs to a snapshot.
-     * Returns ST_FULL, ST_FAILED, ST_BEHIND or ST_NO_MEMORY if it cannot be written. */
+    /* Writes large mesh data (a content) to the disk before it is published; what was written is
+     * called a stage. The function waits, so only threads that may wait can call it, without a
+     * lock. No other thread may change the content meanwhile: only the caller has it, or it belongs
+     * to a snapshot. Returns ST_FULL, ST_FAILED, ST_BEHIND or ST_NO_MEMORY if it cannot be
+     * written. */
     st_status (*stage)(void *self, const he_mesh *content, st_stage **out);
     /* Writes an encoded edit to the disk before it is published. The edit is written in parts, like
      * a content, so that other commits wait for one part at a time and not for the whole edit.
@@ -188,9 +193,9 @@ typedef struct st_journal {
     st_status (*stage_edit)(void *self, const unsigned char *bytes, size_t size, st_stage **out);
     /* Deletes a stage (a content written in advance) that was not published. Does not wait. */
     void (*unstage)(void *self, st_stage *stage);
-    /* Makes the staged content a base, from which the mesh can be loaded, and takes the stage.
-     * `facts` is the record after which the mesh had this content. The newest base whose revision
-     * is not after `needed` is kept; the bases and records before it are deleted. */
+    /* Makes the staged content a base, from which the mesh can be loaded; the journal then owns the
+     * stage. `facts` describes the record after which the mesh had this content. The newest base
+     * whose revision is not after `needed` is kept; the bases and records before it are deleted. */
     void (*rebase)(void *self, st_stage *stage, const st_record *facts, uint64_t needed);
 
     /* Opens the stored mesh of an id, in the state after the newest record that was appended before
@@ -209,8 +214,8 @@ typedef struct st_journal {
     st_status (*read)(st_reader *reader, st_piece *out);
     void (*shut)(st_reader *reader); /* takes NULL */
     /* Marks the card of the mesh as damaged, because its pieces do not make a mesh; `damage` says
-     * why. Does nothing if the mesh has got another base, or was removed, since the reader was
-     * opened. */
+     * why. Does nothing if the mesh was stored anew as another base, or was removed, since the
+     * reader was opened. */
     void (*condemn)(st_reader *reader, const char *damage);
     /* Lists the cards (short descriptions) of up to `limit` meshes, in the order of ids, beginning
      * after the id `after` ("" for the start). The cards describe the meshes after their newest
@@ -227,20 +232,21 @@ typedef struct st_journal {
      * Returns ST_FAILED or ST_NO_MEMORY if they cannot be read. */
     st_status (*jobs)(void *self, st_take_job *take, void *context);
     /* Passes to `take`, for each mesh that has a holder, the holder and the bytes of the mesh after
-     * its newest durable record. Waits for the disk. NULL in a journal that stores no holders.
-     * Returns ST_FAILED or ST_NO_MEMORY if they cannot be read. */
+     * its newest durable record. Waits for the disk. The function pointer is NULL in a journal that
+     * stores no holders. Returns ST_FAILED or ST_NO_MEMORY if they cannot be read. */
     st_status (*holdings)(void *self, st_take_holding *take, void *context);
     /* Returns the number of stored meshes, counting the creations and removals in the queue as
      * done. Never waits. */
     uint64_t (*count)(void *self);
     /* Reports the state of the disk (st_health). Never waits. */
     void (*health)(void *self, st_health *out);
-    /* Copies the measurements of the journal. Never waits. NULL in a journal that measures
-     * nothing. */
+    /* Copies the measurements of the journal. Never waits. The function pointer is NULL in a
+     * journal that measures nothing. */
     void (*measure)(void *self, st_journal_measures *out);
 
-    /* Is called when the start of the daemon is over. Waits until the meshes that the start has put
-     * into a new store are durable; from then on the store counts as an existing one. */
+    /* Must be called when the start of the daemon is complete. Waits until the meshes that the
+     * start has put into a new store are durable; from then on the store counts as an existing
+     * one. */
     void (*begun)(void *self);
 
     /* Sets the journal's only listener, and calls it at once if a record was appended already. NULL

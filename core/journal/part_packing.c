@@ -70,7 +70,8 @@ size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigne
     const size_t room = size - size / LEAST_SHARE;
     const size_t packed = ZSTD_compressCCtx(packer->zstd, packer->packed, room, part, size, LEVEL);
     if (ZSTD_isError(packed)) {
-        return size; /* the compressed part does not fit, or memory is out */
+        /* The compressed part is not short enough, or memory is out: the part is left as it is. */
+        return size;
     }
     memcpy(part, packer->packed, packed);
     *coding |= HE_CODING_PACKED;

@@ -1,8 +1,8 @@
 /* part_packing.h - compresses the parts of stored meshes by zstd (HE_CODING_PACKED of stored.h).
  *
- * Each part is compressed by itself, after links (ids) were coded as differences, as one zstd frame
- * that states the size of its content, at level 1. So a part can be read without the parts before
- * it, and reading one never takes more memory than the longest possible part. */
+ * In each part, links (ids) are first coded as differences; then the part is compressed by itself
+ * at level 1, as one zstd frame that states its uncompressed size. So a part can be read without
+ * the parts before it, and reading one never takes more memory than the longest possible part. */
 #ifndef HE_JOURNAL_PART_PACKING_H
 #define HE_JOURNAL_PART_PACKING_H
 
@@ -32,7 +32,7 @@ void st_unpacker_free(st_unpacker *unpacker); /* takes NULL */
 /* Decompresses a part. *out is valid until the next part is decompressed; its size is at most
  * HE_STORED_PART_ROOM.
  * Returns ST_NO_MEMORY if memory is out.
- * Returns ST_DAMAGED if the part is not valid; *why, a literal, says what is wrong. */
+ * Returns ST_DAMAGED if the part is not valid; *why, a string literal, says what is wrong. */
 st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why);
 
 #endif

@@ -1,9 +1,10 @@
 /* record.h - the data that the store gives to the journal, and gets back from it.
  *
- * A RECORD is one change of one mesh: a revision, a rename or the removal. A CARD is a short
- * description of a mesh, without its content. A PIECE is one step of loading a mesh: first its
- * base, a whole content in parts, then the records after it in order. A NOTE is stored beside the
- * records: a job, or the key of a request that changed nothing.
+ * A RECORD is one change of one mesh: a revision, a rename or the removal. A CONTENT is the whole
+ * data of a mesh: its elements and attributes. A CARD is a short description of a mesh, without its
+ * content. A PIECE is what one step of loading a mesh reads: first parts of its base, a content,
+ * then the records after the base in order. A NOTE is stored beside the records: a job, or the key
+ * of a request that changed nothing.
  *
  * Bodies and contents are bytes as core/stored writes them; the journal never reads them. */
 #ifndef HE_JOURNAL_RECORD_H
@@ -39,8 +40,8 @@ typedef struct st_stage st_stage;
 /* The kind of a record. The numbers are stored and never change their meaning. */
 typedef enum st_record_kind {
     ST_RECORD_EDIT =
-        /* An edit of the mesh. The body, or the stage in place of the body, is the encoded edit; a
-         * stage may also be the whole content after the edit. */
+        /* An edit of the mesh. The body, or the stage that replaces the body, is the encoded edit;
+         * a stage may also be the whole content after the edit. */
     1,
     ST_RECORD_UNDO = 2, /* undoes the newest step of the undo stack; such a record has no body */
     ST_RECORD_REDO = 3, /* redoes the newest step of the redo stack; such a record has no body */
@@ -57,8 +58,10 @@ typedef enum st_record_kind {
 typedef struct st_record_key {
     const char *text;
     uint64_t digest[2]; /* hash of the request, keyed with the store's secret */
-    double time;        /* when the request came, seconds since 1970 */
-    bool of_store;      /* the key belongs to the store, because the change created the mesh */
+    double time;        /* time at which the request came, in seconds since 1970 */
+    /* True if the key belongs to the store and not to the mesh, because the change created the
+     * mesh. */
+    bool of_store;
     /* `holder` is the client that sent the key: equal keys of different clients are different keys.
      * "" or NULL stands for clients without a name. */
     const char *holder;
@@ -71,7 +74,7 @@ enum { ST_KEPT_SECONDS = 24 * 3600, ST_KEPT_KEYS = 16384 };
 /* A stored Idempotency-Key, and the state of the mesh that the answer to its request showed. */
 typedef struct st_kept_key {
     st_record_key key;
-    const char *id; /* `id` is the id of the mesh that the answer shows */
+    const char *id; /* text: the key; id: id of the mesh that the answer shows */
     uint64_t incarnation, revision, metadata;
     /* True if the stored row is damaged. Then only `text` and `holder` may be used, and even they
      * may be wrong. */
@@ -90,7 +93,7 @@ typedef enum st_job_state {
 } st_job_state;
 
 enum { ST_JOB_TYPE, ST_JOB_DISPOSITION, ST_JOB_TAG, ST_JOB_WARNINGS, ST_JOB_HEADERS };
-enum { ST_JOB_SECONDS = 3600 }; /* how long a job is kept after it has ended */
+enum { ST_JOB_SECONDS = 3600 }; /* for how many seconds a job is kept after it has ended */
 
 /* A job: a request that outlives its connection. Texts are never NULL, but may be "". */
 typedef struct st_job {
@@ -100,9 +103,10 @@ typedef struct st_job {
     const char *operation, *phase, *mesh, *location;
     const char *holder; /* `holder` is the name of the access token that the job belongs to */
     double progress;    /* 0 to 1 */
-    double created, started, finished;   /* seconds since 1970 UTC; 0: has not happened yet */
+    /* The times when this happened, in seconds since 1970 UTC; 0: it has not happened yet. */
+    double created, started, finished;
     int status;                          /* HTTP status of the job's answer; 0: there is none */
-    bool shown;                          /* a GET of the job shows the body, too */
+    bool shown;                          /* true if a GET of the job shows the body, too */
     const char *headers[ST_JOB_HEADERS]; /* headers of the job's answer */
     const void *body; /* `body` is the body of the job's answer; NULL: no body is kept */
     size_t length;
@@ -129,13 +133,13 @@ typedef struct st_record {
     /* The revision that an undo or redo inverts; for a base (whole content), the earlier revision
      * with an equal content, if there is one; else 0. */
     uint64_t inverts;
-    /* The revisions up to this one are dropped from the history after the change, to stay within
-     * the undo budget. */
+    /* The revisions from the oldest up to this one are dropped from the history after the change,
+     * to stay within the undo budget. */
     uint64_t reach;
     /* `created` is when the mesh was created, `time` when this change was made, in seconds since
      * 1970 UTC. */
     double created, time;
-    /* `ops` are the names of the operations of an edit, for the history; never NULL */
+    /* the names of the operations of an edit, which the history shows; never NULL */
     const char *ops;
     st_tally tally; /* elements that an edit changed */
     /* How many ids of each kind of element the mesh has ever issued, after the change. */
@@ -147,15 +151,17 @@ typedef struct st_record {
     const st_record_key *key;
     /* `job` is the id of the job that made the change and ends with it; NULL: no job */
     const char *job;
-    /* `body` is the body, in the bytes of an st_room; NULL in a journal that stores nothing. */
+    /* The body (encoded data) of the record, which lies in the member `bytes` of an st_room; NULL
+     * in a journal that stores nothing. */
     const unsigned char *body;
     /* Number of bytes of the body. A staged edit has no body; then this is the number of bytes of
      * the encoded edit. */
     size_t body_size;
-    /* What was written to the disk in place of the body; NULL: nothing. The journal takes the stage
-     * with the record. */
+    /* What was written to the disk in place of the body; NULL: there is no stage. The journal owns
+     * the stage once the record is appended. */
     st_stage *stage;
-    bool staged_edit; /* the stage is the encoded edit, not the content after it */
+    /* True if the stage is the encoded edit, false if it is the whole content after the edit. */
+    bool staged_edit;
 } st_record;
 
 /* A short description of a mesh after its newest record, without the content. */
@@ -166,7 +172,8 @@ typedef struct st_card {
     st_counts counts;
     uint64_t bytes;             /* bytes of memory that the content takes */
     char holder[ST_HOLDER + 1]; /* holder (owner) of the mesh; "": it has none */
-    char damage[ST_DAMAGE]; /* a sentence that says how the stored mesh is damaged; "": it is not */
+    /* A sentence that says how the stored mesh is damaged; "": the mesh is not damaged. */
+    char damage[ST_DAMAGE];
 } st_card;
 
 /* Copies a text; it is cut after `most` bytes. */
@@ -175,7 +182,7 @@ void st_copy_text(char *to, const char *from, size_t most);
 void st_card_of_record(const st_record *record, st_card *card);
 
 typedef enum st_piece_kind {
-    /* the facts (id, name, counts) of the mesh at its base; the parts of the base's content
+    /* the description (id, name, counts) of the mesh at its base; the parts of the base's content
      * follow */
     ST_PIECE_BASE,
     /* a part of the base's content, or of the stage of the record that was read before */
@@ -189,7 +196,7 @@ typedef enum st_piece_kind {
 typedef struct st_piece {
     st_piece_kind kind;
     st_record record; /* for BASE and RECORD */
-    uint64_t parts;   /* number of parts that follow a base, or a record with a stage */
+    uint64_t parts;   /* for a base, or a record with a stage: the number of parts that follow it */
     /* How the bytes of an ST_PIECE_PART are coded; he_stored_reader_part takes this value. The
      * journal has decompressed the part already; the parts of an encoded edit have
      * HE_CODING_PLAIN. */

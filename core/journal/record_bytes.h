@@ -7,8 +7,8 @@
  *     8          the chain
  *     8          time, a double
  *     varints    counter of metadata; revision that is undone or redone; how many revisions the
- *                history reaches back; ids ever issued of vertices, edges and faces; live
- *                vertices, edges and faces; boundary half-edges; bytes of the mesh in memory
+ *                history reaches back; ids ever issued of vertices, edges and faces; live vertices,
+ *                edges and faces; boundary half-edges; bytes of the mesh in memory
  *     text       ops: length (varint) and UTF-8
  *     text       the mesh's name; only in records of a content or a rename
  *     9 varints  with the flag TALLY: created, deleted, modified vertices, edges and faces
@@ -17,9 +17,9 @@
  *
  * THE CHAIN is a hash that connects a record to all before it. The chain of the first record is the
  * hash of its mesh's origin (a number that no other mesh has). The chain of each later record is
- * the hash of the frame before it, from the version on. The hash function is SipHash-2-4-128 with
- * the key 0, of which the first word is used. A record that is missing, duplicated or from another
- * mesh breaks the chain; equal chains mean equal histories.
+ * the hash of the frame before it, from the version on. The hash is the first word of
+ * SipHash-2-4-128 with the key 0. A record that is missing, duplicated or from another mesh breaks
+ * the chain; equal chains mean equal histories.
  *
  * A reader trusts no byte: it refuses invalid bytes with HE_CORRUPT and the offset, and bytes of a
  * newer release with HE_UNSUPPORTED and both versions. */
@@ -46,9 +46,9 @@ typedef struct st_frame {
     char name[ST_MESH_NAME + 1], ops[ST_FRAME_OPS + 1];
 } st_frame;
 
-/* Writes the record to `to`, which has room for ST_FRAME_HEAD bytes and the body; chain and
- * checksum are left out. If the record has a stage, the flag PARTS is set, and the flag EDIT if the
- * stage is an edit. Returns the number of bytes written. */
+/* Writes the record to `to`, which has room for ST_FRAME_HEAD bytes and the body; st_frame_seal
+ * writes the chain and the checksum later. If the record has a stage, the flag PARTS is set, and
+ * the flag EDIT if the stage is an edit. Returns the number of bytes written. */
 size_t st_frame_write(const st_record *record, unsigned char *to);
 /* Writes the chain (a hash that connects a record to all before it) and the checksum into a frame.
  * Returns the chain of the next record. */

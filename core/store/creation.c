@@ -49,8 +49,8 @@ static st_status insert(st_store *store, st_mesh *mesh)
 }
 
 /* Appends the first record of a new mesh and puts the mesh into the table. The record is appended
- * under the table's lock, so that a thread which finds the mesh, or finds its id taken, knows that
- * the record is in the journal. */
+ * under the table's lock, so that the record is in the journal when another thread finds the mesh,
+ * or finds that its id is taken. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     st_lock_write(&store->lock);
@@ -105,8 +105,8 @@ static st_status make(st_store *store, const st_new_mesh *made, he_mesh *content
         /* The time of use is set before the mesh is in the table, because a mesh that was never
          * used would be evicted first. */
         st_mesh_use(mesh);
-        /* If the records of `made->from` are lost after this check, so is the new record: its
-         * space in the journal was reserved before. */
+        /* If the records of `made->from` are lost after this check, so is the new mesh's record,
+         * because its space in the journal was reserved before. */
         const bool lost =
             made->from != NULL && st_waits_is_lost(store->followers.waits, made->from);
         status = lost ? ST_LOST : publish(store, mesh, made->cause, &booking);

@@ -16,7 +16,7 @@ enum { AGES = 256 };
 enum { BATCH = 64 };
 
 /* A mesh that was not used for COLD_MICROS may be evicted before a request needs its memory; after
- * an attempt that found nothing to evict, no other is made for BARREN_MICROS. */
+ * an attempt that found no mesh to evict, no further attempt is made for BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
 /* LOCK_NANOS is how long a thread waits for the lock of the store's table of meshes; DISK_MICROS,
@@ -68,8 +68,7 @@ static uint64_t bytes_of(const st_mesh *mesh)
 /* The bytes of meshes, summed up by classes of their time of last use. These sums tell up to which
  * time of last use meshes must be evicted to free a number of bytes. */
 typedef struct ages {
-    /* `first` is the earliest time of last use of any mesh, `span` the length of the range of these
-     * times */
+    /* first: the earliest time of last use of any mesh; span: the time from it to the latest one */
     uint64_t first, span;
     uint64_t bytes[AGES];
 } ages;

@@ -30,14 +30,14 @@ typedef enum st_missed {
 } st_missed;
 
 /* Begins to listen to the changes of a mesh: those after `since`, if `since` is not NULL, else
- * those after the present revision. The present facts of the mesh are written to `info`.
+ * those after the present revision. `info` gets the present description of the mesh.
  * Returns ST_ABSENT if the mesh was removed.
  * Returns ST_LOST if the mesh has a change that was lost.
  * Returns ST_LISTENERS if the limit of listeners is reached. */
 st_status st_follow(st_mesh *mesh, st_listener *listener, const st_since *since, st_missed *missed,
                     st_mesh_info *info);
 void st_unfollow(st_mesh *mesh, st_listener *listener);
-/* Returns true if the mesh has listeners; if not, no message need be made. */
+/* Returns true if the mesh has listeners; if it has none, no message need be made. */
 bool st_is_followed(st_mesh *mesh);
 /* Sends listeners a message that is no change of the mesh, such as the state of a job; the caller
  * needs no lock. If the bytes are NULL, every listener that has not read all earlier messages by

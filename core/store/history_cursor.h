@@ -1,8 +1,8 @@
 /* history_cursor.h - iterates over a mesh's history, one revision after another.
  *
- * A cursor owns a copy of the mesh at a revision that the history still reaches, in memory or on
- * the disk, and brings the copy forward step by step: after each step the copy equals the mesh at
- * that revision, links, attributes and issued ids included, even if the mesh has changed since.
+ * A cursor owns a copy of the mesh at a revision that the history, in memory or on the disk, still
+ * has, and brings the copy forward step by step: after each step the copy equals the mesh at that
+ * revision, links, attributes and issued ids included, even if the mesh has changed since.
  *
  *     st_cursor *cursor;
  *     st_cursor_begin(mesh, 41, &cursor);
@@ -43,8 +43,8 @@ st_status st_cursor_begin(st_mesh *mesh, uint64_t revision, st_cursor **out);
 /* Returns the cursor's copy of the mesh, even before the first step. */
 const he_mesh *st_cursor_content(const st_cursor *cursor);
 uint64_t st_cursor_revision(const st_cursor *cursor);
-/* Moves the cursor one revision further; `out` is valid until the next call. After any failure but
- * ST_NOTHING and ST_GONE the caller can only end the cursor.
+/* Moves the cursor one revision further; `out` is valid until the next call. After any failure,
+ * other than the results ST_NOTHING and ST_GONE, the caller can only end the cursor.
  * Returns ST_NOTHING at the newest revision.
  * Returns ST_GONE if the next revision is not in the history any more: the content was replaced, an
  * edit exceeded the undo budget, or so many edits followed that the revision was dropped. The

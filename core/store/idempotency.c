@@ -166,8 +166,8 @@ void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
     if (body != NULL) {
         memcpy(body, answer->body, answer->length);
     } else if (answer->length > 0 && !answer->changed) {
-        /* The answer is not kept: the request changed nothing, so it can be executed again if it
-         * comes again. */
+        /* The answer is not kept, because the request changed nothing and can be executed again if
+         * it is repeated. */
         return;
     }
     pthread_mutex_lock(&keys->lock);

@@ -1,9 +1,10 @@
-/* idempotency.h - the first answers to requests that carried an Idempotency-Key.
+/* idempotency.h - remembers the answers to requests that had an Idempotency-Key, for repetitions of
+ * these requests.
  *
  * After draft-ietf-httpapi-idempotency-key-header. A table of keys belongs to a mesh or, for
  * requests that create a mesh, to the store; it is freed with its owner. The entry of a key is made
- * before its request is executed, with all the memory that remembering the answer needs, except for
- * the answer's body:
+ * before its request is executed, and has all the memory that remembering the answer needs, except
+ * for the answer's body:
  *
  *     keyed ----> under way ----> kept, with the answer        forgotten after ST_KEPT_SECONDS, or
  *                     |             |                          when newer ones need the room
@@ -22,14 +23,14 @@
 #include <pthread.h>
 
 enum {
-    /* most bytes of the entries and bodies of one table of keys together */
+    /* the most bytes of all entries and bodies of one table of keys */
     ST_KEPT_BYTES = 16 << 20,
     ST_KEPT_BODY = 4 << 20 /* most bytes of the body of one kept answer */
 };
 
 typedef struct st_keys {
     pthread_mutex_t lock;
-    /* The hash table, its size a power of two; NULL before the first entry. */
+    /* The hash table, whose size is a power of two; NULL before the first entry. */
     struct st_keyed **buckets;
     /* `bucket_count` is the number of buckets of the hash table, `count` the number of all its
      * entries */
@@ -50,7 +51,7 @@ struct st_keyed {
     /* True if the stored row of the key is damaged, so that it is not known to which request the
      * key belongs. */
     bool is_damaged;
-    st_record_key key; /* the key in the form in which a record stores it */
+    st_record_key key; /* the key in the form in which a record in the journal stores it */
     uint64_t hash;
     st_kept answer; /* owns `body` */
     struct st_keyed *next, *older, *newer;
@@ -65,8 +66,8 @@ st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_k
 /* Removes a kept answer that a request got with ST_KEYED_KEPT. The caller must call this function
  * instead of st_keyed_end. */
 void st_keys_forget(st_keyed *keyed);
-/* Restores a key from the journal; its answer is 201 or 204, without a body. The function is passed
- * to the journal as an st_take_key; `keys` points to an st_keys. */
+/* Restores a key from the journal; the answer kept for it is 201 or 204, without a body. The
+ * function is passed to the journal as an st_take_key; `keys` points to an st_keys. */
 bool st_keys_restore(void *keys, const st_kept_key *kept);
 /* Frees the bodies of those kept answers that no request is reading. */
 void st_keys_shed(st_keys *keys);

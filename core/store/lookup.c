@@ -160,8 +160,8 @@ void st_lookup_end(st_store *store, st_lookup *lookup)
 
 /* --- a mesh that is on the disk --- */
 
-/* Makes a mesh that stands in for one that cannot be loaded: it has the facts of the card, but no
- * content. */
+/* Makes a mesh that stands in for one that cannot be loaded: it has the id, name and counts of the
+ * card, but no content. */
 static st_status stand_in(const st_mesh_options *options, const st_card *card, st_status why,
                           st_mesh **out)
 {

@@ -95,7 +95,7 @@ static void rename_mesh(st_mesh *mesh, const char *name)
     mesh->info.modified = st_clock_utc();
 }
 
-/* Commits a replacement, a rename, or both. A replacement with a new name makes two records, which
+/* Commits a replacement of the content, a rename, or both. Both together make two records, which
  * are appended as one group. */
 static void commit_facts(st_write *w)
 {

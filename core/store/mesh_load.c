@@ -20,7 +20,8 @@ typedef struct load {
     uint64_t bytes;    /* bytes that the content takes in memory, according to the card */
     uint64_t record;   /* number of the last record that was applied to the mesh; 0: none */
     uint64_t metadata; /* counter of the mesh's metadata changes after the last applied record */
-    uint64_t reach;    /* the oldest revision that can be read after the last applied record */
+    /* The oldest revision that the history still has after the last applied record. */
+    uint64_t reach;
     /* The base or record whose parts are being read; its texts are copies. */
     st_record pending;
     bool is_base; /* `pending` is a base */
@@ -47,7 +48,7 @@ static st_status no_memory(void)
     return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
 }
 
-/* Turns an error of the kernel, found while reading record `number`, into a status and a
+/* Turns an error (he_error) that occurred while reading record `number` into a status and a
  * sentence. */
 static st_status status_of(load *l, he_status status, uint64_t number, const he_error *err)
 {

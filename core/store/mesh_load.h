@@ -1,11 +1,11 @@
 /* mesh_load.h - loads a mesh from the journal.
  *
  *     base:                [content]                            the history begins here
- *     records after it:    [edit] [edit] [undo] [rename] ...    each repeats its change
+ *     records after it:    [edit] [edit] [undo] [rename] ...    each change is made again
  *     end:                 the mesh must agree with its card and pass he_check
  *
- * After the load, the content, the undo and redo stacks, the entries of the history and the facts
- * of the mesh are what they were after the last record. */
+ * After the load, the mesh has the content, the undo and redo stacks, the entries of the history,
+ * the name and all counters that it had after the last record. */
 #ifndef HE_STORE_MESH_LOAD_H
 #define HE_STORE_MESH_LOAD_H
 
@@ -13,7 +13,7 @@
 
 /* Makes room in memory and loads a mesh from the pieces that `reader` reads. `until` is the
  * revision at which the load stops, with the history as it was then; 0 loads the newest revision.
- * With ST_DAMAGED and ST_NEWER, the damage of `card` says what is wrong.
+ * If it returns ST_DAMAGED or ST_NEWER, card->damage says what is wrong.
  * Returns ST_GONE if the first content on the disk is of a later revision than `until`, or if no
  * record leads to exactly `until`.
  * Returns ST_DAMAGED if the pieces make no valid mesh, or not the mesh that the card describes; the

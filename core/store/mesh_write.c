@@ -252,8 +252,8 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     if (steps > (which == ST_UNDO ? log->undo_count : log->redo_count)) {
         return ST_NOTHING;
     }
-    /* Each step is a revision of its own, so the reserved delta, which would record all of them, is
-     * emptied. */
+    /* Each step becomes a revision with a delta of its own, so the reserved delta, which would
+     * record all steps in one, is emptied and not used. */
     roll_back(w);
     w->which = which;
     w->steps = steps;

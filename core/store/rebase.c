@@ -36,7 +36,7 @@ struct st_next_base {
     bool spoiled;
     st_stage *stage;
     uint64_t before; /* value of st_mesh.appended when the snapshot was taken */
-    st_record facts; /* facts of the mesh when the snapshot was taken */
+    st_record facts; /* describes the mesh (name, revision, counts) when the snapshot was taken */
     char name[ST_MESH_NAME + 1];
 };
 
@@ -75,7 +75,8 @@ static void settle(st_mesh *mesh)
     }
 }
 
-/* Takes an immutable copy of the mesh, and its facts. The caller holds the mesh's shared lock. */
+/* Takes an immutable copy of the mesh, and its description. The caller holds the mesh's shared
+ * lock. */
 static st_status begin(st_mesh *mesh, st_snapshot **out)
 {
     st_next_base *next = mesh->next_base;

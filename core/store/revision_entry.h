@@ -12,9 +12,9 @@ typedef enum st_stack { ST_ON_NEITHER, ST_ON_UNDO, ST_ON_REDO } st_stack;
 struct st_step {
     he_delta *delta;
     size_t bytes;      /* bytes of the step with its delta */
-    size_t charged;    /* bytes by which the step counts against the budget */
+    size_t charged;    /* how many bytes the step counts against the undo budget */
     uint64_t revision; /* revision of the edit */
-    uint64_t applied;  /* revision of that entry (edit, undo or redo) which applied the step last */
+    uint64_t applied;  /* revision of the entry (edit, undo or redo) that applied the step last */
     /* The entry of the revision `applied`, if that entry has left the log's ring and only the redo
      * stack still needs it. */
     st_revision *kept;
@@ -27,10 +27,12 @@ struct st_step {
 };
 
 struct st_revision {
-    st_point point; /* facts of the mesh after the revision */
+    /* What the log keeps of the mesh at this revision (st_point). */
+    st_point point;
     uint64_t inverts;
     st_action action;
-    bool forward; /* the delta was applied forwards, so the entry is no undo */
+    /* True if the delta was applied forwards: the entry is an edit or a redo, not an undo. */
+    bool forward;
     size_t delta_bytes;
     size_t size; /* bytes that the entry and its slot in the ring take */
     /* the step with the delta that led to the revision; NULL if the delta is not kept */

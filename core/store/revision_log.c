@@ -130,8 +130,8 @@ static void forget_delta(st_revision_log *log, st_revision *entry)
     }
 }
 
-/* Empties the redo stack. The entries of the log still use the steps (deltas) that were on the
- * stack, so copies of the mesh can still be moved from revision to revision by these steps. */
+/* Empties the redo stack. The steps (deltas) that were on the stack stay as long as entries of the
+ * log use them, so copies of the mesh can still be moved from revision to revision. */
 static void clear_redo(st_revision_log *log)
 {
     while (log->redo_top != NULL) {
@@ -226,8 +226,8 @@ void st_log_drop(st_revision_log *log, uint64_t reach)
 
 void st_log_settle(st_revision_log *log)
 {
-    /* The newest entry stays even if it alone exceeds the budget, because it has the facts of the
-     * present revision. */
+    /* The newest entry stays even if it alone exceeds the budget, because it describes the present
+     * revision. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
     }

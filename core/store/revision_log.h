@@ -49,11 +49,11 @@ typedef struct st_point {
 
 typedef struct st_revision_log {
     uint64_t budget;    /* bytes */
-    uint64_t bytes;     /* bytes by which entries and steps count against the budget */
+    uint64_t bytes;     /* how many bytes entries and steps count against the budget */
     st_revision **ring; /* size: a power of two */
     size_t capacity, first, count;
     uint64_t dropped; /* number of entries dropped to stay within the budget */
-    st_point before;  /* facts of the revision before the oldest entry */
+    st_point before;  /* what the log keeps of the revision before the oldest entry */
     uint64_t oldest;  /* the oldest revision that can be read */
     /* state (newest edit not undone) of the mesh once everything on the undo stack is undone */
     uint64_t bottom;
@@ -84,7 +84,7 @@ void st_log_unreserve(st_revision_log *log);
 /* Returns true if the reserved delta fits into the budget, so that its edit can be undone. */
 bool st_log_fits(const st_revision_log *log);
 
-/* The facts of a change with which it is put into the log. */
+/* Describes a change that is added to the log. */
 typedef struct st_logged {
     uint64_t revision; /* the revision that the change led to */
     st_action action;  /* ST_EDIT or ST_REPLACE */
@@ -126,7 +126,7 @@ uint64_t st_log_top(const st_revision_log *log, st_action which);
 /* Lists the deltas that `steps` undos (redos) apply, in the order of applying them. That many undos
  * (redos) must be possible. */
 void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out);
-/* Moves the step that is undone (redone) next to the other stack and adds the entry of that undo
+/* Moves the step whose undo (redo) is next to the other stack, and adds an entry for that undo
  * (redo). It must be called after the step's delta was applied. */
 void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, double time,
                      const he_mesh *content);
@@ -152,7 +152,7 @@ bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out);
 void st_log_fill_record(const st_revision_log *log, st_record *record);
 /* Returns the newest revision of the log. */
 uint64_t st_log_head(const st_revision_log *log);
-/* Copies the facts of a revision; the log must have it. */
+/* Copies what the log keeps of a revision (st_point); the log must have the revision. */
 void st_log_point(const st_revision_log *log, uint64_t revision, st_point *out);
 
 /* Returns the bytes of the deltas between two revisions, as a measure of the work to bring a copy
@@ -175,8 +175,8 @@ st_step *st_log_hold(const st_revision_log *log, uint64_t revision, st_action *a
  * read, not what its pointers point to. */
 const he_delta *st_step_delta(const st_step *step);
 void st_step_release(st_step *step); /* takes NULL */
-/* Returns the delta that led to a revision, by being applied forwards or backwards; NULL if the
- * delta is not kept. */
+/* Returns the delta whose application, forwards or backwards, led to a revision; NULL if the delta
+ * is not kept. */
 const he_delta *st_log_delta(const st_revision_log *log, uint64_t revision);
 
 #endif

@@ -1,5 +1,5 @@
-/* revision_walk.c - reads a revision log: finds the facts of a revision, and moves copies of the
- * mesh to a revision. */
+/* revision_walk.c - reads a revision log: finds what the log keeps of a revision, and moves copies
+ * of the mesh to a revision. */
 #include "store/revision_entry.h"
 
 #include <assert.h>

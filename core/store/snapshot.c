@@ -6,8 +6,8 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* A snapshot: a reference to a copy of the mesh that many callers may share, and the mesh's facts
- * when the snapshot was taken. */
+/* A snapshot: a reference to a copy of the mesh that many callers may share, and the mesh's
+ * description when the snapshot was taken. */
 struct st_snapshot {
     st_copy *copy;
     st_mesh_info info;
@@ -221,8 +221,8 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     st_lock_mutex(&mesh->past_lock);
     st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
-        /* The facts of the snapshot are the present facts of the mesh, except for the revision and
-         * its time. */
+        /* In the snapshot's description, the revision and its time are those of the copy; the name
+         * and all else are those of the present mesh. */
         snapshot->copy = mesh->past;
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
         (void)st_read_begin(mesh, &snapshot->info);

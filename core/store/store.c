@@ -19,8 +19,8 @@ static void moved(void *context, uint64_t position)
     st_waits_moved(store->followers.waits, position);
 }
 
-/* Handles a loss of records that the journal reports. The loss is noted first, so that answers made
- * from a lost mesh are not sent any more. */
+/* Handles a loss of records that the journal reports. The loss is passed to the waiting answers
+ * first, so that none made from a lost mesh is sent any more. */
 static void lost(void *context, const st_loss *loss)
 {
     st_store *store = context;

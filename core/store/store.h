@@ -2,13 +2,13 @@
  * on the disk. write.h declares the functions that change them.
  *
  * A handle is a counted reference to a stored mesh. It stays valid until st_release, even after the
- * mesh was removed from the store; the fact `removed` of the mesh is then true. A mesh is freed
- * with its last handle, so threads that are reading a mesh can finish after its removal.
+ * mesh was removed from the store; `removed` in its st_mesh_info is then true. A mesh is freed with
+ * its last handle, so threads that are reading a mesh can finish after its removal.
  *
- * When the journal loses changes, each mesh whose newest change is lost leaves the store, and its
- * fact `lost` becomes true: no write changes it, the streams of its listeners are closed, and
- * answers made from it are never sent. A request for its id then loads the mesh as it was before
- * the lost changes.
+ * When the journal loses changes, each mesh whose newest change is lost leaves the store, and
+ * `lost` in its st_mesh_info becomes true: no write changes it, the streams of its listeners are
+ * closed, and answers made from it are never sent. A request for its id then loads the mesh as it
+ * was before the lost changes.
  *
  * WORDS. A record is one change of a mesh in the journal; its position is its number among all
  * records of the store. A base is the content from which a mesh is loaded; the records after it are
@@ -61,7 +61,8 @@ typedef struct st_cause {
     const char *holder;
 } st_cause;
 
-/* Facts about a stored mesh as plain data, copied under its lock. */
+/* The description of a stored mesh: its id, name, revision and counts, copied under the mesh's
+ * lock. */
 typedef struct st_mesh_info {
     char id[ST_MESH_ID + 1];
     char name[ST_MESH_NAME + 1]; /* UTF-8, may be empty */
@@ -81,19 +82,20 @@ typedef struct st_mesh_info {
     bool lost;
     /* ST_OK, or why the mesh has no content: ST_DAMAGED or ST_NEWER, see st_load. */
     st_status unreadable;
-    bool busy;               /* a long edit has claimed the mesh, see write.h */
+    bool busy;               /* true if a long edit has claimed the mesh, see write.h */
     char job[ST_JOB_ID + 1]; /* id of the job whose long edit has claimed the mesh, or "" */
 } st_mesh_info;
 
 /* A change about which listeners of a mesh are informed: a new revision, a rename or a removal. */
 typedef struct st_change {
-    st_action action;      /* ST_REPLACE if the whole content was replaced */
-    const he_delta *delta; /* `delta` is what was changed; NULL with ST_REPLACE and for a rename */
-    bool undone;           /* the delta was applied backwards */
+    st_action action; /* ST_REPLACE if the whole content was replaced */
+    /* delta: what was changed; NULL if the action is ST_REPLACE, and for a rename. */
+    const he_delta *delta;
+    bool undone; /* the delta was applied backwards */
     /* `changes` are the net changes of the delta; NULL: they were not computed */
     const he_changes *changes;
     const he_mesh *content; /* the mesh after the change */
-    bool removed;           /* the mesh was deleted; no further change follows */
+    bool removed;           /* true if the mesh was deleted; no further change follows */
 } st_change;
 
 /* A function that renders a change as a message for listeners of the mesh. `bytes` is allocated by
@@ -109,8 +111,10 @@ typedef struct st_store_options {
     /* threads that make bases (contents to load from) of meshes with many records, see rebase.c;
      * NULL: no bases are made */
     st_pool *pool;
-    uint64_t base_bytes; /* bytes of records after which a mesh gets a new base; 0: ST_BASE_BYTES */
-    st_render *render;   /* makes the messages for listeners; NULL: the store has no listeners */
+    /* When the records since a mesh's base exceed this number of bytes, the mesh may get a new
+     * base; 0: ST_BASE_BYTES. */
+    uint64_t base_bytes;
+    st_render *render; /* makes the messages for listeners; NULL: the store has no listeners */
     /* `listeners` is the most listeners at the same time of all meshes, `mesh_listeners` those of
      * one mesh */
     size_t listeners;
@@ -157,9 +161,9 @@ typedef struct st_store_measures {
 /* Measures the store. Takes the lock of the table of meshes and that of the journal for a moment;
  * does not wait for the disk. */
 void st_store_measure(st_store *store, st_store_measures *out);
-/* Sets the store that the calling thread works for. When an allocation of this thread would be
- * refused, unused meshes of that store are evicted first. A NULL store means that the thread works
- * for no store. */
+/* Sets the store that the calling thread works for. If memory for an allocation of this thread is
+ * short, unused meshes of that store are evicted before the allocation is refused. A NULL store
+ * means that the thread works for no store. */
 void st_store_serve(const st_store *store);
 /* Must be called about once a second. While less than an eighth of the memory budget is free, this
  * function evicts meshes (removes them from memory) that were not used for a minute, the least
@@ -169,8 +173,8 @@ void st_store_rest(st_store *store);
  * evicted. Takes the locks that st_store_rest takes, and waits up to a quarter of a second if
  * meshes can be evicted once their changes are on the disk. */
 bool st_store_is_full(st_store *store);
-/* Frees caches: copies of meshes and bodies of remembered answers, unless a thread is reading
- * these, and objects derived from meshes. The caller must hold no lock. */
+/* Frees caches: copies of meshes and bodies of remembered answers, except those that a thread is
+ * reading, and objects derived from meshes. The caller must hold no lock. */
 void st_store_shed(st_store *store);
 
 /* --- holders of meshes --- (holder/holders.h) */
@@ -188,11 +192,11 @@ const char *st_holder_of(const st_mesh *mesh);
 
 /* Returns the set of answers that wait until the changes they show are durable. */
 st_waits *st_store_waits(st_store *store);
-/* Returns the records that an answer about one mesh shows; `info` are the facts of the mesh in the
- * answer. */
+/* Returns the records that an answer about one mesh shows; `info` is the mesh's description from
+ * which the answer is made. */
 st_shown st_shown_of(const st_mesh_info *info);
-/* Returns the records that an answer shows which may show any mesh, or which says that a mesh does
- * not exist. `since` is the durable position (st_waits_durable) when the answer was begun. */
+/* Returns the records that are shown by an answer that may show any mesh, or that says that a mesh
+ * does not exist. `since` is the durable position (st_waits_durable) when the answer was begun. */
 st_shown st_shown_all(st_store *store, uint64_t since);
 
 /* --- the collection --- */
@@ -203,9 +207,9 @@ st_shown st_shown_all(st_store *store, uint64_t since);
 st_status st_find(st_store *store, const char *id, st_mesh **out);
 /* Finds a mesh like st_find, and loads a mesh that is not in memory, once for all threads that
  * request it. The function waits, so only threads that may wait can call it, and without holding a
- * lock. A mesh that is damaged, or that a newer release has written, is found, too, and its fact
- * `unreadable` is set: such a mesh has no content, and can only be removed or replaced
- * (st_create_over).
+ * lock. A mesh that is damaged, or that a newer release has written, is found, too, and
+ * `unreadable` in its st_mesh_info is set: such a mesh has no content, and can only be removed or
+ * replaced (st_create_over).
  * Returns ST_ABSENT if there is no such mesh.
  * Returns ST_LOADING if another thread has been loading the mesh for too long.
  * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if it cannot be loaded. */
@@ -224,9 +228,9 @@ const char *st_damage(const st_mesh *mesh);
 st_status st_salvage(st_store *store, const char *id, st_mesh **out, char damage[ST_DAMAGE]);
 st_mesh *st_hold(st_mesh *mesh); /* adds a reference to the mesh and returns `mesh` */
 void st_release(st_mesh *mesh);  /* releases a reference; takes NULL */
-/* Creates a mesh. Takes `content` on success. If `id` is NULL the store chooses one. `cause`, which
- * may be NULL, is stored in the first record. A worker must not call it if st_store_waits_for_disk
- * returns true.
+/* Creates a mesh, which owns `content` on success. If `id` is NULL the store chooses one. `cause`,
+ * which may be NULL, is stored in the first record. A worker must not call it if
+ * st_store_waits_for_disk returns true.
  * Returns ST_TAKEN if a mesh has the id.
  * Returns ST_TOO_MANY if the store is full.
  * Returns ST_QUOTA if the holder (owner) would have more meshes or bytes than it may.
@@ -234,7 +238,7 @@ void st_release(st_mesh *mesh);  /* releases a reference; takes NULL */
  * Returns ST_BUDGET, ST_NO_MEMORY, ST_BEHIND, ST_FULL or ST_FAILED if the mesh cannot be stored. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_cause *cause, st_mesh **out);
-/* The facts about a new mesh that the store needs beside its content. */
+/* What the store needs to know about a new mesh beside its content. */
 typedef struct st_new_mesh {
     const char *id; /* NULL: the store chooses one */
     const char *name;
@@ -245,12 +249,12 @@ typedef struct st_new_mesh {
     const st_shown *from;
 } st_new_mesh;
 
-/* Creates a mesh like st_create, from a content that may have been made from other meshes. If the
- * records of those meshes that `made->from` names are lost, so is the new mesh.
+/* Creates a mesh like st_create, from a content that may have been made from other meshes. If a
+ * record named by `made->from` is lost, so is the new mesh.
  * Returns ST_LOST if these records are lost already. */
 st_status st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content, st_mesh **out);
-/* Creates a mesh in place of a damaged mesh with the same id, which is removed; either both happen
- * or neither.
+/* Replaces a damaged mesh by a new mesh with its id: the removal and the creation happen both or
+ * not at all.
  * Returns ST_ABSENT if the damaged mesh was removed before. */
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
                          const st_cause *cause, st_mesh **out);
@@ -279,15 +283,15 @@ st_status st_cards(st_store *store, const char *after, st_card *out, size_t limi
 
 /* --- a mesh that is not in memory, without loading it --- */
 
-/* A mesh that is not in memory, described by the facts on its card, of which entity tags and
- * preconditions are made. Whether the content can be read is not known. From st_cold_begin to
- * st_cold_end the caller owns the lookup of the id: no thread loads the mesh, and the facts do not
- * change. */
+/* A mesh that is not in memory, described by its card (id, name, revision, counts), which suffices
+ * for entity tags and preconditions. Whether the content can be read is not known. From
+ * st_cold_begin to st_cold_end the caller owns the lookup of the id: no thread loads the mesh, and
+ * its description does not change. */
 typedef struct st_cold {
     st_store *store;
     struct st_lookup *lookup;
     st_card card;
-    /* facts of the mesh from its card; after st_cold_remove, the facts of the removed mesh */
+    /* description of the mesh from its card; after st_cold_remove, that of the removed mesh */
     st_mesh_info info;
 } st_cold;
 
@@ -307,19 +311,19 @@ void st_cold_end(st_cold *cold);
 /* --- reading --- */
 
 /* Takes the shared lock of a mesh and returns its content, which is never NULL. Copies the mesh's
- * facts to `info`, which may be NULL. */
+ * description to `info`, which may be NULL. */
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info);
 void st_read_end(st_mesh *mesh);
-/* Copies the facts of the mesh without its content, under the shared lock for a moment. Returns how
- * many ids of vertices, half-edges and faces the mesh has ever issued. */
+/* Copies the mesh's description to `info`; holds the shared lock only for that. Returns how many
+ * ids of vertices, half-edges and faces the mesh has ever issued. */
 uint64_t st_read_card(st_mesh *mesh, st_mesh_info *info);
 /* Makes an immutable copy of the present revision, shared by all callers that ask for this
  * revision. The function may copy the mesh, so a worker must not call it for large meshes.
  * Returns ST_NO_MEMORY or ST_BUDGET if there is no room for the copy. */
 st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 /* Makes a copy of an earlier revision. The function may replay the history, so a worker must not
- * call it. The facts that st_snapshot_content returns for the copy are the present facts of the
- * mesh, except for `revision` and `modified`.
+ * call it. In the description that st_snapshot_content returns, only `revision` and `modified` are
+ * those of the copy; all else (name, counts of undo and redo, ...) is that of the present mesh.
  * Returns ST_AHEAD if there is no such revision yet.
  * Returns ST_GONE if neither the history nor the records on the disk reach back to it.
  * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if the copy cannot be made. */
@@ -333,9 +337,9 @@ void st_snapshot_release(st_snapshot *snapshot); /* takes NULL */
  * returns false if there is none. The caller holds the shared lock of the mesh. */
 bool st_cache_get(st_mesh *mesh, void *value, size_t size);
 void st_cache_put(st_mesh *mesh, const void *value, size_t size);
-/* Keeps a derived value like st_cache_put, for a caller that holds no lock. `of` are the facts of
- * the mesh from which the value was made; if the mesh has changed since then, the value is not
- * kept. */
+/* Keeps a derived value like st_cache_put, for a caller that holds no lock. `of` describes the
+ * mesh, at the revision from which the value was made; if the mesh has changed since then, the
+ * value is not kept. */
 void st_cache_put_of(st_mesh *mesh, const st_mesh_info *of, const void *value, size_t size);
 
 /* Objects that handlers derive from a mesh and that the store keeps with it, one of each kind. */
@@ -358,9 +362,9 @@ typedef struct st_derived {
 } st_derived;
 
 /* Locks the slot that keeps an object derived from a mesh, until st_derived_end. A thread that also
- * takes the mesh's shared lock must take that lock first. A thread locks one slot at a time, and
- * never for longer than a worker may take for a request. The store destroys the object when memory
- * is short, and with the mesh. */
+ * takes the mesh's shared lock must take that lock first. A thread may lock only one slot at a
+ * time, and never for longer than a worker may take for a request. The store destroys the object
+ * when memory is short, and with the mesh. */
 st_derived *st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 void st_derived_end(st_mesh *mesh, st_derived_kind kind);
 /* Unlocks the slot (st_derived_begin) until another thread has ended its use of the slot, or for
@@ -401,11 +405,12 @@ typedef struct st_kept {
      * its body. */
     bool changed;
     char etag[ST_KEPT_TAG]; /* ETag of the answer; "": the answer had none */
-    /* Id of the mesh that the answer shows; with status 201 the header Location names this mesh. */
+    /* Id of the mesh that the answer shows; if the status is 201, the header Location names this
+     * mesh. */
     char id[ST_MESH_ID + 1];
     uint64_t incarnation, position;
-    /* The state of the mesh that the answer's ETag names, if the answer was given before the server
-     * was last started, so that the ETag itself is not kept; else 0. */
+    /* The state of the mesh from which the answer's ETag can be made again, if the ETag itself is
+     * not kept because the answer was given before the last start of the server; else 0. */
     uint64_t revision, metadata;
     /* `body` is the JSON body of the answer; if NULL although `length` is not 0, the body was not
      * kept */
@@ -414,11 +419,11 @@ typedef struct st_kept {
 } st_kept;
 
 /* Begins a request with an Idempotency-Key, before the request is executed; the caller holds no
- * lock. If `mesh` is NULL, the key belongs to the store. With ST_KEYED_NEW all memory for the
- * answer is allocated, so st_keyed_keep cannot fail; with ST_KEYED_KEPT st_keyed_answer gives the
- * answer. In both cases st_keyed_end ends the request, and forgets the key unless the answer was
- * kept. Keys of a mesh are deleted with the mesh; every key is deleted after a day, or earlier if
- * newer keys need the memory. */
+ * lock. If `mesh` is NULL, the key belongs to the store. If it returns ST_KEYED_NEW, all memory for
+ * the answer is allocated, so that st_keyed_keep cannot fail. If it returns ST_KEYED_KEPT,
+ * st_keyed_answer gives the answer. In both cases st_keyed_end ends the request, and forgets the
+ * key unless the answer was kept. Keys of a mesh are deleted with the mesh; every key is deleted
+ * after a day, or earlier if newer keys need the memory. */
 st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key, st_keyed **out);
 const st_kept *st_keyed_answer(const st_keyed *keyed);
 void st_keyed_keep(st_keyed *keyed, const st_kept *answer);
@@ -426,8 +431,8 @@ void st_keyed_end(st_keyed *keyed);
 
 /* Writes a note to the journal, so that the key of a request that changed nothing survives a
  * restart; the key of a change is in the records of that change. The function must be called before
- * st_keyed_keep; `info` are the facts of the mesh that the answer shows. *position is the position
- * of the note, which must be durable before the answer is sent; 0: there is no note. If the journal
+ * st_keyed_keep; `info` describes the mesh that the answer shows. *position is the position of the
+ * note, which must be durable before the answer is sent; 0: there is no note. If the journal
  * refuses, the answer is kept in memory only. */
 void st_keyed_note(st_store *store, const st_keyed *keyed, const st_mesh_info *info,
                    uint64_t *position);
@@ -464,7 +469,7 @@ typedef struct st_history {
     /* The oldest revision whose content can be read, from memory or the disk. */
     uint64_t oldest;
     uint64_t dropped; /* number of entries dropped to keep the history within its budget */
-    /* `bytes` and `budget` are the bytes of entries and deltas: now, and allowed at most */
+    /* bytes: how many bytes entries and deltas take now; budget: how many they may take */
     uint64_t bytes, budget;
 } st_history;
 

@@ -17,7 +17,9 @@
 typedef struct st_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
-    double time; /* when the revision of the copy was made, if it is not the present revision */
+    /* Time at which the revision of the copy was made; set only if it is not the present
+     * revision. */
+    double time;
     he_replay *replay;
     /* the counters of the store to which the bytes of the copy were added */
     st_store_counts *counts;
@@ -38,14 +40,14 @@ struct st_mesh {
     st_holders *holders;
 
     pthread_rwlock_t lock; /* guards the members from here down to `next_base` */
-    /* facts of the mesh; the members undo and redo are not set here, because `log` has these
-     * numbers */
+    /* description of the mesh (id, name, revision, ...); its members undo and redo are not set
+     * here, because `log` has these numbers */
     st_mesh_info info;
     he_mesh *content;
     st_revision_log log;
     /* the mesh's holder (owner), and the bytes by which the mesh counts for the holder */
     st_holding holding;
-    /* a long edit has claimed the mesh and uses the delta that the log has reserved */
+    /* true if a long edit has claimed the mesh; it then uses the delta that the log has reserved */
     bool claimed;
 
     /* The sizes of the mesh that were last added to the counters of the store; also written,
@@ -107,18 +109,18 @@ typedef struct st_mesh_options {
     const uint64_t *secret;
 } st_mesh_options;
 
-/* Makes a mesh with the facts of a card but without content and history, which the caller puts in.
- * Returns NULL if memory is out. */
+/* Makes a mesh from a card (its description) but without content and history, which the caller
+ * adds. Returns NULL if memory is out. */
 st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card);
-/* Makes a mesh at its first revision; `cause`, which may be NULL, names its holder. Takes
- * `content`. Returns NULL if memory is out. The count of the holder does not include the new mesh
+/* Makes a mesh at its first revision, which owns `content`; `cause`, which may be NULL, names its
+ * holder. Returns NULL if memory is out. The count of the holder does not include the new mesh
  * yet. */
 st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
                      const st_cause *cause, he_mesh *content);
 /* Records that the mesh is used now, because the least recently used meshes are evicted first. */
 void st_mesh_use(st_mesh *mesh);
 st_counts st_counts_of(const he_mesh *content);
-/* Copies the facts of a mesh. The caller holds the mesh's lock. */
+/* Copies the description of a mesh. The caller holds the mesh's lock. */
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
 /* Frees the caches of a mesh: its cached copies, the bodies of remembered answers, unless a thread
  * is reading these, and derived objects. */
@@ -146,11 +148,12 @@ typedef struct st_group {
     st_event *events; /* an array of rendered messages, one for each record, or NULL */
 } st_group;
 
-/* Returns the next record of the mesh, filled with the mesh's present facts. If the record is of a
- * revision, that revision must be in the log already. The caller holds the exclusive lock. */
+/* Returns the next record of the mesh, filled with the mesh's present name, revision and counts. If
+ * the record is of a revision, that revision must be in the log already. The caller holds the
+ * exclusive lock. */
 st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause);
-/* Returns the facts of the mesh's newest record, as a record of this kind. The caller holds the
- * shared or the exclusive lock. */
+/* Returns a record of the kind `kind` that describes the mesh as it is after its newest record. The
+ * caller holds the shared or the exclusive lock. */
 st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind);
 /* Sets the bytes by which the mesh counts for its holder. The caller holds the exclusive lock.
  * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */

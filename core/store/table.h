@@ -14,7 +14,8 @@ struct st_store {
     /* the threads that make new bases (contents from which meshes are loaded); NULL: no bases are
      * made */
     st_pool *pool;
-    /* bytes of records after which a mesh gets a new base, from which it is loaded */
+    /* when the records since a mesh's base exceed this number of bytes, the mesh may get a new
+     * base */
     uint64_t base_bytes;
     st_followers followers;
     st_lookups lookups;
@@ -22,10 +23,11 @@ struct st_store {
     /* Time until which no eviction is tried, because the last try found no mesh to evict. */
     _Atomic uint64_t barren;
     pthread_mutex_t
-        room; /* held by the one thread that frees memory for requests; taken before `lock` */
+        /* A mutex held by the one thread that frees memory for requests; taken before `lock`. */
+        room;
     pthread_rwlock_t lock; /* guards the table of meshes */
-    /* The table: an array of the meshes in memory, in the order of ids, with a reference to each
-     * mesh. */
+    /* The table: an array of the meshes in memory, in the order of ids; the table counts as one
+     * reference to each mesh. */
     st_mesh **meshes;
     size_t count, capacity;
     st_keys keys; /* the Idempotency-Keys of requests that create a mesh */
@@ -44,9 +46,9 @@ size_t st_table_place(const st_store *store, const char *id, bool *found);
 st_status st_table_insert(st_store *store, st_mesh *mesh);
 
 /* Tries to make `bytes` and a sixteenth of the memory budget free: frees caches, then evicts unused
- * meshes that the journal can load again, the least recently used first. Frees nothing if `bytes`
- * is more than the budget could ever have free. The caller may hold no lock but the one named
- * `past` (store.h). */
+ * meshes that the journal can load again, the least recently used first. Frees nothing if even an
+ * empty store would not leave `bytes` of the budget free. The caller may hold no lock but the one
+ * named `past` (store.h). */
 void st_make_room(st_store *store, uint64_t bytes);
 /* Makes a memory giver (memory.h): a function that evicts unused meshes when an allocation would be
  * refused. The thread that allocates may hold locks. */

@@ -42,14 +42,15 @@ typedef struct st_write {
      * after an undo, redo or replacement */
     he_delta *delta;
     he_changes changes; /* the net changes of the write, valid until it ends */
-    st_mesh_info info; /* facts of the mesh when the write began; after the commit, its new facts */
+    /* Description of the mesh when the write began; after the commit, its new description. */
+    st_mesh_info info;
 
     /* --- the members below are private to core/store --- */
     st_write_kind kind;
     /* `claimed` is true if the write is a claim, `found` if `changes` is filled in */
     bool claimed, found;
     st_cause cause;
-    he_savepoint mark; /* where the changes of this write begin in `delta` */
+    he_savepoint mark; /* position in `delta` at which the changes of this write begin */
     const char *name;  /* `name` is the new name, if the write is a rename */
     /* ST_UNDO or ST_REDO, if the write undoes or redoes steps; the next four members are used only
      * then. */
@@ -101,8 +102,9 @@ bool st_write_undoable(const st_write *write);
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_step(st_write *write, st_action which, uint32_t steps);
-/* Makes the write replace the whole content of the mesh (PUT). Takes the new content, and `stage`:
- * NULL, or the stage to which st_store_stage has written this content in advance. */
+/* Makes the write replace the whole content of the mesh (PUT). The write then owns the new content
+ * and `stage`, which is NULL or the stage to which st_store_stage has written this content in
+ * advance. */
 void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
 /* Makes the write rename the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME
  * bytes. */
@@ -124,12 +126,12 @@ st_status st_write_commit(st_write *write, const char *ops);
 void st_write_abort(st_write *write);
 
 /* Sets the id of the job that has claimed the mesh; other requests find this id in the member `job`
- * of the mesh's facts. Takes no lock. */
+ * of the mesh's st_mesh_info. Takes no lock. */
 void st_claimed_by(st_mesh *mesh, const char *id);
 /* Finds `steps`, the number of undos (redos) that lead to the content of a revision, 0 if the mesh
  * has this content now, and `bytes`, the bytes of all their deltas (recorded changes). If
- * `revision` is 0, `steps` is an input and only `bytes` is found. The caller holds the shared or
- * the exclusive lock.
+ * `revision` is 0, the caller sets `steps`, and only `bytes` is found. The caller holds the shared
+ * or the exclusive lock.
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_AHEAD, ST_GONE or ST_ELSEWHERE as st_log_steps_to does. */
 st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,

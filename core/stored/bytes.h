@@ -47,7 +47,8 @@ static inline uint64_t he_difference(uint32_t value, uint32_t from)
     return value >= from ? 2 * (uint64_t)(value - from) : 2 * (uint64_t)(from - value) - 1;
 }
 /* Codes a link (an id, HE_NONE or HE_DEAD) as a number, which takes at most HE_LINK_BYTES as a
- * varint. An id is coded as its difference to `row`. */
+ * varint. An id is coded as its difference to `row`, the row of the array in which the link is
+ * stored. */
 static inline uint64_t he_link_code(uint32_t link, uint32_t row)
 {
     return link == HE_NONE ? 0 : link == HE_DEAD ? 1 : 2 + he_difference(link, row);

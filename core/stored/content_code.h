@@ -21,9 +21,10 @@ enum {
 
 enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1, HE_SLOT_MATERIAL = 2 };
 
-/* The number from which HE_CODING_LINKS takes the difference of a link. HE_LINKS_BY_ROW: the row in
- * which the link is stored, because consecutive half-edges of a face mostly have near ids.
- * HE_LINKS_BY_LAST: the link before it in the array, or its row if the part has no link before it.
+/* HE_CODING_LINKS stores a link as its difference to a number, which each array of links determines
+ * in one of two ways. HE_LINKS_BY_ROW: the row in which the link is stored, because consecutive
+ * half-edges of a face mostly have near ids. HE_LINKS_BY_LAST: the link before it in the array, or
+ * its row if the part has no link before it.
  */
 typedef enum he_links { HE_NO_LINKS, HE_LINKS_BY_ROW, HE_LINKS_BY_LAST } he_links;
 

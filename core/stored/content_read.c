@@ -7,12 +7,12 @@
 #include "stored/stored.h"
 
 struct he_stored_reader {
-    /* `most`: bytes that the content may have; `total`: bytes that it has, UINT64_MAX until the
+    /* most: how many bytes the content may have; total: how many it has, UINT64_MAX until the
      * header is read */
     uint64_t most, total;
-    uint64_t at; /* bytes of the content read so far */
+    uint64_t at; /* number of bytes of the content read so far */
     unsigned char *header;
-    /* bytes of the header read so far, and size of the buffer `header` */
+    /* header_size: bytes of the header read so far; header_room: size of the buffer `header` */
     size_t header_size, header_room;
     uint64_t header_wanted; /* length of the header as far as it is known */
     he_content c;
@@ -22,8 +22,8 @@ struct he_stored_reader {
     size_t left;       /* bytes of the present array that are not read yet */
     he_links links;
     uint32_t row;  /* row of the next link to read */
-    uint32_t last; /* the id in the last link read, if has_last */
-    bool has_last; /* an id was read before in this part and array */
+    uint32_t last; /* the id in the last link read, if has_last is true */
+    bool has_last; /* true if an id was read before in this part and array */
 };
 
 he_status he_stored_reader_new(uint64_t most, he_stored_reader **out, he_error *err)

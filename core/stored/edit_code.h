@@ -31,8 +31,8 @@ typedef enum he_object {
 static const he_kind he_code_kinds[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
 enum { HE_CODE_KINDS = sizeof he_code_kinds / sizeof *he_code_kinds };
 
-/* Sizes in bytes: HE_CHANGE_LEAST is the fewest that a change takes, the others are the most that
- * the head of an edit, a change, the head of an object and a slot number take. */
+/* Sizes in bytes: HE_CHANGE_LEAST is the smallest size of a change; the others are the largest
+ * sizes of the head of an edit, a change, the head of an object and a slot number. */
 enum {
     HE_EDIT_HEAD = 1 + 10,
     HE_CHANGE_ROOM = 20,

@@ -22,11 +22,11 @@ enum { MOST_SLOTS = (1 << 24) - HE_COL_ATTRIBUTE };
 
 typedef struct edit_reader {
     he_cursor c;
-    uint64_t changes;             /* changes that are not read yet */
+    uint64_t changes;             /* number of changes that are not read yet */
     he_code code;                 /* code of the present run of changes to one column */
-    uint64_t run;                 /* changes of the present run that are not read yet */
+    uint64_t run;                 /* number of changes of the present run that are not read yet */
     uint32_t slot;                /* slot of the attribute that the present run changes */
-    uint32_t last[HE_CODE_COUNT]; /* row of the last change with each code */
+    uint32_t last[HE_CODE_COUNT]; /* for each code, the row of the last change with this code */
     he_object kind;               /* kind of the present object */
     he_cursor object;             /* bytes of the present object */
 } edit_reader;

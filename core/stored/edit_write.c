@@ -160,8 +160,8 @@ static unsigned char *put_material_change(unsigned char *to, const he_delta *del
     return end_object(from, to);
 }
 
-/* Writes an added column with the values it had when it was added. Later writes to it in this delta
- * are stored as changes of their own, so they are taken back here. */
+/* Writes an added column with the values it had when it was added. The delta's later changes to
+ * these values are stored separately, so they are undone here in the values that are written. */
 static unsigned char *put_added(unsigned char *to, const he_delta *delta, size_t i,
                                 const he_mesh *after)
 {

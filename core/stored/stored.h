@@ -22,7 +22,8 @@
  *     objects      a run of one change, with code 10: kind (1 byte), length (8 bytes), and
  *                  1  an attribute that was added: its slot, its head, labels, rows
  *                  2  an attribute that was dropped: its slot and its head
- *                  3  a replaced content: 1 byte, 1 if ids changed their meaning, and the content
+ *                  3  a replaced content: 1 byte (1 if ids changed their meaning, else 0), and the
+ *                     new content
  *                  4  a material put in a slot: the slot (varint), the mark of the one that was
  *                     there (4 bytes, 0 for none; material.h), the new one, or nothing
  *
@@ -82,8 +83,8 @@ size_t he_stored_edit_bound(const he_delta *delta, const he_mesh *after);
  * number of bytes written. Allocates nothing. */
 size_t he_stored_edit_write(const he_delta *delta, const he_mesh *after, unsigned char *to);
 /* Applies a stored edit to a mesh in the state on which it was made; `issued` are the high-water
- * marks after it, indexed by kind. *out, which the caller frees, is the delta that the edit would
- * have recorded on this mesh. On failure the mesh is as it was.
+ * marks (numbers of ids ever issued) after the edit, indexed by kind. *out, which the caller frees,
+ * is the delta that the edit would have recorded on this mesh. On failure the mesh is as it was.
  * Returns HE_CORRUPT with the byte if the bytes are not valid, or the mesh is not in that state.
  * Returns HE_UNSUPPORTED if a newer release wrote the bytes.
  * Returns HE_NO_MEMORY if memory is out. */
@@ -103,16 +104,17 @@ enum { HE_CODING_PLAIN = 0, HE_CODING_LINKS = 1, HE_CODING_PACKED = 2 };
 typedef struct he_stored_writer {
     const he_mesh *mesh;
     unsigned stage; /* kind of the next piece */
-    /* index of the attribute or material of the next piece, and of its label */
+    /* indices of the attribute or material whose piece is written next (slot), and of its label */
     size_t slot, label;
-    uint64_t header;           /* length of the header in bytes */
-    uint64_t done;             /* bytes of all pieces made so far */
-    const unsigned char *from; /* the bytes of the present piece that are not written yet */
-    size_t left;               /* how many bytes of the present piece are not written yet */
+    uint64_t header; /* length of the header in bytes */
+    uint64_t done;   /* number of bytes of all pieces made so far */
+    /* Points to those bytes of the present piece that are not written yet. */
+    const unsigned char *from;
+    size_t left;   /* how many bytes of the present piece are not written yet */
     int links;     /* how links of the present piece are coded: he_links of content_code.h */
     uint32_t row;  /* row of the next link to write */
-    uint32_t last; /* the id in the last link written, if has_last */
-    bool has_last; /* an id was written before in this part and array */
+    uint32_t last; /* the id in the last link written, if has_last is true */
+    bool has_last; /* true if an id was written before in this part and array */
     unsigned char scratch[256];
 } he_stored_writer;
 

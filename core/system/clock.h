@@ -7,8 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-double st_clock_utc(void);      /* seconds since 1970 */
-uint64_t st_clock_micros(void); /* monotonic microseconds, for durations and deadlines */
+double st_clock_utc(void); /* seconds since 1970 */
+/* Returns the time of the monotonic clock in microseconds, for durations and deadlines. */
+uint64_t st_clock_micros(void);
 
 /* Initialises a condition for st_clock_wait. */
 void st_clock_condition(pthread_cond_t *condition);

@@ -12,8 +12,8 @@ void st_lock_read(pthread_rwlock_t *lock);
 void st_lock_write(pthread_rwlock_t *lock);
 void st_lock_mutex(pthread_mutex_t *lock);
 
-/* Adds a wait that was not for a lock, but for other requests, to the calling thread's sum of
- * waiting times. The wait began at `since` (st_clock_micros) and ends now. */
+/* Adds to the calling thread's sum of waiting times a wait for other requests that was no wait for
+ * a lock. The wait began at `since` (st_clock_micros) and ends now. */
 void st_lock_count(uint64_t since);
 /* Returns how many microseconds the calling thread has waited for locks, or in waits that
  * st_lock_count added, since the thread began. */

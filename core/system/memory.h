@@ -29,10 +29,11 @@ void st_memory_count(int64_t bytes);
 uint64_t st_memory_outside(void);
 
 /* Resizes a block like he_mem_resize, but is not refused when the budget is exceeded; the block is
- * counted all the same. It is for a library that cannot undo its work if memory is refused. */
+ * counted all the same. Needed for a library (SQLite) that cannot undo its work if memory is
+ * refused. */
 void *st_memory_resize_unrefused(void *memory, size_t size);
 
-/* A function that may free memory when an allocation of a thread would be refused. */
+/* A giver: a function that may free memory when an allocation of a thread would be refused. */
 typedef struct st_memory_giver {
     /* Tries to free `bytes`. It is called under any locks that the thread holds, so it must not
      * wait long for a lock. Returns false if nothing was freed. */
@@ -49,8 +50,8 @@ uint64_t st_memory_budget(void);
 /* Returns true if `bytes` bytes of the budget are free, including the part that is reserved for
  * small blocks. */
 bool st_memory_has(uint64_t bytes);
-/* Returns true if a block just too large for the reserved part of the budget would be refused
- * now. */
+/* Returns true if a block slightly larger than those for which the last part of the budget is
+ * reserved would be refused now. */
 bool st_memory_is_full(void);
 /* Returns true if the last block that was refused was refused by the budget, and not by the C
  * library. All threads share this value, because one thread may allocate for the request of

@@ -24,7 +24,7 @@ struct st_parallel {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
-    work *first; /* list of works that have parts which no thread has begun */
+    work *first; /* list of the loops that have parts which no thread has begun */
     size_t thread_count;
     pthread_t *threads;
 };
@@ -57,8 +57,8 @@ static void take_out(st_parallel *h, const work *w)
     }
 }
 
-/* Runs the next part of the loop `w` with the lock released. When this was its last running part,
- * the thread that owns `w` is woken and may free it, so a pool thread must not use it
+/* Runs the next part of the loop `w` with the lock released. When no other part of `w` is running
+ * any more, the thread that owns `w` is woken and may free `w`, so a pool thread must not use `w`
  * afterwards. */
 static void run_next(st_parallel *h, work *w)
 {

@@ -47,9 +47,9 @@ static void read_memory(st_process *out)
     }
 }
 
-/* Reads when the process started, from /proc/self/stat. The start time is in ticks since the
- * machine was booted. It is word 22, the 20th after the process's name, which is in parentheses and
- * may contain anything. */
+/* Reads the time at which the process started from /proc/self/stat. The start time is in ticks
+ * since the machine was booted. It is word 22, the 20th after the process's name, which is in
+ * parentheses and may contain anything. */
 static void read_start(st_process *out)
 {
     char text[1024];

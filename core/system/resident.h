@@ -15,8 +15,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Switches on the measuring of uncounted memory. Until then st_resident_beside returns 0, which
- * suits tests, whose processes hold other memory. Must be called before the first thread. */
+/* Switches on the measuring of uncounted memory. Until then st_resident_beside returns 0. Tests
+ * never switch it on, because their processes use other memory as well. Must be called before the
+ * first thread. */
 void st_resident_watch(void);
 
 /* Returns how many bytes that memory.h does not count the process had at the last measurement, but

@@ -34,7 +34,7 @@ struct st_pool {
     bool ending;
     size_t capacity; /* most tasks that each queue can hold */
     queue queues[ST_SHARES];
-    size_t most_long;     /* most tasks of the shares LONG and JOB together that may run at once */
+    size_t most_long;     /* how many tasks of the shares LONG and JOB together may run at once */
     size_t idle;          /* threads that wait for `wake`, or were woken and do not run yet */
     double clock;         /* stamp (virtual end time) of the task that was begun last */
     double stamps[FLOWS]; /* for each flow, the stamp of its newest task */

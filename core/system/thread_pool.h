@@ -34,7 +34,7 @@ typedef struct st_task {
     void (*work)(void *context);
     void *context;
     st_share share;
-    /* about how many seconds the task takes; only the ratio between the costs of tasks matters */
+    /* about how many seconds the task will take; only the ratios of the costs of tasks matter */
     double cost;
     uint64_t flow; /* number of the flow (client and mesh) of the task, see st_pool_flow */
 } st_task;
@@ -51,7 +51,7 @@ bool st_pool_submit(st_pool *pool, const st_task *task);
 typedef struct st_pool_state {
     size_t waiting, most_waiting;
     size_t running;
-    uint64_t refused; /* tasks refused since the pool was made */
+    uint64_t refused; /* number of tasks refused since the pool was made */
 } st_pool_state;
 
 /* Gets the present state of a share. Takes the pool's lock for a moment. */

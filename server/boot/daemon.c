@@ -33,7 +33,8 @@ static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *
             (void)srv_reload(parts, message, sizeof message);
         }
     } while (number != SIGTERM && number != SIGINT);
-    /* This last check reports a failure of the disk in the last second. */
+    /* This last check reports a failure of the disk that occurred since the check before, up to a
+     * second ago. */
     srv_watch_look(&watch, parts);
 }
 

@@ -34,7 +34,8 @@ typedef struct srv_parts {
     api_service *service;
     srv_policy policy;
     char own_host[SRV_ADDRESS_TEXT];
-    srv_unix_socket socket; /* the file of the Unix socket, if the daemon listens on one */
+    /* Path of the Unix socket's file, if the daemon listens on a Unix socket. */
+    srv_unix_socket socket;
     srv_http *http;
     char url[SRV_URL_TEXT]; /* the daemon's URL, with the port that is in use */
     _Atomic bool ready;     /* whether the daemon serves requests, for /readyz */

@@ -10,8 +10,8 @@
 size_t srv_cores(void); /* at least one */
 
 /* Sets the numbers of connections, sockets and worker threads, and the deadlines, in `options`.
- * Raises the limit of open descriptors to the maximum that the system allows, which limits these
- * numbers. */
+ * Raises the limit of open descriptors to the maximum that the system allows, from which the
+ * numbers of connections and sockets follow. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options);
 
 /* Sets the memory budget of the process. Returns how much memory the machine, or a control group,

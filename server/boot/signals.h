@@ -1,5 +1,5 @@
-/* signals.h - sets how the daemon treats signals: it waits for three of them and ignores those that
- * have no meaning for it. */
+/* signals.h - sets how the daemon treats signals: it waits for SIGTERM, SIGINT and SIGHUP, and
+ * ignores signals that have no meaning for it. */
 #ifndef HE_SERVER_BOOT_SIGNALS_H
 #define HE_SERVER_BOOT_SIGNALS_H
 

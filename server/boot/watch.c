@@ -68,7 +68,7 @@ static void tell_systemd(const srv_parts *parts)
 }
 
 /* Notifies systemd's watchdog twice within its timeout, if a worker thread still answers requests;
- * *fed is the time when a worker was last asked. */
+ * *fed is the time at which a worker thread was last checked. */
 static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 {
     const uint64_t patience = srv_notify_watchdog();

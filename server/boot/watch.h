@@ -9,7 +9,7 @@
 typedef struct srv_watch {
     st_memory_rest rest;
     st_health health;
-    /* When a worker thread was last asked for systemd's watchdog, by st_clock_micros. */
+    /* Time (st_clock_micros) at which a worker thread was last checked for systemd's watchdog. */
     uint64_t fed;
 } srv_watch;
 

@@ -117,8 +117,9 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     }
 }
 
-/* Refuses connections beyond the number that can still be answered 503, connections for which there
- * is no memory, and all connections when the server is stopping. */
+/* Decides whether a new connection is accepted. Refuses connections beyond the number that can
+ * still be answered 503, connections for which there is no memory, and all connections when the
+ * server is stopping. */
 static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer, socklen_t length)
 {
     (void)peer;

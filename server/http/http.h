@@ -22,8 +22,10 @@ typedef struct srv_http srv_http;
  * server. */
 typedef struct srv_http_options {
     srv_address address;
-    int listening;                  /* a listening socket; -1 if the server is to bind `address` */
-    srv_certificates *certificates; /* must have a pair in force; NULL if TLS is not used */
+    int listening; /* a listening socket; -1 if the server is to bind `address` */
+    /* The TLS certificates, which must have a certificate and key in force; NULL if TLS is not
+     * used. */
+    srv_certificates *certificates;
     api_service *service;
     st_store *store;
     st_pool *pool;
@@ -31,12 +33,12 @@ typedef struct srv_http_options {
     srv_log *log;    /* NULL if nothing is logged */
     const srv_policy *policy;
     srv_deadline_options deadlines;
-    /* Connections beyond deadlines.max_connections, up to this number of sockets, are answered
-     * 503. */
+    /* The most sockets. Connections beyond deadlines.max_connections, up to this number, are
+     * answered 503. */
     size_t max_sockets;
     size_t address_connections; /* maximum of connections per address; 0: no limit */
     size_t workers;             /* number of worker threads, at least 1 */
-    /* Longest time for a request that only reads, while its client waits. */
+    /* Most seconds for which a request that only reads may work while its client waits. */
     uint64_t read_seconds;
     uint64_t heartbeat_micros; /* time without an event after which a stream sends a comment */
 } srv_http_options;
@@ -44,7 +46,7 @@ typedef struct srv_http_options {
 /* The number of connections that may wait to be accepted (the listen backlog). */
 enum { SRV_BACKLOG = 1024 };
 
-/* Starts to accept connections. Returns NULL with a sentence in `message` if it cannot. */
+/* Starts to accept connections. On failure returns NULL with a sentence in `message`. */
 srv_http *srv_http_start(const srv_http_options *options, char *message, size_t size);
 unsigned srv_http_port(const srv_http *http);
 /* Stops accepting connections, answers 503 to new requests on open connections, and waits at most

@@ -31,9 +31,10 @@ typedef struct srv_client {
     /* The client's address without a port; "unix:uid=1000" on a Unix socket. */
     char address[SRV_ADDRESS_TEXT];
     srv_scheme scheme;
-    /* Whether the answer has the header Strict-Transport-Security: rule P6 of http_policy.h. */
+    /* True if the answer has the header Strict-Transport-Security: rule P6 of http_policy.h. */
     bool told_name;
-    const char *cors; /* the origin that the answer names in CORS headers (P4), or NULL */
+    /* The origin that the answer names in CORS headers (rule P4 of http_policy.h), or NULL. */
+    const char *cors;
 } srv_client;
 
 /* Reads from the headers of a request what a trusted proxy, from which the connection comes, says

@@ -19,7 +19,7 @@ void srv_answer_refuse(srv_request *r, int code, const char *text);
 /* Passes the answer to libmicrohttpd, which sends it; the request is then in the state SRV_DONE.
  * Returns false when memory is out: then the caller closes the connection. */
 bool srv_answer_send(srv_request *r);
-/* Writes the answer while the body is still arriving. The request is then in the state SRV_CUT: the
+/* Sends the answer while the body is still arriving. The request is then in the state SRV_CUT: the
  * caller closes the connection, and the rest of the body is drained. */
 void srv_answer_cut_off(srv_request *r);
 

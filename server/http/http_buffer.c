@@ -20,7 +20,7 @@ enum {
     REST_MICROS = 1000 * 1000,
     /* Milliseconds between checks for buffers whose pages can be returned. */
     LOOK_MILLIS = 500,
-    AT_ONCE = 32, /* most buffers whose pages are returned in one check */
+    AT_ONCE = 32, /* the most buffers whose pages are returned in one check */
     KEPT = 64,    /* number of free buffers that keep their pages for the next connections */
     LANES = 64    /* the largest number of worker threads that --workers allows */
 };
@@ -48,7 +48,7 @@ typedef struct lane {
 } lane;
 
 static struct {
-    char *memory; /* the reserved range of addresses; NULL before srv_buffers_reserve */
+    char *memory; /* the reserved range of addresses; NULL before srv_buffers_reserve was called */
     size_t bytes; /* size of one buffer */
     size_t page;
     uint32_t most;
@@ -59,7 +59,7 @@ static struct {
     /* `warm` is the list of FREE buffers that still have pages, `cold` the list of FREE buffers
      * without pages, and `fresh` the index of the first buffer that was never used. */
     uint32_t warm, cold, fresh;
-    uint64_t put; /* when a buffer was last added to the list `warm` */
+    uint64_t put; /* time at which a buffer was last added to the list `warm` */
     _Atomic size_t warm_count;
 } all = {.lock = PTHREAD_MUTEX_INITIALIZER, .warm = SRV_NO_BUFFER, .cold = SRV_NO_BUFFER};
 

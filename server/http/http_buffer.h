@@ -42,9 +42,9 @@ bool srv_buffers_reserve(size_t most);
  * since the last call. The buffer belongs to the connection that libmicrohttpd reports next. */
 uint32_t srv_buffer_taken(void);
 
-/* Say that the connection of a buffer has become idle at `now`, in microseconds of the monotonic
- * clock (srv_buffer_rest), or has begun a request (srv_buffer_use). Must be called by the worker
- * thread that took the buffer. Do nothing for SRV_NO_BUFFER. */
+/* srv_buffer_rest records that the connection of a buffer has become idle at `now`, in microseconds
+ * of the monotonic clock; srv_buffer_use records that it has begun a request. Both must be called
+ * by the worker thread that took the buffer, and do nothing for SRV_NO_BUFFER. */
 void srv_buffer_rest(uint32_t buffer, uint64_t now);
 void srv_buffer_use(uint32_t buffer);
 

@@ -54,7 +54,7 @@ struct srv_deadlines {
     int wake; /* an eventfd that wakes the thread */
     pthread_t thread;
     /* The members below are used only by the thread that checks connections. */
-    uint64_t swept;  /* when the last sweep over all connections began */
+    uint64_t swept;  /* time at which the last sweep over all connections began */
     uint64_t paused; /* time before which no connection is closed */
 };
 

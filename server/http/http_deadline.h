@@ -96,7 +96,7 @@ typedef struct srv_connection {
     api_rate_key client; /* key of the peer's address, by srv_address_key */
     uint32_t of_peer;    /* the peer's entry, which srv_peers_enter returned for the connection */
     _Atomic bool beyond; /* whether the peer's address has more connections than allowed */
-    uint32_t buffer;     /* number of the connection's buffer in http_buffer.h */
+    uint32_t buffer;     /* number of the connection's memory buffer (http_buffer.h) */
     /* The members from here on are used only by the worker thread that serves the connection. */
     srv_syntax syntax;
     uint64_t requests; /* number of requests of the connection that libmicrohttpd has begun */
@@ -105,9 +105,10 @@ typedef struct srv_connection {
     bool widened;
     /* Whether the kernel reports with each read whether there is more to read: http_recv.h. */
     bool tells_end;
-    bool may_have_ended; /* the client's stream may have ended after the bytes of the last read */
-    /* `sent` is counted, because the connection is a Unix socket, for which the kernel does not
-     * report how many bytes were sent. */
+    /* True if the client's stream may have ended after the bytes of the last read. */
+    bool may_have_ended;
+    /* True if `sent` is counted, because the connection is a Unix socket, for which the kernel does
+     * not report how many bytes were sent. */
     bool counts_sent;
     /* Number of bytes that were sent, if they are counted. The thread that checks connections reads
      * it, too. */
@@ -119,12 +120,13 @@ typedef struct srv_connection {
     /* The time, and the value of `acked`, when the present measurement of the rate began; 0: no
      * measurement. */
     uint64_t window, window_acked;
-    /* The value of `since` for an IDLE stage in which the client has read all of the last answer;
-     * 0: none. */
+    /* Identifies, by its value of `since`, the IDLE stage in which the client was found to have
+     * read all of the last answer; 0: there is none. */
     uint64_t taken;
     uint64_t kept; /* number of the answer's bytes in the kernel's buffer at the last check */
     bool late;     /* whether the connection was counted as closed for being too slow */
-    /* The value of `since` for the stage in which the client closed its side; 0: it has not. */
+    /* Identifies, by its value of `since`, the stage in which the client closed its side; 0: it has
+     * not. */
     uint64_t closed;
     uint64_t closed_bytes;       /* `bytes` when `closed` was set */
     char peer[SRV_ADDRESS_TEXT]; /* the peer's address, without a port */
@@ -146,8 +148,8 @@ srv_connection *srv_deadlines_add(srv_deadlines *deadlines, int socket, const st
 void srv_deadlines_remove(srv_deadlines *deadlines, srv_connection *connection);
 size_t srv_deadlines_count(const srv_deadlines *deadlines);
 
-/* Record that a connection has entered a stage, and that bytes of the request have been handled.
- * Both do nothing for NULL. */
+/* srv_connection_enter records that a connection has entered a stage, the next function that bytes
+ * of the request have been handled. Both do nothing for NULL. */
 void srv_connection_enter(srv_connection *connection, srv_stage stage, uint64_t now);
 void srv_connection_moved(srv_connection *connection, uint64_t bytes);
 /* Returns true if the client has left while a thread works on its request: if the connection was
@@ -157,8 +159,8 @@ void srv_connection_moved(srv_connection *connection, uint64_t bytes);
 enum { SRV_CLOSED_MICROS = 1000000 };
 bool srv_connection_is_left(const srv_connection *connection, uint64_t now);
 
-/* Returns true if the connection has exceeded the time of its stage at `now`; `crowded`: there are
- * too many connections. The stages ANSWER and LIVE are not checked by this function. */
+/* Returns true if the connection has exceeded the time of its stage at `now`; `crowded` is true if
+ * there are too many connections. The stages ANSWER and LIVE are not checked by this function. */
 bool srv_connection_is_late(const srv_connection *connection, const srv_deadline_options *options,
                             bool crowded, uint64_t now);
 /* Returns true if the client reads its answer too slowly. Must be called again and again during the

@@ -107,8 +107,8 @@ static bool is_short(void *context, const char *phase, double done)
     return st_clock_micros() < r->work_until;
 }
 
-/* Returns true if the work on a request shall go on: the client still waits for the answer, and the
- * request has not used up its time. */
+/* Returns true if the work on a request must continue, because the client still waits for the
+ * answer, and the request has not used up its time. */
 static bool is_awaited(void *context, const char *phase, double done)
 {
     (void)phase;

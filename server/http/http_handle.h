@@ -12,9 +12,9 @@
 typedef struct srv_request srv_request;
 
 /* Handles one call of libmicrohttpd's handler, which is called once with the headers, once for each
- * piece of the body, once at its end, and once after each resume. Sets *size to the number of bytes
- * at the end of `upload` that must be passed again. Returns false if the connection shall be
- * closed. When the function returns, another thread may own the request. */
+ * piece of the body, once at its end, and once after each resume. Sets *size to how many bytes at
+ * the end of `upload` were not handled and must be passed again. Returns false if the connection
+ * shall be closed. When the function returns, another thread may own the request. */
 bool srv_request_handle(srv_request *r, const char *method, const char *version, const char *upload,
                         size_t *size);
 

@@ -4,7 +4,7 @@
  * connections; while a piece is sent, no further piece is made. The threads are not those of the
  * pool for long work, because a download would have to wait behind that work.
  *
- *     srv_producer_take --- returns bytes, the end or a failure: the caller sends that
+ *     srv_producer_take --- returns bytes, the end or a failure: the caller sends this result
  *        ^      `------- returns SRV_PRODUCER_WAIT: the caller suspends the connection, then calls
  *        |               srv_producer_make
  *        +--- `resume` is called by a thread, exactly once, when the piece has been made */
@@ -38,9 +38,9 @@ void srv_producer_clear(srv_producer *producer);
 /* Copies bytes of the piece that was made to `buffer`. Returns their number, 0 at the end of the
  * answer, -1 on failure, or SRV_PRODUCER_WAIT if the next piece must be made first. */
 int64_t srv_producer_take(srv_producer *producer, char *buffer, size_t size);
-/* Lets one of the threads make the next piece. To be called after SRV_PRODUCER_WAIT; the caller
- * must not touch the request afterwards. If the queue of the threads is full, the calling thread
- * makes the piece. */
+/* Lets one of the threads make the next piece. Must be called after srv_producer_take returned
+ * SRV_PRODUCER_WAIT; the caller must not touch the request afterwards. If the queue of the threads
+ * is full, the calling thread makes the piece. */
 void srv_producer_make(srv_producer *producer, st_pool *threads);
 
 #endif

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 /* The watched connection of each descriptor, or NULL. The table is large, but the kernel allocates
- * only those of its pages that are written. */
+ * only those pages of the table that are written. */
 static _Atomic(srv_connection *) watched[SRV_MAX_DESCRIPTORS];
 
 static bool fits(int socket)

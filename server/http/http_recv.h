@@ -39,7 +39,8 @@
 
 #include <sys/types.h>
 
-/* The largest number of descriptors that Linux allows a process, unless fs.nr_open was raised. */
+/* The largest number of descriptors that Linux allows a process, unless the system's setting
+ * fs.nr_open was raised. */
 enum { SRV_MAX_DESCRIPTORS = 1 << 20 };
 
 /* Makes the bytes that are received on a connection pass through its state machine, which must be

@@ -70,14 +70,14 @@ typedef struct srv_request {
     /* The connection as http_recv.h watches it; NULL if it is not watched. */
     srv_connection *socket;
     srv_state state;
-    bool counted; /* whether http_inflight.h counts the request as running */
-    bool aside;   /* whether http_inflight.h counts the connection as suspended */
+    bool counted; /* true while http_inflight.h counts the request as running */
+    bool aside;   /* true while http_inflight.h counts the connection as suspended */
     bool whole;   /* whether the whole body of the request has arrived */
     uint64_t started;
     uint64_t number; /* number of the request on its connection, from 1 */
     uint64_t bytes_in, bytes_out;
     uint64_t announced; /* Content-Length; UINT64_MAX: chunked */
-    /* Number of bytes of the body that were skipped since the answer was known. */
+    /* Number of bytes of the body that were skipped because the answer was known already. */
     uint64_t swallowed;
     char request_id[SRV_REQUEST_ID + 1];
     char *joined; /* values of headers with several lines (http_headers.h); NULL if none */
@@ -91,12 +91,13 @@ typedef struct srv_request {
     api_text text; /* the refusal as JSON */
     /* The rate-limit headers of an exchange that was replaced by the refusal. */
     api_rate_fields rate_fields;
-    bool preflight;      /* whether the request is a CORS preflight request */
-    st_wait hold;        /* the wait for durability in the state HELD */
-    uint64_t work_until; /* when the work must end, by st_clock_micros; UINT64_MAX: no limit */
+    bool preflight; /* whether the request is a CORS preflight request */
+    st_wait hold;   /* the wait for durability in the state HELD */
+    /* Time (st_clock_micros) at which the work must end; UINT64_MAX: no limit. */
+    uint64_t work_until;
     srv_stream stream;
     srv_producer producer;
-    size_t block; /* bytes that libmicrohttpd allocated to send a download; 0: none */
+    size_t block; /* number of bytes that libmicrohttpd allocated to send a download; 0: none */
     int status;
     srv_trace trace;
     srv_timing timing;
@@ -114,9 +115,9 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
  * freed right afterwards. */
 void srv_request_end(srv_request *r);
 
-/* Returns the address of the client, such as "192.0.2.1", by which clients are distinguished
- * everywhere. If the connection comes from a trusted proxy (--trusted-proxy), it is the address
- * that the proxy reports, else that of the connection; on a Unix socket it is the user,
+/* Returns the address of the client, such as "192.0.2.1", by which the limits and the log
+ * distinguish clients. If the connection comes from a trusted proxy (--trusted-proxy), it is the
+ * address that the proxy reports, else that of the connection; on a Unix socket it is the user,
  * "unix:uid=1000". So all clients of a proxy that is not trusted have the proxy's address. The text
  * is "" until the headers have been read, and valid as long as the request. */
 static inline const char *srv_request_client(const srv_request *r)

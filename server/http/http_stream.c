@@ -18,7 +18,7 @@ struct srv_streams {
     int changed;        /* an eventfd that wakes the thread */
     pthread_mutex_t lock;
     pthread_t thread;
-    srv_stream *first, *last; /* suspended streams, in the order of their deadlines */
+    srv_stream *first, *last; /* list of the suspended streams, in the order of their deadlines */
     srv_stream *ready;        /* suspended streams whose requests the thread is to resume next */
     bool stopping, ending;
 };

@@ -29,8 +29,8 @@ typedef struct srv_stream {
     const api_source *source;
     void (*resume)(struct srv_stream *stream);
     bool aside;
-    bool woken;    /* whether the source has called wake while the worker thread owned the stream */
-    bool due;      /* whether a heartbeat must be sent if there is nothing else to send */
+    bool woken;    /* true if the source has called wake while the worker thread owned the stream */
+    bool due;      /* true if a heartbeat must be sent when there is nothing else to send */
     bool finished; /* whether the source was told that the server stops */
     bool gone;     /* whether the client has closed its side of the connection */
     int socket;
@@ -49,8 +49,8 @@ void srv_streams_free(srv_streams *streams);
  * the client closes its side, or -1. */
 void srv_stream_begin(srv_streams *streams, srv_stream *stream, const api_source *source,
                       int socket, void (*resume)(srv_stream *stream));
-/* Ends a stream, before its storage and its socket are freed. The stream must not be in the hands
- * of this module's thread (srv_stream_aside). Does nothing if the stream was not begun. */
+/* Ends a stream, before its storage and its socket are freed. The stream must not be ASIDE
+ * (srv_stream_aside). Does nothing if the stream was not begun. */
 void srv_stream_end(srv_stream *stream);
 /* Reads bytes to send, like the member `read` of api_source; returns -1 also if the client has
  * closed its side. After API_READ_WAIT the caller must suspend the connection, call

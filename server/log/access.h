@@ -33,11 +33,12 @@ typedef enum srv_part {
 /* What is logged about one request. The query of its URL is not logged, because it may contain a
  * ticket, which grants access, or private data. */
 typedef struct srv_access {
-    double time; /* when the request ended, in seconds since 1970 */
+    double time; /* time at which the request ended, in seconds since 1970 */
     char request_id[SRV_REQUEST_ID + 1];
     char method[SRV_METHOD + 1];
     char path[SRV_LOG_PATH]; /* path of the request as the client sent it; truncated if long */
-    const char *route;       /* template of the path, a static text; NULL if none fits */
+    /* Template of the path in the table of routes, a static text; NULL if no route fits. */
+    const char *route;
     /* Status of the answer; 0: the connection was closed without an answer. */
     int status;
     uint64_t bytes_in, bytes_out; /* lengths of the bodies */

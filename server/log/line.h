@@ -13,7 +13,7 @@
 
 typedef enum srv_level {
     SRV_LEVEL_ERROR,   /* something does not work: an operator must act */
-    SRV_LEVEL_WARNING, /* something works, but not as configured */
+    SRV_LEVEL_WARNING, /* something works, but not as it was configured to work */
     SRV_LEVEL_INFO,    /* starts, stops, reloads: for every operator */
     SRV_LEVEL_DEBUG    /* for finding the cause of a problem */
 } srv_level;
@@ -34,8 +34,8 @@ void srv_line_begin(srv_line *line, bool json, srv_level level, const char *form
 
 void srv_line_text(srv_line *line, const char *name, const char *value);
 void srv_line_number(srv_line *line, const char *name, uint64_t value);
-/* Opens an object: in the JSON format, the fields until srv_line_close are members of an object
- * with this name. In the text format, does nothing. */
+/* Begins an object: in the JSON format, the fields added before srv_line_close is called are
+ * members of an object with this name. Does nothing in the text format. */
 void srv_line_open(srv_line *line, const char *name);
 void srv_line_close(srv_line *line);
 

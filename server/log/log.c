@@ -29,7 +29,9 @@ typedef struct entry {
     char *line; /* owned by the ring; NULL if the entry is the record of a request, `access` */
     size_t length;
     srv_access access;
-    bool usual, slow; /* which lines about the request are written */
+    /* usual: the line about the request is written; slow: the line about where its time went,
+     * too. */
+    bool usual, slow;
 } entry;
 
 struct srv_log {
@@ -40,7 +42,8 @@ struct srv_log {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     _Atomic bool ending;
-    bool urgent; /* a line of the daemon itself is in the ring, so it is written without delay */
+    /* True if a line of the daemon itself is in the ring, which must be written without delay. */
+    bool urgent;
     entry *ring;
     size_t capacity, first, count;
     uint64_t dropped; /* number of dropped lines that no line in the log has reported yet */

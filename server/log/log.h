@@ -17,7 +17,9 @@ typedef struct srv_log srv_log;
 
 /* Settings that may change while the log is in use. */
 typedef struct srv_log_settings {
-    srv_level level; /* the least severe level that is written; lines of requests have no level */
+    /* The least severe level that is written; lines about requests have no level and are not
+     * affected. */
+    srv_level level;
     bool json;
     bool requests; /* whether a line is written for each request */
     /* Requests that took longer than this many microseconds get a line that says where the time
@@ -26,13 +28,14 @@ typedef struct srv_log_settings {
 } srv_log_settings;
 
 /* Returns how many entries the ring of a daemon with this memory budget should have: as many as fit
- * into a sixty-fourth of the budget, within limits. `budget` is in bytes, or 0 if there is none. */
+ * into a sixty-fourth of the budget, but at least a minimum and at most a maximum. `budget` is in
+ * bytes, or 0 if there is none. */
 size_t srv_log_capacity(uint64_t budget);
 /* Makes a log that writes to `fd`, which it borrows. Returns NULL when memory or threads are
  * out. */
 srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings);
-/* Writes what is left in the ring, waits for its reader at most half a second, and frees the log,
- * which may be NULL. */
+/* Writes what is left in the ring, waits at most half a second for a slow reader of `fd`, and frees
+ * the log, which may be NULL. */
 void srv_log_free(srv_log *log);
 
 /* All functions below may be called by any thread at any time. */
@@ -46,8 +49,9 @@ srv_log_settings srv_log_get(const srv_log *log);
 /* Writes a line that consists only of a message. */
 void srv_log_tell(srv_log *log, srv_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Write a line with fields: call srv_log_begin, then srv_line_text or other functions of line.h,
- * then srv_log_end, which puts the line into the ring and clears `line`. */
+/* These functions write a line with fields: the caller calls srv_log_begin, then srv_line_text or
+ * other functions of line.h, then srv_log_end, which puts the line into the ring and clears
+ * `line`. */
 void srv_log_begin(const srv_log *log, srv_line *line, srv_level level, const char *message);
 void srv_log_end(srv_log *log, srv_line *line);
 /* Writes a line unchanged, in both formats and at every level, for programs that wait for it. */

@@ -12,9 +12,10 @@
 /* The measurement of one request. It is stored in the request, and only the thread that currently
  * handles the request writes it. */
 typedef struct srv_timing {
-    bool on;         /* false: nothing is measured */
-    srv_part part;   /* the part in which the request is now */
-    uint64_t since;  /* when the present part began, in microseconds of the monotonic clock */
+    bool on;       /* false: nothing is measured */
+    srv_part part; /* the part in which the request is now */
+    /* Time at which the present part began, in microseconds of the monotonic clock. */
+    uint64_t since;
     uint64_t waited; /* what st_lock_waited returned when the present part began */
     uint64_t parts[SRV_PARTS];
 } srv_timing;

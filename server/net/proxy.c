@@ -131,7 +131,8 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
 }
 
 /* Handles the next address of a list by rule T1 (proxy.h); `address` is NULL if the element of the
- * list has none. Returns true if this element is the client's, as far as the list was read. */
+ * list has no address. Returns true if, as far as the list was read, this element is the
+ * client's. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);

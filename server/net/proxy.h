@@ -52,10 +52,11 @@ typedef enum srv_scheme { SRV_SCHEME_UNKNOWN, SRV_SCHEME_HTTP, SRV_SCHEME_HTTPS 
 /* What the lines of the header Forwarded, or those of X-Forwarded-For and X-Forwarded-Proto, have
  * said so far about the client; {0} before the first line. Only proxy.c uses the members. */
 typedef struct srv_told {
-    char address[SRV_ADDRESS_TEXT]; /* the client's address by T1; "" if it has none */
+    /* The client's address by rule T1; "" if the headers have none. */
+    char address[SRV_ADDRESS_TEXT];
     srv_scheme scheme;
     bool any;       /* whether there was an element */
-    bool malformed; /* whether the element that is the client's by T1 is no valid address */
+    bool malformed; /* true if the element that is the client's by rule T1 is no valid address */
 } srv_told;
 
 typedef struct srv_forwarding {

@@ -2,9 +2,9 @@
  *
  * The permissions of the file decide which users can connect: its owner and its group (mode 0660),
  * within those of its folder. A killed daemon leaves the file behind. The next daemon tries to
- * connect to it: if no program listens there, the daemon removes the file; otherwise it refuses to
- * start. While it does that it holds a lock on the folder, so that, if two daemons start at the
- * same time, the second one finds the first. */
+ * connect to the socket: if no program listens there, the daemon removes the file; otherwise it
+ * refuses to start. During this check it holds a lock on the folder, so that, if two daemons start
+ * at the same time, the second one finds the first. */
 #ifndef HE_SERVER_NET_UNIX_SOCKET_H
 #define HE_SERVER_NET_UNIX_SOCKET_H
 

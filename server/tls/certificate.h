@@ -18,14 +18,15 @@ enum {
     SRV_MAX_CHAIN = 16
 };
 
-/* The priorities for gnutls: TLS 1.2 and 1.3; of 1.2 only cipher suites with forward secrecy and
- * authenticated encryption. */
+/* The priority string for gnutls: it allows TLS 1.3, and of TLS 1.2 only cipher suites with forward
+ * secrecy and authenticated encryption. */
 extern const char srv_tls_priorities[];
 
 typedef struct srv_certificates srv_certificates;
 typedef struct srv_certificate srv_certificate;
 
-/* Makes an object in which no pair is in force yet. Returns NULL when memory is out. */
+/* Makes the object that has the pair (certificate and key) in force; it has none yet. Returns NULL
+ * when memory is out. */
 srv_certificates *srv_certificates_new(void);
 /* Frees the object, which may be NULL. Pairs to which references are held stay until these are
  * released. */

@@ -8,7 +8,8 @@
 #include <stddef.h>
 
 /* Sends `request` on a connected socket, whose timeouts the caller has set, and reads the answer
- * until `size` bytes have arrived or it ends. Returns the number of bytes read, 0 on failure. */
+ * until `size` bytes have arrived or the answer ends. Returns the number of bytes read, 0 on
+ * failure. */
 size_t srv_tls_ask(int socket, const char *request, size_t length, char *answer, size_t size);
 
 #endif

@@ -315,8 +315,8 @@ static void put_row(text *t, const he_material *row, bool *strong)
     put_text(t, look->two_sided ? ",\"doubleSided\":true}" : "}");
 }
 
-/* Writes the list of materials: first the rows of the mesh's table of materials, then the
- * materials that have only a name and no row. */
+/* Writes the list of materials: first those of the mesh's table of materials, then those that are
+ * only names and not in the table. */
 static void put_materials(text *t, const he_glb_parts *g, bool *strong)
 {
     const he_materials *table = he_mesh_materials(g->mesh);

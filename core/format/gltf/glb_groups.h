@@ -36,7 +36,8 @@ typedef struct he_glb_groups {
                         of ids */
     /* index in he_export_triangles.corners at which the triangles of each face begin */
     size_t *cut;
-    he_ids only_names; /* labels of materials that have no row in the mesh's table of materials */
+    /* Labels of those materials of faces that are not in the mesh's table of materials. */
+    he_ids only_names;
 } he_glb_groups;
 
 /* Groups the faces of a mesh by object, group and material.
@@ -45,10 +46,11 @@ HE_NODISCARD he_status he_glb_groups_make(const he_mesh *mesh, he_warnings *warn
                                           he_glb_groups *out, he_error *err);
 void he_glb_groups_clear(he_glb_groups *groups);
 /* Returns the name that the faces of a group have in the attribute `which`, such as
- * HE_GLB_OBJECT; "" if they have no name in it. */
+ * HE_GLB_OBJECT; "" if they have no name in that attribute. */
 const char *he_glb_name(const he_glb_groups *groups, const he_glb_group *group, size_t which);
-/* Returns the number of a group's material in the file; HE_NONE if it has none. The file numbers
- * first the rows of the table of materials, then the names without a row. */
+/* Returns the number of a group's material in the file; HE_NONE if the group has no material. The
+ * file numbers first the materials of the mesh's table, then the material names that are not in the
+ * table. */
 uint32_t he_glb_material(const he_mesh *mesh, const he_glb_groups *groups,
                          const he_glb_group *group);
 

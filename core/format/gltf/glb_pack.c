@@ -15,9 +15,9 @@ he_meshopt_stream he_glb_part_stream(const he_glb_part *part)
         stream.mode = HE_MESHOPT_INDICES;
         break;
     case HE_GLB_WORDS: {
-        /* The codec packs the differences between consecutive elements. A 32-bit word of a row
-         * (the value of an attribute at a vertex, face or corner) differs little from the same
-         * word of the next row, so an element is one whole row. */
+        /* The codec packs the differences between consecutive elements. A 32-bit word of an
+         * attribute's value (at a vertex, face or corner) differs little from the same word of the
+         * next value, so an element is one whole value. */
         uint32_t words = part->column->components * (part->column->type == HE_DOUBLE ? 2 : 1);
         stream.count /= words;
         stream.stride *= words;

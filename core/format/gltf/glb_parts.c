@@ -45,7 +45,7 @@ static uint64_t corner_count(const he_mesh *m)
 
 static bool all_below(const he_column *column, double end)
 {
-    /* The row after the last one holds the default value. */
+    /* After the last value stands the default value, which is checked, too. */
     for (size_t row = 0; row <= column->rows; row++) {
         for (uint32_t i = 0; i < column->components; i++) {
             if (he_export_number(column, row, i) >= end) {
@@ -168,7 +168,7 @@ static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANT
     return true;
 }
 
-/* Returns true if the values of all vertices will be read back with equal bits. */
+/* Returns true if hedge will read back the values of all vertices from the file with equal bits. */
 static bool comes_back(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -253,7 +253,7 @@ static void add_words(he_glb_parts *g, const he_column *column, he_warnings *war
                          .count = rows_of(g->mesh, column->domain) * words,
                          .stride = 4});
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
-        return; /* other programs see the attribute too, so there is no warning */
+        return; /* other programs see the attribute, too, so no warning is needed */
     }
     he_warnings_add(warnings,
                     &(he_occurrence){.code = "in_extras",

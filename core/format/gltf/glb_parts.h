@@ -2,8 +2,8 @@
  * the parts of its one buffer, and the JSON that describes them. Part i has a buffer view and an
  * accessor of number i.
  *
- * With compression each part is a stream of EXT_meshopt_compression in the file's buffer, and the
- * views refer to a fallback buffer, which has no bytes. */
+ * If the file is compressed, each part is a stream of EXT_meshopt_compression in the file's buffer,
+ * and the views refer to a fallback buffer, which has no bytes. */
 #ifndef HE_FORMAT_GLTF_GLB_PARTS_H
 #define HE_FORMAT_GLTF_GLB_PARTS_H
 
@@ -27,15 +27,17 @@ typedef enum he_glb_content {
 typedef struct he_glb_part {
     he_glb_content content;
     const he_column *column;           /* for values and words */
-    char semantic[HE_COLUMN_NAME + 2]; /* name in glTF, such as "NORMAL"; "" if the part has neither
-                                          positions nor values */
+    char semantic[HE_COLUMN_NAME + 2]; /* name of the part's attribute in glTF, such as "NORMAL"; ""
+                                        * if the part has neither positions nor values of an
+                                        * attribute */
     unsigned type;                     /* the componentType of the accessor */
-    uint32_t components;               /* components of an element of the accessor */
+    uint32_t components;               /* number of components of each element of the accessor */
     bool normalized;
-    he_gltf_role role; /* attribute of glTF that the values are; HE_GLTF_SEMANTICS if none */
-    uint64_t count;    /* elements of the accessor */
-    uint32_t stride;   /* bytes from one element to the next */
-    uint64_t offset;   /* offset in the buffer, a multiple of 4 */
+    /* The glTF attribute to which the values belong; HE_GLTF_SEMANTICS if none. */
+    he_gltf_role role;
+    uint64_t count;             /* elements of the accessor */
+    uint32_t stride;            /* bytes from one element to the next */
+    uint64_t offset;            /* offset in the buffer, a multiple of 4 */
     uint64_t packed_at, packed; /* `packed_at` is the offset in the file's buffer of the compressed
                                    part, `packed` is its length */
 } he_glb_part;
@@ -43,15 +45,16 @@ typedef struct he_glb_part {
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
-    uint32_t *numbers; /* number of each vertex in the file; NULL if the ids are the numbers */
-    he_splits splits;  /* copies of vertices whose corners have different values */
+    /* Number that each vertex has in the file; NULL if the numbers are the ids. */
+    uint32_t *numbers;
+    he_splits splits; /* copies of vertices whose corners have different values */
     he_export_triangles cuts;
     he_glb_groups groups; /* groups of faces */
     he_glb_part *parts;
     size_t count, capacity;
-    uint64_t bytes; /* bytes of the buffer, a multiple of 4 */
-    bool packs;     /* parts are compressed; `streams` has the compressed parts, each padded to a
-                       multiple of 4 bytes */
+    uint64_t bytes; /* number of bytes of the uncompressed buffer, a multiple of 4 */
+    bool packs;     /* true if parts are compressed: `streams` then has the compressed parts, each
+                     * padded to a multiple of 4 bytes */
     unsigned char *streams;
     size_t streams_length, streams_capacity;
     char *json;

@@ -74,7 +74,7 @@ typedef struct span {
     uint64_t place;
 } span;
 
-/* Finds the bytes of a buffer view, and decompresses them if necessary. */
+/* Finds the bytes of a buffer view, and decompresses the bytes if necessary. */
 static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he_error *err)
 {
     uint32_t extension = he_gltf_meshopt(asset, view);

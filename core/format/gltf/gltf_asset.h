@@ -7,8 +7,8 @@
  *
  * A buffer view with EXT_meshopt_compression is decompressed when it is first used. All such views
  * together may decompress to at most HE_GLTF_ROOM bytes plus HE_GLTF_UNPACKED times the size of the
- * asset (meshes decompress to 2 to 12 times their size, zeros to 64 times). Twice the decompressed
- * bytes are added to the bound on the soup. */
+ * asset (meshes decompress to 2 to 12 times their size, zeros to 64 times). The bound on the memory
+ * of the soup grows by twice the number of decompressed bytes. */
 #ifndef HE_FORMAT_GLTF_GLTF_ASSET_H
 #define HE_FORMAT_GLTF_GLTF_ASSET_H
 
@@ -25,28 +25,31 @@
 enum { HE_GLTF_ELEMENT = 64 }; /* bytes of the largest element: sixteen floats */
 
 typedef struct he_gltf_buffer {
-    const unsigned char *bytes; /* NULL if it is a fallback buffer whose file did not come */
-    unsigned char *own;         /* the memory to free, if the bytes were decoded or decompressed */
+    /* The bytes of the buffer; NULL if it is a fallback buffer whose file was not uploaded. */
+    const unsigned char *bytes;
+    /* The memory to free; NULL unless the bytes were decoded or decompressed. */
+    unsigned char *own;
     uint64_t length;
     uint64_t start; /* offset in a buffer of the asset, if these bytes are a part of that buffer */
-    uint64_t place; /* offset of the first byte in the input; HE_GLTF_NOWHERE if the bytes are not
-                       in the input */
+    uint64_t place; /* offset of the first byte in the file that is read; HE_GLTF_NOWHERE if the
+                     * bytes are not in that file */
 } he_gltf_buffer;
 
 typedef struct he_gltf {
     he_import *into;
     he_json json;
     he_ids accessors, views, nodes, meshes,
-        materials; /* JSON objects of each kind, by index in the asset */
+        materials; /* the JSON objects of each kind, in the order of their indices in the asset */
     he_gltf_buffer *buffers;
     size_t buffer_count;
     he_gltf_buffer *unpacked; /* the decompressed bytes of each view; NULL before the first view is
                                  decompressed */
     bool quantized;           /* KHR_mesh_quantization is used */
-    uint64_t room;            /* bytes of memory that the soup may still take */
-    uint64_t unpack_room;     /* bytes that views may still take when decompressed */
+    uint64_t room;            /* how many more bytes of memory the soup may take */
+    uint64_t unpack_room;     /* how many more bytes buffer views may decompress to */
     uint64_t size;            /* bytes of the input */
-    uint64_t steps, told;     /* `steps` of work are done, of which `told` were reported */
+    /* steps: how many steps of work are done; told: how many of them were reported as progress. */
+    uint64_t steps, told;
 } he_gltf;
 
 /* The BIN chunk of a GLB file; `bytes` is NULL if the file has none. */
@@ -158,10 +161,10 @@ typedef struct he_gltf_accessor {
     bool matrix;
     uint32_t components;
     uint64_t count;
-    const unsigned char *bytes; /* NULL if all elements are zero */
+    const unsigned char *bytes; /* the bytes of the elements; NULL if all elements are zero */
     size_t stride;
-    uint64_t place; /* offset of the first element in the input; HE_GLTF_NOWHERE if the elements are
-                       not in the input */
+    uint64_t place; /* offset of the first element in the file that is read; HE_GLTF_NOWHERE if the
+                     * elements are not in that file */
     uint64_t changed; /* number of elements that a sparse accessor replaces */
     const unsigned char *changed_index, *changed_value;
     he_gltf_type changed_type; /* type of the indices of replaced elements; the indices are in

@@ -208,7 +208,8 @@ static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
 typedef struct attribute {
     char semantic[HE_COLUMN_NAME + 2]; /* its name in the file */
     he_gltf_accessor values;
-    const he_gltf_semantic *known; /* NULL if glTF does not define this semantic */
+    /* The glTF semantic of the attribute; NULL if glTF does not define its name. */
+    const he_gltf_semantic *known;
     he_column *column; /* the column of the mesh into which the attribute is read; NULL if it is not
                           read */
 } attribute;
@@ -237,7 +238,9 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
     const he_column *corners = he_gltf_find_column(soup, HE_HALFEDGE, name);
     if (p->exact && corners != NULL && corners->rows > p->first_corner) {
-        return HE_OK; /* the attribute was read from extras already, also for copies of vertices */
+        /* Nothing to do: the attribute was already read from extras, for copies of vertices,
+         * too. */
+        return HE_OK;
     }
     if (column != NULL && column->rows > p->first_vertex) {
         if (!p->exact) {

@@ -19,8 +19,9 @@
 typedef struct he_gltf_primitive {
     uint32_t value, attributes; /* JSON values of the primitive and of its member attributes */
     const he_gltf_frame *frame;
-    bool still;  /* the frame is the identity */
-    bool mirror; /* the frame mirrors: it turns right-handed axes into left-handed ones */
+    bool still; /* the frame is the identity */
+    /* True if the matrix `frame` mirrors: it turns right-handed axes into left-handed ones. */
+    bool mirror;
     bool indexed;
     uint64_t mode;
     he_gltf_accessor positions, indices;
@@ -28,9 +29,11 @@ typedef struct he_gltf_primitive {
     uint64_t vertices;       /* number of vertices that the soup gets, one for each of the first
                                 positions; the positions after these belong to copies of vertices */
     he_gltf_accessor copies; /* for each copy of a vertex, the vertex that was copied */
-    bool private;            /* the extras are valid as far as they were read */
-    bool exact;              /* attributes read from extras take precedence over those of glTF */
-    bool polygons;           /* polygons from extras replace the triangles */
+    bool private;            /* true if the extras are valid as far as they were read */
+    /* True if attributes were read from extras, which take precedence over those of glTF. */
+    bool exact;
+    /* True if polygons were read from extras, which replace the triangles. */
+    bool polygons;
     uint32_t first_vertex, first_face, first_corner; /* first rows in the soup */
 } he_gltf_primitive;
 
@@ -53,18 +56,18 @@ HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he
 void he_gltf_note_attributes(he_gltf_surface *surface);
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
-/* Extends a column so that it has `end` rows; new rows get the default. Errors name the JSON value
- * `value`.
+/* Extends a column (the array of an attribute's values) to `end` values; new values are the
+ * default. Errors name the JSON value `value`.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
                                       size_t end, he_error *err);
 
 typedef enum he_gltf_role {
-    HE_GLTF_NORMAL, /* transformed by the matrix of the node, as tangents are */
+    HE_GLTF_NORMAL, /* a normal; like a tangent, it is transformed by the matrix of the node */
     HE_GLTF_TANGENT,
-    HE_GLTF_UV,    /* the second component v of glTF is 1 - v in a mesh */
-    HE_GLTF_COLOR, /* written as bytes if bytes represent all values exactly */
+    HE_GLTF_UV,    /* texture coordinates; the second component v of glTF is 1 - v in a mesh */
+    HE_GLTF_COLOR, /* a colour; written as bytes if bytes represent all values exactly */
     HE_GLTF_JOINTS,
     HE_GLTF_WEIGHTS,
     HE_GLTF_SEMANTICS
@@ -77,8 +80,9 @@ typedef struct he_gltf_semantic {
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
     he_gltf_role role;
-    he_gltf_role partner; /* an attribute of `role` is only written if one of the role `partner` is
-                             written too; `partner` equals `role` if no other attribute is needed */
+    he_gltf_role partner; /* glTF allows the attribute only if the primitive also has one of the
+                           * role `partner`; `partner` equals `role` if no other attribute is
+                           * needed */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
 

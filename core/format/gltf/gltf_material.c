@@ -37,7 +37,7 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
 
 typedef struct reading {
     he_gltf *asset;
-    bool odd; /* some number of the material was not valid */
+    bool odd; /* true if some number of the material was not valid */
 } reading;
 
 static void read_number(reading *r, uint32_t object, const char *name, double *out)
@@ -151,7 +151,7 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
             name, value);
     }
     he_status status = he_material_new(name, strlen(name), &look, &row, err);
-    if (status == HE_BAD_VALUE) { /* the name has a control character */
+    if (status == HE_BAD_VALUE) { /* the name has a control character: the material is left out */
         he_gltf_note_text(asset, "material_name",
                           "left out, because its name has a control character: material", name,
                           value);

@@ -14,8 +14,8 @@ enum { HE_GLTF_NAME = 1024 };
 
 /* Fills the soup's table of materials. *names, which the caller owns, gets a name for each material
  * of the asset in order: its own, material_N if it has none, and NAME_2 and so on if another
- * material has that name. Materials beyond HE_MATERIALS get names but no rows, with a warning.
- * Returns HE_LIMIT if a limit would be exceeded.
+ * material has that name. Materials after the first HE_MATERIALS get names but are not put into the
+ * table, with a warning. Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_read_materials(he_gltf *asset, he_labels **names, he_error *err);

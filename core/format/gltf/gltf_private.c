@@ -166,7 +166,7 @@ typedef struct description {
     he_rule rule;
     uint64_t components;
     uint64_t rows;
-    size_t first; /* first row of the column that gets values */
+    size_t first; /* index in the column of the first value that is read */
     uint32_t labels;
     he_gltf_accessor words;
 } description;
@@ -323,7 +323,7 @@ static bool has_place(const he_gltf_surface *s, const description *d)
            column->rows <= d->first && (column->labels == NULL) == (d->labels == HE_NONE);
 }
 
-/* Replaces the indices into `labels` that the rows from `first` on contain by the indices that
+/* The values from index `first` on are indices into `labels`: replaces them by the indices that
  * these labels have in the column. */
 static he_status renumber(he_column *column, size_t first, const he_labels *labels, he_error *err)
 {

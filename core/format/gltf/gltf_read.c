@@ -22,7 +22,7 @@ typedef struct glb {
     size_t head_length;
     uint64_t offset; /* offset of the next byte */
     uint64_t length; /* length of the file, as its header says */
-    uint64_t left;   /* bytes of the present chunk still to come */
+    uint64_t left;   /* number of bytes of the present chunk that are still to come */
     size_t chunks;   /* number of chunks that have begun */
     /* The number of bytes of padding that may follow a chunk whose length is no multiple of 4. */
     size_t padding;

@@ -9,15 +9,16 @@
 /* A node whose children are being visited. */
 typedef struct level {
     he_gltf_frame frame;
-    uint32_t children, child; /* `children` is the JSON array of the node's children, `child` the
-                                 next one to visit or HE_NONE */
+    uint32_t children, child; /* children: the JSON array of the node's children; child: the next
+                               * child to visit, or HE_NONE */
 } level;
 
 typedef struct scene {
     he_gltf *asset;
     he_gltf_surface surface;
-    uint64_t *visited, *used; /* bits: nodes that were visited, and meshes that were used */
-    uint64_t instances;       /* how many nodes have a mesh that an earlier node has, too */
+    /* Sets of bits: visited: the nodes that were visited; used: the meshes that nodes used. */
+    uint64_t *visited, *used;
+    uint64_t instances; /* how many nodes have a mesh that an earlier node has, too */
     level *levels;
     size_t depth, capacity;
 } scene;

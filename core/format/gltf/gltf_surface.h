@@ -21,10 +21,10 @@ typedef struct he_gltf_surface {
     he_gltf *asset;
     he_labels *names; /* names of the asset's materials, by their index */
     he_face_groups object, material;
-    he_ids own_objects, own_materials;  /* ranges of faces whose names came from extras: pairs of a
-                                           first face and the face after the last */
-    uint64_t given[HE_GLTF_ATTRIBUTES]; /* number of rows of each column of the soup that got a
-                                           value from the file */
+    he_ids own_objects, own_materials;  /* ranges of faces whose material names came from extras:
+                                         * pairs of a first face and the face after the last */
+    uint64_t given[HE_GLTF_ATTRIBUTES]; /* for each column (attribute) of the soup, the number of
+                                         * elements whose value is from the file */
     uint64_t mirrored;                  /* number of faces that were reversed */
     bool begun;                         /* the import's he_source_map are initialised */
 } he_gltf_surface;
@@ -38,7 +38,7 @@ HE_NODISCARD he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh,
 HE_NODISCARD he_status he_gltf_add_primitive(he_gltf_surface *surface, uint32_t primitive,
                                              uint32_t name, const he_gltf_frame *frame,
                                              he_error *err);
-/* Makes the attributes of faces, after all primitives are added. */
+/* Makes the face attributes object and material; must be called after all primitives are added. */
 HE_NODISCARD he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err);
 
 #endif

@@ -59,7 +59,8 @@ typedef struct choice {
     const char *name;
     const char *const *words;
     int count;
-    int absent; /* index of the word that holds if the member is missing; -1 if it must exist */
+    /* Index of the word that is meant if the member is missing; -1 if the member must exist. */
+    int absent;
 } choice;
 
 /* Reads a member of a JSON object that must be one of the words of `c`. *out becomes the index

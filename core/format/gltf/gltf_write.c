@@ -25,7 +25,9 @@ typedef struct glb_writer {
     uint32_t halfedge; /* the next corner of the face, or HE_NONE */
     size_t copy;       /* the next copy */
     he_export_triangle_walk walk;
-    uint64_t written; /* bytes of the present part, or of all streams, written so far */
+    /* Number of bytes written so far of the present part or, if parts are compressed, of all
+     * streams. */
+    uint64_t written;
 } glb_writer;
 
 static void glb_close(void *state)

@@ -14,7 +14,8 @@
 
 typedef enum he_meshopt_mode {
     HE_MESHOPT_ATTRIBUTES,
-    HE_MESHOPT_TRIANGLES, /* a coded triangle may begin at another of its corners */
+    /* triangles; after coding, a triangle may begin at another of its corners. */
+    HE_MESHOPT_TRIANGLES,
     HE_MESHOPT_INDICES,
     HE_MESHOPT_MODES
 } he_meshopt_mode;
@@ -38,7 +39,7 @@ typedef struct he_meshopt_stream {
     size_t stride;
 } he_meshopt_stream;
 
-/* Returns NULL if a stream may have this layout, else a sentence about what is wrong with it. */
+/* Returns NULL if a stream may have this layout, else a sentence that says why it may not. */
 const char *he_meshopt_fits(const he_meshopt_stream *stream);
 /* Returns the fewest bytes that a stream of this layout can have: a shorter one is refused before
  * memory is allocated for its elements. */
@@ -46,7 +47,7 @@ uint64_t he_meshopt_least(const he_meshopt_stream *stream);
 /* Returns the version of the codec that a stream states; -1 if the bytes are no stream of this
  * mode. */
 int he_meshopt_version(const he_meshopt_stream *stream, const unsigned char *bytes, size_t length);
-/* The latest versions of the codecs that are read. */
+/* The latest versions of the codecs that he_meshopt_decode can read. */
 enum { HE_MESHOPT_ATTRIBUTES_VERSION = 0, HE_MESHOPT_INDEX_VERSION = 1 };
 
 /* Decodes a stream to `to`, which must have room for all elements. Returns false if the bytes are

@@ -29,8 +29,8 @@ static he_beside_file *find_exact(he_beside *beside, const char *name, size_t le
     return NULL;
 }
 
-/* Finds a file by the last part of its name. Returns NULL if there is none, or if several files in
- * different folders have this name. */
+/* Finds a file by the last part of its name. Returns NULL if no file, or several files in different
+ * folders, have this name. */
 static he_beside_file *find_base(he_beside *beside, const char *name, size_t length)
 {
     size_t base = base_of(name, length);

@@ -27,8 +27,8 @@ typedef struct he_beside {
     size_t count;
 } he_beside;
 
-/* Finds a file by its name of `length` bytes, and marks it as used. Returns NULL if there is none.
- * `beside` may be NULL, which means that no files came. */
+/* Finds a file by its name of `length` bytes, and marks it as used. Returns NULL if there is no
+ * such file. `beside` may be NULL, which means that no files came. */
 const he_beside_file *he_beside_find(he_beside *beside, const char *name, size_t length);
 /* Finds a file like he_beside_find, but by a URI reference (RFC 3986): the file of exactly this
  * name, or else the file of the name with its percent escapes decoded. */

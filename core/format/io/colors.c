@@ -29,7 +29,7 @@ he_status he_colors_add(he_colors *colors, size_t element, const double *values,
     double *row = colors->rows[element];
     memcpy(row, values, count * sizeof *row);
     if (count == 3) {
-        /* the colour has no alpha; infinity would mean that the element has no colour */
+        /* NaN stands for a missing alpha; infinity marks an element without a colour */
         row[3] = (double)NAN;
     }
     for (size_t i = 0; i < 3; i++) {

@@ -17,12 +17,13 @@
 /* {0} is empty. */
 typedef struct he_colors {
     double (*rows)[4];
-    size_t count, capacity; /* `count` rows, one for each element (vertex or face) up to the last
-                               that has a colour */
+    size_t count, capacity; /* count: how many elements (vertices or faces) are in the list, from
+                             * the first to the last that has a colour */
     size_t given;           /* number of elements that have a colour */
-    bool fractions;         /* the format has no integers, or some number was not an integer */
-    bool broken;            /* a number other than an alpha is not whole */
-    double highest;         /* highest of all numbers other than alphas */
+    /* True if the format does not distinguish integers, or some number was not an integer. */
+    bool fractions;
+    bool broken;    /* true if a number other than an alpha is not whole */
+    double highest; /* highest of all numbers other than alphas */
 } he_colors;
 
 void he_colors_clear(he_colors *colors);
@@ -31,7 +32,8 @@ void he_colors_clear(he_colors *colors);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_colors_add(he_colors *colors, size_t element, const double *values,
                                      size_t count, he_error *err);
-/* Makes the colour attribute of all `elements` vertices or faces, if any of them has a colour. */
+/* Makes the colour attribute of the vertices or faces, of which there are `elements`, if any of
+ * them has a colour. */
 HE_NODISCARD he_status he_colors_finish(const he_colors *colors, he_soup *soup,
                                         he_warnings *warnings, he_kind domain, size_t elements,
                                         he_error *err);

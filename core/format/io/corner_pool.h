@@ -38,8 +38,8 @@ void he_corner_pool_forget(he_corner_pool *pool, size_t corner);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_corner_pool_unused(const he_corner_pool *pool, size_t *out,
                                              he_error *err);
-/* Makes the half-edge attribute `name` from the values, if any corner has one; all indices must be
- * valid. The attribute has three components, or only `least` if the third component is 0 in all
+/* Makes the half-edge attribute `name` from the values, if any corner has a value; all indices must
+ * be valid. The attribute has three components, or only `least` if the third component is 0 in all
  * values. */
 HE_NODISCARD he_status he_corner_pool_finish(const he_corner_pool *pool, he_soup *soup,
                                              const char *name, uint32_t least, he_error *err);

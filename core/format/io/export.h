@@ -27,8 +27,8 @@ static inline bool he_are_floats(he_vec3 p)
     return he_is_float(p.x) && he_is_float(p.y) && he_is_float(p.z);
 }
 
-/* Counts the positions that are changed by writing them as floats. The caller initialises it
- * with {0}. */
+/* Counts of the positions that change when they are written as floats. The caller initialises the
+ * struct with {0}. */
 typedef struct he_narrowed {
     uint64_t rounded, beyond; /* `rounded` counts the positions that no floats represent exactly,
                                  `beyond` those beyond the largest float */
@@ -46,8 +46,9 @@ HE_NODISCARD he_status he_narrowed_finish(const he_narrowed *narrowed, he_warnin
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he_error *err);
 
-/* Finds an attribute if its values are numbers with `least` to `most` components, else returns
- * NULL. Values that are not finite get a warning; they are written as 0. */
+/* Finds an attribute by its name. Returns NULL if there is none, or if its values are not numbers
+ * with `least` to `most` components. Values that are not finite get a warning; they are written as
+ * 0. */
 const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char *name,
                                 uint32_t least, uint32_t most, he_warnings *warnings);
 /* Adds a warning for every attribute that is not among the `count` columns that are written, some
@@ -66,8 +67,8 @@ char *he_export_text(const char *text, char *to);
 /* Writes one component of an attribute's value to `to`, at most HE_NUMBER_TEXT bytes, and
  * returns the end of this text. */
 char *he_export_value(const he_column *column, size_t row, uint32_t component, char *to);
-/* Writes to `to` a blank and a number for each component of a row, and returns the end of this
- * text. */
+/* Writes to `to`, for each component of one element's value, a blank and a number, and returns the
+ * end of this text. */
 char *he_export_row(const he_column *column, size_t row, char *to);
 
 /* The distinct values of attributes at all corners, compared bit by bit and numbered in the order
@@ -77,7 +78,7 @@ typedef struct he_distinct {
     he_ids first;     /* the first half-edge with each value, by the value's number */
 } he_distinct;
 
-/* Finds the distinct combinations of values in the `count` columns. With `apart`, the values of
+/* Finds the distinct combinations of values in the `count` columns. If `apart` is true, values of
  * corners at different vertices always count as distinct. */
 HE_NODISCARD he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns,
                                         size_t count, bool apart, he_progress *progress,

@@ -13,7 +13,7 @@ typedef struct he_export_triangles {
     he_ids corners;            /* three vertices for each triangle into which a polygon was cut */
     uint64_t polygons, turned; /* `polygons` counts the faces that were cut, `turned` those of them
                                   that have flipped triangles */
-    uint64_t steps;            /* steps of work that cutting took */
+    uint64_t steps;            /* number of steps of work that cutting the faces took */
 } he_export_triangles;
 
 /* Cuts all faces. The mesh is borrowed and must not change until the triangles are cleared.
@@ -29,8 +29,8 @@ uint64_t he_export_triangles_count(const he_export_triangles *triangles);
 /* A walk over all triangles, face by face. The caller initialises it with {0}. */
 typedef struct he_export_triangle_walk {
     uint32_t face; /* the next face, or the one being visited */
-    uint32_t left; /* triangles of the face being visited that are still to come */
-    bool is_cut;   /* the face being visited was cut, because it is no triangle */
+    uint32_t left; /* number of triangles of the face being visited that are still to come */
+    bool is_cut;   /* true if the face being visited was cut, because it is no triangle */
     size_t corner; /* index of the next vertex in he_export_triangles.corners */
 } he_export_triangle_walk;
 

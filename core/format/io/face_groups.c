@@ -90,7 +90,7 @@ he_status he_line_name(const he_line *line, const char *p, he_warnings *warnings
 {
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
-    /* `room` bytes for the name, and twice as many for the name in UTF-8 */
+    /* memory for `room` bytes of the name as read, and for twice as many of the name in UTF-8 */
     char *name = he_mem_alloc(3 * room);
     if (name == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);

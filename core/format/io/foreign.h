@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 /* Returns a description such as "a PNG image", or "a ZIP archive, as 3MF files are: unpack it
- * first"; NULL if the bytes are not recognised. No file of a format that can be read begins like
- * one of these. */
+ * first"; NULL if the bytes are not recognised. No file of a format that can be read is recognised
+ * by this function. */
 const char *he_foreign_find(const void *bytes, size_t n);
 
 #endif

@@ -3,8 +3,9 @@
  * THE TABLE. One row a format: names, how to recognise it, its reader and writer. A new format is a
  * new row in format.c.
  *
- * READING. The bytes come in pieces of any size, as they arrive, and are not kept, except by a
- * format whose parts refer to each other in any order, until it is finished:
+ * READING. The bytes come in pieces of any size, as they arrive, and are not kept. Only for a
+ * format whose parts refer to each other in any order, the reader keeps them until the end of the
+ * file:
  *
  *     he_reader_new -> he_reader_feed ... -> he_reader_finish -> he_import -> he_build
  *
@@ -39,7 +40,8 @@ typedef struct he_import {
     he_source_map vertices, faces;
     double edges;        /* number of edges that the file declares, if edges_line is not 0 */
     uint64_t edges_line; /* line that declares the number of edges, 0 if none does */
-    he_beside *beside;   /* the files that came with the one being read; NULL if there are none */
+    /* The files that came together with the file being read; NULL if there are none. */
+    he_beside *beside;
 } he_import;
 
 void he_import_clear(he_import *import);
@@ -55,8 +57,8 @@ typedef struct he_reading {
     he_status (*feed)(void *state, const void *bytes, size_t n, he_error *err);
     he_status (*finish)(void *state, he_error *err);
     void (*close)(void *state);
-    bool at_end; /* feed only stores the bytes; finish parses them and reports to the soup's
-                    `progress` */
+    bool at_end; /* true if `feed` only stores the bytes; `finish` then parses them and reports to
+                  * the soup's `progress` */
 } he_reading;
 
 /* The functions of a format's writer (he_writing). `step` writes the next bytes at `*p`, where
@@ -69,22 +71,24 @@ typedef struct he_writing {
                       he_warnings *warnings, void **state, he_error *err);
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
-    bool cuts; /* the writer cuts polygons into triangles (export_triangles.h), so the caller may
-                  first fill the mesh's cache of long faces (long_faces.h) */
+    bool cuts; /* true if the writer cuts polygons into triangles (export_triangles.h); the caller
+                * may then first fill the mesh's cache of long faces (long_faces.h) */
 } he_writing;
 
 typedef struct he_format {
     const char *name;
     const char *doc;
     const char *const
-        *media_types; /* NULL ends this and the other lists; exports get the first media type */
+        /* Media types of the format, of which exports get the first; NULL ends this list and the
+         * lists below. */
+        *media_types;
     const char *const *extensions;
     const char *const *encodings; /* encodings of the writer, the default first */
     const char *const *carries;   /* what a file preserves, such as "polygons" or "face color" */
     /* Returns true if `bytes` could be the first bytes of a file in this format. */
     bool (*sniff)(const char *bytes, size_t n);
-    const he_reading *reading; /* NULL: the format cannot be read */
-    const he_writing *writing; /* NULL: the format cannot be written */
+    const he_reading *reading; /* the format's reader; NULL: the format cannot be read */
+    const he_writing *writing; /* the format's writer; NULL: the format cannot be written */
 } he_format;
 
 /* Returns the i-th format of the table; NULL after the last. A file of unknown format is tested
@@ -122,7 +126,7 @@ HE_NODISCARD he_status he_reader_feed(he_reader *reader, const void *bytes, size
  * is added. `beside` may be NULL. */
 void he_reader_beside(he_reader *reader, he_beside *beside);
 /* Returns true if he_reader_finish takes about as long as feeding the bytes. The caller should then
- * set a watch with he_reader_set_progress. */
+ * set a callback for progress with he_reader_set_progress. */
 bool he_reader_reads_at_end(const he_reader *reader);
 void he_reader_set_progress(he_reader *reader, he_progress *progress);
 /* Ends the input and gets the import, which the caller clears; after this the reader can only be
@@ -140,9 +144,9 @@ typedef struct he_writer he_writer;
 HE_NODISCARD he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
                                      he_progress *progress, he_writer **out, he_error *err);
 void he_writer_free(he_writer *writer);
-/* Writes the next bytes of the document, at most `size`. Returns their number; 0 at the end. */
+/* Writes the next bytes of the file, at most `size`. Returns their number; 0 at the end. */
 size_t he_writer_read(he_writer *writer, void *buffer, size_t size);
-/* Returns the warnings about content of the mesh that the document does not contain. */
+/* Returns the warnings about parts of the mesh that the file cannot represent. */
 const he_warnings *he_writer_warnings(const he_writer *writer);
 
 #endif

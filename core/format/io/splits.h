@@ -16,9 +16,11 @@
 typedef struct he_splits {
     uint32_t *number; /* number in the file of the vertex that is written for each half-edge with a
                          face */
-    uint32_t *own; /* half-edge whose values each vertex is written with; HE_NONE if the vertex has
-                      no face */
-    he_ids copies; /* a half-edge for each copy: its origin is the vertex that was copied */
+    uint32_t *own;    /* for each vertex, the half-edge whose corner has the values with which the
+                       * vertex is written; HE_NONE if the vertex has no face */
+    /* A half-edge for each copy: its corner has the copy's values, and its origin is the vertex
+     * that was copied. */
+    he_ids copies;
 } he_splits;
 
 /* Splits the vertices. `numbers` are the vertex numbers that he_export_numbers computes; `progress`

@@ -21,7 +21,7 @@ typedef struct he_weld {
 } he_weld;
 
 void he_weld_clear(he_weld *weld);
-/* Prefetches the slot of the hash table for a position that will be looked up soon. */
+/* Prefetches the entry of the hash table for a position that will be looked up soon. */
 void he_weld_expect(const he_weld *weld, he_vec3 position);
 /* Finds the vertex of the soup that lies at `position`, or adds one. All vertices of the soup must
  * have been added by this function.

@@ -39,8 +39,8 @@ HE_NODISCARD he_status he_mtl_read(const char *bytes, size_t n, he_import *into,
 #define HE_OBJ_LIBRARY "mtllib"
 
 /* Lists the names that an OBJ file written from the mesh gives its material libraries: those of the
- * attribute mtllib; without that attribute "materials.mtl" if the mesh has materials, and none if
- * it has no materials. Returns how many there are. */
+ * attribute mtllib; without that attribute, "materials.mtl" if the mesh has materials, and none if
+ * it has no materials. Returns the number of names. */
 size_t he_mtl_names(const he_mesh *mesh, const char *names[HE_COLUMN_COMPONENTS]);
 
 /* Returns false: a library is read only beside the file it belongs to, so its bytes are never

@@ -9,11 +9,13 @@ typedef struct library {
     he_import *into;
     he_lines lines;
     he_labels *names; /* names of all materials in the table and in this library */
-    he_ids slots; /* index in the table of each name's material, HE_NONE if the table was full */
-    char *name;   /* name of the material being read, "" if there is none */
+    /* The index in the table of each name's material; HE_NONE if the table was full. */
+    he_ids slots;
+    char *name; /* name of the material being read, "" if there is none */
     size_t length, room;
     he_look look;
-    bool has_opacity;    /* the opacity came from d, which takes precedence over Tr */
+    /* True if the opacity came from a line d, which takes precedence over a line Tr. */
+    bool has_opacity;
     uint64_t understood; /* number of lines with a keyword of a library */
     uint64_t first;      /* the first line with an unknown keyword, 0 if there is none */
 } library;

@@ -9,9 +9,10 @@
 typedef struct mtl_writer {
     const he_materials *table;
     size_t row; /* the next row of the table to write */
-    bool begun; /* the first line of the file is written */
+    bool begun; /* true if the first line of the file is written */
     he_obj_name name;
-    bool look; /* the row's name has been written; its numbers come next */
+    /* True if the name of the material has been written, so that its numbers come next. */
+    bool look;
 } mtl_writer;
 
 size_t he_mtl_names(const he_mesh *mesh, const char *names[HE_COLUMN_COMPONENTS])

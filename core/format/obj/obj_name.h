@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 /* Returns the byte *p of a name, or '_' in its place if the byte would end the line, join the
- * line with the next one, or not be read back. `first` says whether *p is the first byte of the
- * name. */
+ * line with the next one, or be lost when the file is read. `first` says whether *p is the first
+ * byte of the name. */
 static inline char he_obj_printable(const char *p, bool first)
 {
     bool last = p[1] == '\0';

@@ -36,7 +36,7 @@ static void note(obj *o, const he_line *line, he_occurrence seen)
 typedef struct numbers {
     double *values;      /* the first ones */
     const size_t most;   /* how many numbers are stored */
-    const size_t finite; /* how many numbers must be finite */
+    const size_t finite; /* how many of the numbers, from the first on, must be finite */
     size_t count;        /* how many the line has */
 } numbers;
 

@@ -31,8 +31,8 @@ typedef struct obj_writer {
     const he_column *color;
     values uv, normal;
     const he_column *groups[GROUPS];
-    uint32_t said[GROUPS]; /* value in the last line of each kind (OBJECT, GROUP ...), HE_NONE
-                              before the first line */
+    uint32_t said[GROUPS]; /* for each kind of line (OBJECT, GROUP ...), the value in the last such
+                            * line; HE_NONE before the first one */
     part part;
     uint32_t row;      /* the next vertex, value or face to write */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */

@@ -1,6 +1,6 @@
 /* off_binary.h - the body of an OFF file whose header says BINARY.
  *
- *     V F E                          32 bits each, as everything below; big-endian
+ *     V F E                          32 bits each, like all numbers below; big-endian
  *     x y z [normal] [r g b a] [s t] floats, for each vertex
  *     n v1 ... vn c [c numbers]      for each face: whole numbers, then floats of a colour
  *
@@ -11,8 +11,8 @@
 
 #include "format/off/off_values.h"
 
-/* The bytes of a vertex with all its values. The reader reads a part of the body when all bytes
- * of the part have come; no part is longer than such a vertex. */
+/* The bytes of a vertex with all its values. The reader reads the body in parts, such as a vertex,
+ * each when all its bytes have come; no part is longer than HE_OFF_LONGEST. */
 enum { HE_OFF_LONGEST = 4 * (3 + 3 + 4 + 2) };
 
 typedef enum he_off_part {

@@ -33,10 +33,11 @@ typedef struct off {
                                        colour */
     size_t number_count;            /* how many numbers were read; surplus ones are not stored */
     uint64_t number_line;           /* line on which the first of `numbers` was read */
-    bool spread;                    /* some vertex continues on the next line */
+    bool spread;                    /* true if some vertex continues on the next line */
     uint64_t lacking;  /* line of the first vertex that ends before its last number, or 0 */
     uint32_t integers; /* bit i is set if numbers[i] was written as an integer */
-    bool open;         /* the last face still lacks `missing` corners */
+    /* True if the last face is incomplete: `missing` of its corners are still to come. */
+    bool open;
     uint64_t missing;
     he_off_values values;
     bool is_binary;
@@ -195,7 +196,7 @@ static bool is_integer(const char *begin, const char *end, double value)
     return value <= UINT32_MAX;
 }
 
-/* Adds the colour whose components are the numbers [first, first + count) of the line. */
+/* Adds the colour whose components are `count` numbers of the line, from number `first` on. */
 static he_status add_color(off *o, he_colors *colors, size_t element, size_t first, size_t count,
                            he_error *err)
 {

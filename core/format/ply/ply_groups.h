@@ -29,7 +29,9 @@ typedef struct he_ply_group {
     const char *attribute;
     uint32_t least, most; /* members */
     bool color;
-    bool written; /* of several groups that are read as one attribute, this group is written */
+    /* True if this group is the one that is written, of those that are read as the same
+     * attribute. */
+    bool written;
     const char *names[HE_PLY_GROUP];
 } he_ply_group;
 

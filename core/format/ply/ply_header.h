@@ -36,10 +36,12 @@ const char *he_ply_type_name(he_ply_type type);
 he_type he_ply_type_column(he_ply_type type);
 
 typedef struct he_ply_property {
-    char name[HE_WARNING_SUBJECT]; /* the name, made printable, and cut if it does not fit */
-    bool nameable;                 /* an attribute can have this name */
+    /* The property's name, made printable, and cut if it does not fit. */
+    char name[HE_WARNING_SUBJECT];
+    bool nameable; /* true if an attribute can have this name */
     bool list;
-    he_ply_type count, type; /* `count` is the type of a list's length */
+    /* type: type of the values; count: if the property is a list, the type of its length. */
+    he_ply_type count, type;
     uint64_t line;
 } he_ply_property;
 
@@ -49,15 +51,16 @@ typedef struct he_ply_element {
     /* `first` is the index in the header of the element's first property, `properties` is the
      * number of its properties */
     size_t first, properties;
-    bool lists;    /* some property is a list, so rows differ in length */
-    size_t stride; /* bytes of a row without lists */
+    bool lists;    /* true if some property is a list, so that rows differ in length */
+    size_t stride; /* number of bytes of a row, if no property is a list */
     uint64_t line;
 } he_ply_element;
 
 /* {0} is empty. */
 typedef struct he_ply_header {
     bool begun, ended;
-    char corners[HE_WARNING_SUBJECT]; /* the rest of the comment that begins with "hedge corners" */
+    /* What follows "hedge corners" in the comment that begins with these words. */
+    char corners[HE_WARNING_SUBJECT];
     he_ply_encoding encoding;
     he_ply_element *elements;
     size_t count, capacity;

@@ -30,8 +30,8 @@ static bool same_place(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Counts the vertices that are no copies of others; returns 0 if the marks of the copies are not
- * valid. */
+/* Counts the vertices that are no copies of other vertices; returns 0 if the marks of the copies
+ * are not valid. */
 static size_t count_vertices(const he_soup *soup, const he_column *column)
 {
     size_t vertices = 0;

@@ -21,10 +21,10 @@ typedef struct ply {
     uint64_t offset; /* offset of the next byte */
     unsigned char *held;
     size_t held_count; /* number of bytes in `held`, which begin an incomplete row or value */
-    uint64_t row_at;   /* offset of the row being read, if it has lists */
+    uint64_t row_at;   /* offset in the file of the row being read; set only if the row has lists */
     bool in_row, in_list, trailing;
     size_t property;    /* the next property of the row */
-    uint64_t list_left; /* values of the list still to come */
+    uint64_t list_left; /* how many values of the list are still to come */
 } ply;
 
 static void note(ply *o, const char *code, const char *text, uint64_t at)

@@ -38,18 +38,18 @@ typedef struct he_ply_rows {
     const he_ply_header *header;
     he_ply_target *targets; /* where the values of each property of the header go */
     he_place unit;
-    uint64_t at;       /* line or byte of the row or value, for errors */
+    uint64_t at;       /* line or byte of the row or value being read, for errors */
     uint64_t vertices; /* number of vertices that the header declares */
 
     /* element being read; NULL before the first and after the last */
     const he_ply_element *element;
-    bool vertex;   /* the rows of the element are vertices */
-    bool wanted;   /* some property of the element is stored */
-    uint64_t left; /* rows of the element that have not ended */
-    size_t row;    /* row of the attributes' columns that is being filled */
+    bool vertex;   /* true if the rows of the element are vertices */
+    bool wanted;   /* true if some property of the element is stored */
+    uint64_t left; /* number of rows of the element that have not been read completely */
+    size_t row;    /* index of the vertex or face whose attribute values are being read */
     double position[3];
     uint32_t strip[2]; /* the last two corners of the strip of triangles */
-    bool turned;       /* the next triangle of the strip is reversed */
+    bool turned;       /* true if the next triangle of the strip is reversed */
     unsigned strip_length;
     he_column *uv; /* attribute uv of corners, read from lists of faces; NULL if there is none */
     double *uvs;   /* texture coordinates of the face being read, two numbers a corner */

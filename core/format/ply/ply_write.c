@@ -16,12 +16,12 @@ enum { VALUE_ROOM = 160 };
 /* One number of a row. */
 typedef struct output {
     const char *name;
-    /* attribute; NULL if the number is one of the position, or if `own` is set */
+    /* attribute to which the number belongs; NULL if it is a coordinate, or if `own` is set */
     const he_column *column;
     uint32_t component;
     he_ply_type type;
-    bool color; /* the number is a component of a colour, written as a byte */
-    bool own;   /* the number is the vertex's own number in the file */
+    bool color; /* true if the number is a component of a colour, written as a byte */
+    bool own;   /* true if the number is the vertex's own number in the file */
 } output;
 
 typedef struct ply_writer {
@@ -33,7 +33,8 @@ typedef struct ply_writer {
     size_t corner_count;
     const he_column *texcoord; /* attribute of `corners` that is also written as lists of faces */
     he_ply_encoding encoding;
-    output *outputs; /* the numbers in a row of a vertex, then those in a row of a face */
+    /* Describes the numbers in the row of a vertex, then those in the row of a face. */
+    output *outputs;
     size_t vertex_outputs, count;
     he_ply_type degree; /* type in which a face's number of corners is written */
     he_ply_type list;   /* type in which the length of a face's texcoord list is written */
@@ -41,8 +42,8 @@ typedef struct ply_writer {
     size_t line;       /* index in `outputs` of the next property to write in the header */
     uint32_t row;      /* the next vertex, copy or face */
     size_t output;     /* index in `outputs` of the next number to write in the row */
-    bool in_list;      /* the texture coordinates of the row have begun */
-    bool in_face;      /* the corners of the row have begun */
+    bool in_list;      /* true if the texture coordinates of the row have begun */
+    bool in_face;      /* true if the corners of the row have begun */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
 } ply_writer;
 

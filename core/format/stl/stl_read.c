@@ -25,8 +25,8 @@ typedef struct stl {
     he_lines lines;
     he_face_groups object;
     bool in_facet, in_solid, begun;
-    /* `corner_count` corners of the facet were read; `numbers` numbers of the next corner are to
-     * come */
+    /* corner_count: how many corners of the facet were read; numbers: how many numbers of the next
+     * corner are still to come */
     unsigned corner_count, numbers;
     double number[3];
     uint64_t facet_line;

@@ -43,7 +43,8 @@ static void note_cuts(const he_export_triangles *cuts, he_warnings *warnings)
 typedef struct again {
     he_soup soup;
     he_weld weld;
-    uint32_t *vertex; /* vertex of the soup that each vertex of the mesh becomes */
+    /* The vertex of the soup to which each vertex of the mesh is merged. */
+    uint32_t *vertex;
     uint64_t isolated, used;
 } again;
 

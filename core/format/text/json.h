@@ -17,9 +17,9 @@
 #include "mesh/mesh.h"
 
 enum { HE_JSON_PATH = 100 };
-#define HE_JSON_VALUES ((size_t)1 << 23)         /* most values of one text, names included */
+#define HE_JSON_VALUES ((size_t)1 << 23)         /* the most values of a text, counting names */
 #define HE_JSON_TEXT   ((size_t)UINT32_MAX / 2u) /* most bytes of one text */
-#define HE_JSON_WHOLE  ((uint64_t)1 << 53) /* up to this number, doubles hold every whole one */
+#define HE_JSON_WHOLE  ((uint64_t)1 << 53) /* doubles represent all whole numbers up to this */
 
 typedef struct he_json_value {
     uint32_t at;   /* offset in the text of the value's first byte, which determines its type */
@@ -67,9 +67,9 @@ size_t he_json_span(const he_json *json, uint32_t value);
 /* Returns true if the value is a string equal to `text`. */
 bool he_json_is(const he_json *json, uint32_t value, const char *text);
 bool he_json_begins(const he_json *json, uint32_t value, const char *text);
-/* Copies a string value without its quotes and escapes. If it does not fit, it is cut between
- * characters; it is ended by a NUL. Copies "" if the value is no string. Returns the length that
- * was copied. */
+/* Copies a string value without its quotes and escapes. If the string does not fit, it is cut
+ * between characters; the copy ends in NUL. Copies "" if the value is no string. Returns the length
+ * of the copy. */
 size_t he_json_string(const he_json *json, uint32_t value, char *to, size_t size);
 /* Returns the bytes of a string value as they stand in the text, without the quotes. */
 const char *he_json_raw(const he_json *json, uint32_t value, size_t *length);
@@ -82,7 +82,8 @@ HE_NODISCARD he_status he_json_number(const he_json *json, uint32_t value, doubl
 HE_NODISCARD he_status he_json_whole(const he_json *json, uint32_t value, uint64_t least,
                                      uint64_t most, uint64_t *out, he_error *err);
 
-/* Writes the path of a value for people, such as "meshes/0/primitives/2"; names are cut to fit. */
+/* Writes the path of a value for messages, such as "meshes/0/primitives/2"; names are cut to
+ * fit. */
 void he_json_path(const he_json *json, uint32_t value, char *to, size_t size);
 /* Fails like he_fail_at at the byte where the value begins; the message begins with the path of
  * the value. */

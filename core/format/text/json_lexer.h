@@ -14,11 +14,11 @@
  *         while ((token = he_lexer_next(&x)) != HE_TOKEN_CUT) { ... }
  *     }
  *
- * The lexer allocates no memory and does not recurse. It knows its position: x.depth arrays and
- * objects are open, x.frames[d] says where in each of them it is, he_lexer_place which byte comes
- * next. The caller decides what a token means. It may test a value before it is read
- * (he_lexer_value_ahead) and refuse it by its first byte, and it may read a whole array of numbers
- * at once (he_lexer_take_numbers). */
+ * The lexer allocates no memory and does not recurse. Its position can be read: x.depth arrays and
+ * objects are open, x.frames[d] is the position in each of them, and he_lexer_place returns the
+ * offset of the next byte. The caller decides what a token means. It may test a value before it is
+ * read (he_lexer_value_ahead) and refuse it by its first byte, and it may read a whole array of
+ * numbers at once (he_lexer_take_numbers). */
 #ifndef HE_FORMAT_TEXT_JSON_LEXER_H
 #define HE_FORMAT_TEXT_JSON_LEXER_H
 
@@ -28,15 +28,15 @@
 
 enum {
     HE_JSON_DEPTH = 128,     /* most open arrays and objects */
-    HE_JSON_CARRY = 1024,    /* most bytes of a number in a text that comes in pieces */
+    HE_JSON_CARRY = 1024,    /* the most bytes of a number in a text that comes in pieces */
     HE_JSON_NAMES = 512,     /* most bytes of the names on a path, if the text comes in pieces */
-    HE_JSON_STRING = 1 << 16 /* a longer string comes as several tokens (HE_TOKEN_PART) */
+    HE_JSON_STRING = 1 << 16 /* a string with more bytes comes as several tokens (HE_TOKEN_PART) */
 };
 
 typedef enum he_token {
-    HE_TOKEN_CUT,   /* the piece is used up, and the text is not known to have ended */
-    HE_TOKEN_END,   /* a text in one piece has ended */
-    HE_TOKEN_FAULT, /* the fault x.fault is at x.fault_place; the lexer cannot go on */
+    HE_TOKEN_CUT,   /* all bytes of the piece were read, and more may come */
+    HE_TOKEN_END,   /* the text, which came in one piece, has ended */
+    HE_TOKEN_FAULT, /* the text has the fault x.fault at x.fault_place; the lexer cannot go on */
     HE_TOKEN_PART,  /* HE_JSON_STRING bytes of a string; the next token continues it */
     HE_TOKEN_KEY, /* a member's name and its colon; the last frame (he_lexer_frame) has the name */
     HE_TOKEN_STRING,
@@ -56,7 +56,7 @@ typedef enum he_fault {
     HE_FAULT_NONE,
     HE_FAULT_VALUE,      /* no value begins here */
     HE_FAULT_ENDS,       /* the text ends where a value is expected */
-    HE_FAULT_NAME,       /* no name of a member begins here */
+    HE_FAULT_NAME,       /* a name of a member is expected, but none begins here */
     HE_FAULT_COLON,      /* no ':' here */
     HE_FAULT_ITEM,       /* neither ',' nor ']' here */
     HE_FAULT_MEMBER,     /* neither ',' nor '}' here */
@@ -87,7 +87,7 @@ typedef enum he_lexer_state {
 typedef struct he_lexer_frame {
     bool object;
     uint32_t names; /* bytes that the names of the enclosing objects take in the carry buffer */
-    size_t index;   /* index of the present item or member */
+    size_t index;   /* index of the item or member at which the lexer is */
     /* The name of the member as it stands in the text, without quotes. It is NULL before it is
      * read, and also if a piece of the text ended inside it and `carry` has no room for it. */
     const char *name;
@@ -105,9 +105,11 @@ typedef struct he_lexer_carry {
 /* The state of a lexer. All code may read the fields; the caller may set only the limits
  * depth_most, number_most and name_most. */
 typedef struct he_lexer {
-    const char *begin, *at, *end; /* the piece is [begin, end); `at` is the next byte in it */
-    uint64_t offset;              /* offset of the piece in the text */
-    he_lexer_carry *carry;        /* NULL if the piece is the whole text */
+    /* The piece of text being read is [begin, end); `at` is the next byte to read. */
+    const char *begin, *at, *end;
+    uint64_t offset; /* offset of the piece in the text */
+    /* Keeps bytes between pieces; NULL if the piece is the whole text. */
+    he_lexer_carry *carry;
     he_lexer_state state;
 
     size_t depth_most;  /* most open arrays and objects, at most HE_JSON_DEPTH (the default) */
@@ -120,8 +122,8 @@ typedef struct he_lexer {
     /* word being read (true, false, null): its first `matched` letters were read */
     const char *word;
     size_t matched;
-    size_t name_length; /* bytes of the present name in the carry buffer */
-    bool name_lost;     /* the present name did not fit into the carry buffer */
+    size_t name_length; /* how many bytes of the present member name are in the carry buffer */
+    bool name_lost;     /* true if the present member name did not fit into the carry buffer */
 
     he_fault fault;
     uint64_t fault_place;
@@ -139,14 +141,15 @@ void he_lexer_feed(he_lexer *x, const char *bytes, size_t length);
 
 he_token he_lexer_next(he_lexer *x);
 
-/* Skips blanks and a comma. Returns true if after this a value begins at x.at, or nothing but a
- * value may stand there. Returns false if the piece ends before the value or inside a token, or
+/* Skips blanks and a comma. Returns true if after this a value begins at x.at, or the grammar
+ * allows nothing but a value there. Returns false if the piece ends before the value or inside a
+ * token, or
  * if something other than a value must follow. */
 bool he_lexer_value_ahead(he_lexer *x);
 /* These functions read a whole array at once, if it is the next value: he_lexer_take_numbers at
  * most `most` numbers, he_lexer_take_indices at most `most` whole numbers below HE_DEAD in decimal
  * digits. They return how many numbers the array has. If the next value is no such array, or the
- * piece does not contain all of it, they read nothing and return 0. */
+ * piece does not contain the whole array, they read nothing and return 0. */
 size_t he_lexer_take_numbers(he_lexer *x, double *out, size_t most);
 size_t he_lexer_take_indices(he_lexer *x, uint32_t *out, size_t most);
 
@@ -157,9 +160,9 @@ static inline uint64_t he_lexer_place(const he_lexer *x)
 }
 /* Returns a sentence that explains the fault x.fault. */
 const char *he_lexer_fault_text(const he_lexer *x);
-/* Writes the JSON pointer (RFC 6901) of the value at the lexer's position. Before a name that is
- * not known or does not fit, the pointer ends early: it then names a value that contains the
- * position. */
+/* Writes the JSON pointer (RFC 6901) of the value at the lexer's position. If a member's name on
+ * the way is not known or does not fit, the pointer ends before that name: it then names an array
+ * or object that contains the position. */
 void he_lexer_pointer(const he_lexer *x, char *out, size_t size);
 
 #endif

@@ -32,8 +32,8 @@ const char *he_continuation(const char *p, const char *end)
 }
 
 /* Returns true if the line that ends at the line feed `feed` is continued on the next one. A
- * comment is not continued; `first` says that the line is not a continuation itself, so it may be a
- * comment. */
+ * comment is not continued. `first` is true if the line is not itself a continuation: only such a
+ * line can be a comment. */
 static bool goes_on(const char *begin, const char *feed, bool first)
 {
     const char *p = feed;

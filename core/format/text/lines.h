@@ -1,11 +1,11 @@
 /* lines.h - lines and tokens of a text format that arrives in pieces.
  *
  * he_lines cuts the pieces into lines and passes each line to a function, without copying it if one
- * piece contains all of it. Lines end in LF or CRLF, or all in CR alone if the first does; the last
- * one may have no end. With `joins`, a backslash before the line end continues the line; the
- * backslash and the line end then stay in the text, where the token functions treat them as blanks,
- * so that the line number of any token can still be found. A UTF-8 byte order mark is skipped,
- * UTF-16 is refused.
+ * piece contains all of it. Lines end in LF or CRLF, or, if the first line ends in CR alone, all in
+ * CR alone; the last line may have no line end. With `joins`, a backslash before the line end
+ * continues the line; the backslash and the line end then stay in the text, where the token
+ * functions treat them as blanks, so that the line number of any token can still be found. A UTF-8
+ * byte order mark is skipped, UTF-16 is refused.
  *
  * Between pieces only the unfinished line is kept, in one block that grows by doubling; a comment
  * is not kept. Time is linear in the number of bytes, however the text is cut into pieces. */
@@ -33,10 +33,10 @@ typedef struct he_lines {
     size_t length, capacity;
     uint64_t number; /* number of the line being collected */
     uint64_t joined; /* number of line ends inside the unfinished line, after backslashes */
-    bool in_comment; /* the unfinished line is a comment, so it is not kept */
+    bool in_comment; /* true if the unfinished line is a comment, which is not kept */
     /* How lines end: the end of the first line decides for all. */
     enum { HE_ENDS_UNKNOWN, HE_ENDS_FEED, HE_ENDS_RETURN } ends;
-    bool returned; /* a carriage return has come, and it is not known yet how lines end */
+    bool returned; /* true if a carriage return has come, and it is not known yet how lines end */
 } he_lines;
 
 void he_lines_init(he_lines *lines, he_line_take *take, void *context);
@@ -57,13 +57,14 @@ static inline const char *he_line_stop(const char *p, const char *end)
  * Returns HE_SYNTAX if the text contains a NUL.
  * Returns the error of `take` if that fails. */
 HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
-/* Returns the number of the last line that was passed on, counting comments; 1 if there is none. */
+/* Returns the line number of the last line that was passed to `take`, where comments count as
+ * lines; 1 if there is none. */
 uint64_t he_lines_last(const he_lines *lines);
-/* Passes on the last line of the text if it had no line end. */
+/* Passes the last line of the text to `take` if it had no line end. */
 HE_NODISCARD he_status he_lines_finish(he_lines *lines, he_error *err);
 
-/* Returns the end of a continuation (a backslash and a line end) that starts at `p`; NULL if none
- * does. */
+/* Returns the end of the continuation (a backslash and a line end) that starts at `p`; NULL if no
+ * continuation starts there. */
 const char *he_continuation(const char *p, const char *end);
 
 static inline const char *he_skip_blanks(const char *p, const char *end)
@@ -120,8 +121,8 @@ he_status he_token_fail(he_error *err, he_status status, const he_line *line, co
  * Returns HE_NOT_FINITE if the number is not finite. */
 HE_NODISCARD he_status he_token_number(const he_line *line, const char **p, double *value,
                                        he_error *err);
-/* Reads a number like he_token_number, but accepts numbers that are not finite: then `*finite` is
- * false and the value 0.
+/* Reads a number like he_token_number, but accepts numbers that are not finite: for these it sets
+ * `*finite` to false and the value to 0.
  * Returns HE_SYNTAX if the token is no number. */
 HE_NODISCARD he_status he_token_any_number(const he_line *line, const char **p, double *value,
                                            bool *finite, he_error *err);

@@ -22,8 +22,8 @@
 /* No number that these functions print takes more bytes than this. */
 enum { HE_NUMBER_TEXT = 32 };
 
-/* These functions write a finite value, without a NUL at the end, and return its length.
- * he_float_print writes the shortest text that reads back to the same float. */
+/* These functions write a finite value as text, without a NUL at the end, and return the length of
+ * the text. he_float_print writes the shortest text that reads back to the same float. */
 size_t he_double_print(double value, char *text);
 size_t he_float_print(float value, char *text);
 size_t he_u32_print(uint32_t value, char *text);
@@ -35,8 +35,8 @@ size_t he_i64_print(int64_t value, char *text);
  * in any letter case and the "1.#" forms of old C libraries are recognised as not finite. */
 typedef enum he_grammar { HE_JSON_NUMBER, HE_FILE_NUMBER } he_grammar;
 
-/* Parses a number in linear time. If it returns HE_OK or HE_NOT_FINITE it sets `*used`; only with
- * HE_OK it sets `*value`. A number too small for a normal double rounds to a subnormal or zero.
+/* Parses a number in linear time. Sets `*used` if it returns HE_OK or HE_NOT_FINITE, and `*value`
+ * only if it returns HE_OK. A number too small for a normal double rounds to a subnormal or zero.
  * Returns HE_SYNTAX if there is no number.
  * Returns HE_NOT_FINITE if the number is too large for a double, or is one of the words for
  * infinity and NaN. */

@@ -32,7 +32,7 @@ static inline he_pow5 he_pow5_get(int k)
     /* The product has at most 253 bits, in the three words top, next and last. */
     high += (uint64_t)(middle >> 64);
     uint64_t top = (uint64_t)(high >> 64), next = (uint64_t)high, last = (uint64_t)middle;
-    if (top == 0) { /* the power of the table itself, multiplied by 1 */
+    if (top == 0) { /* the wanted power is in the table itself: it need not be multiplied */
         return (he_pow5){next, last};
     }
     int zeros = __builtin_clzll(top);

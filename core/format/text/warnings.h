@@ -1,4 +1,4 @@
-/* warnings.h - warnings of a reader or writer: content that it ignored, or could not write.
+/* warnings.h - warnings of a reader or writer about data that it ignored, or could not write.
  *
  * A warning has a code and a subject; another occurrence with that code and subject is only
  * counted. The places in the input of the first HE_WARNING_SPOTS occurrences are kept. There is
@@ -25,9 +25,9 @@ typedef struct he_warning {
 /* One occurrence of a warning, as a reader or writer reports it. */
 typedef struct he_occurrence {
     const char *code;    /* a stable slug, static */
-    const char *text;    /* one sentence, which the subject completes; static */
+    const char *text;    /* one sentence, which the subject completes; a string literal */
     const char *subject; /* what the warning is about; NULL if there is nothing to name */
-    size_t length;       /* bytes of the subject, which need not end in NUL */
+    size_t length;       /* length in bytes of the subject, which need not end in NUL */
     he_place place;      /* HE_PLACE_NONE if the occurrence has no place in the file */
     uint64_t at;
 } he_occurrence;
@@ -49,7 +49,8 @@ typedef struct he_warnings {
 
 /* Adds one occurrence of a warning. Its subject is cut to fit and made printable. */
 void he_warnings_add(he_warnings *warnings, const he_occurrence *seen);
-/* Adds `count` occurrences of a warning that have no place in the file; nothing if `count` is 0. */
+/* Adds `count` occurrences of a warning that have no place in the file; does nothing if `count` is
+ * 0. */
 void he_warnings_add_count(he_warnings *warnings, const char *code, const char *text,
                            uint64_t count);
 /* Writes a text such as "ignored: unknown keyword 'xyz', 3 times, first on line 7". */

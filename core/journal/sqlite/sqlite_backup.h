@@ -5,14 +5,15 @@
  * and then renamed to NAME, so NAME is always complete.
  *
  * A RESTORE puts the store back to an earlier state. Every mesh then gets a new incarnation,
- * because ETags and event ids that clients got for states that no longer exist must not match other
- * states. A restore takes the lock of the store's folder. It can be interrupted at any step: once
- * the file `restoring` exists, the next start, or the next restore, finishes it.
+ * because ETags and event ids that clients got for states after the backup, which the restore
+ * removes, must not match later states. A restore takes the lock of the store's folder. It can be
+ * interrupted at any step: once the file `restoring` exists, the next start, or the next restore,
+ * finishes it.
  *
  *     restored.db    the copy of the backup, checked, with new incarnations
  *     restoring      names the folder for the old store; then, in this order:
- *     before-TIME/   hedge.db, -wal, -shm and hedge.mark are moved into it, all together, because a
- *                    -wal beside another database would be replayed onto it
+ *     before-TIME/   hedge.db, -wal, -shm and hedge.mark are moved into this folder, all together,
+ *                    because SQLite would apply a -wal to whatever database lies beside it
  *     hedge.db       restored.db gets this name; `restoring` is removed */
 #ifndef HE_JOURNAL_SQLITE_BACKUP_H
 #define HE_JOURNAL_SQLITE_BACKUP_H

@@ -43,7 +43,8 @@ typedef struct group {
      * background work is a purge, the deletion of what is not needed. */
     st_stage *stage;
     size_t slice; /* bytes of background work in this transaction; 0: none */
-    bool purged;  /* when this transaction is committed, nothing is left to be purged (deleted) */
+    /* True if nothing is left to be purged (deleted) once this transaction is committed. */
+    bool purged;
 } group;
 
 /* --- taking items from the queue; the caller holds the lock --- */
@@ -148,8 +149,8 @@ static uint64_t charge_of(const st_item *item)
     return charge;
 }
 
-/* Ends the writing of a slice of a stage (a content written in advance): the slice was written, or
- * never will be. The caller holds the lock. */
+/* Ends the writing of a slice of a stage (a content written in advance), because the slice was
+ * written, or never will be. The caller holds the lock. */
 static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
 {
     st_stage **at = &self->stages;
@@ -391,8 +392,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 
 static void write_mark(st_sqlite *self)
 {
-    /* If the mark of the last commit cannot be written, it still names an older commit. Then it
-     * cannot reveal the loss of newer commits, but what it says is true. */
+    /* If the mark of the last commit cannot be written, the file still names an older commit. The
+     * mark then cannot reveal the loss of newer commits, but it is still true. */
     (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
                                                   self->progress.position});
 }

@@ -28,7 +28,7 @@ enum { ST_DB_STATEMENTS = 40 };
 
 typedef struct st_db {
     sqlite3 *handle;
-    /* `texts` are the SQL texts of the statements; NULL: there is no statement of this number */
+    /* texts: the SQL text of each statement, by its number; NULL: no statement has this number */
     const char *const *texts;
     sqlite3_stmt *statements[ST_DB_STATEMENTS];
 } st_db;
@@ -42,7 +42,7 @@ bool st_db_prepare(void);
  * connection. The caller must close the connection even after a failure. */
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count);
 /* Limits the connection's cache of pages to `kib` KiB, or to proportionally less if the memory
- * budget is below 256 MiB. The limit is needed because SQLite is never refused memory. */
+ * budget is below 256 MiB. The limit is needed because the budget refuses SQLite no memory. */
 st_sql st_db_set_cache(st_db *db, unsigned kib);
 /* Closes the connection. Returns false if SQLite fails to close it. */
 bool st_db_close(st_db *db);
@@ -51,8 +51,8 @@ const char *st_db_message(const st_db *db);
 
 /* Runs a text of SQL without parameters, such as a pragma, and ignores its rows. */
 st_sql st_db_run(st_db *db, const char *text);
-/* Runs a text of SQL and reads the first number of the first row into *out; writes `otherwise` if
- * there is no row. */
+/* Runs a text of SQL and stores in *out the number in the first column of its first row, or
+ * `otherwise` if there is no row. */
 st_sql st_db_number(st_db *db, const char *text, int64_t otherwise, int64_t *out);
 
 /* Binds the parameters of statement `which` and takes the first step. `format` has a letter for

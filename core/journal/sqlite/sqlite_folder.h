@@ -1,15 +1,15 @@
 /* sqlite_folder.h - the folder of a store, and those of its files that SQLite does not open.
  *
- *     lock       locked by the daemon (flock) as long as it lives: names its process and host
+ *     lock       locked (flock) by the daemon as long as it runs; contains its process id and host
  *     hedge.db   the database, with -wal and -shm: only SQLite opens them
  *     hedge.mark the last commit of the database, compared with it at the start
  *     ballast    space that is freed when the disk is full, so that meshes can be deleted
  *     fresh      exists from before the database is made until the first start is over
  *
  * THE MARK. A damaged byte in the write-ahead log (-wal) makes SQLite silently drop that commit and
- * all after it. The mark reveals this loss: it names the last commit and is written after each
- * commit, alternately in two slots, so that one slot is always intact. A database whose last commit
- * is older than the mark has lost commits. */
+ * all after it. The mark reveals this loss: it contains the number of the last commit, and is
+ * written after each commit, alternately to two places of the file, so that one of them is always
+ * intact. A database whose last commit is older than the mark has lost commits. */
 #ifndef HE_JOURNAL_SQLITE_FOLDER_H
 #define HE_JOURNAL_SQLITE_FOLDER_H
 
@@ -24,7 +24,7 @@ typedef struct st_folder {
     char path[PATH_MAX];
     /* Descriptors of the folder, of its file `lock` and of the mark; -1: not open. */
     int folder, lock, mark;
-    /* a sentence about the last failure of a function of this header */
+    /* a sentence about the latest failure of a function of this header */
     char message[ST_SQLITE_MESSAGE];
 } st_folder;
 

@@ -2,9 +2,9 @@
  *
  * One thread, the commit thread, writes and checkpoints through one connection. It commits
  * everything queued as one group, waits for the disk once, calls the listener, and takes the next
- * group, which has collected during the sync of the group before. Other connections only read.
- * (SQLite 3.7.0 to 3.51.2 can lose pages when one connection commits while another checkpoints; so
- * no other connection commits or checkpoints.)
+ * group: all that was queued during that sync. Other connections only read. (SQLite 3.7.0 to 3.51.2
+ * can lose pages when one connection commits while another checkpoints; so no other connection
+ * commits or checkpoints.)
  *
  * FAULTS OF THE DISK. If the disk is full, the commit of a group is tried again without background
  * work. If the group still does not fit, it is lost, with everything queued, and the journal is
@@ -22,9 +22,10 @@ typedef struct st_sqlite_options {
     /* `folder` is the path of the store's folder, which is made if it is missing */
     const char *folder;
     const char *release; /* `release` is the name of this release, for messages */
-    /* most bytes of records that are queued or for which space is reserved; 0: ST_SQLITE_QUEUE */
+    /* the most bytes of records that may be queued or have space reserved; 0: ST_SQLITE_QUEUE */
     uint64_t queue_bytes;
-    uint64_t keys; /* most Idempotency-Keys of all meshes together; 0: ST_SQLITE_KEYS */
+    /* The most Idempotency-Keys that are stored for all meshes together; 0: ST_SQLITE_KEYS. */
+    uint64_t keys;
 } st_sqlite_options;
 
 enum { ST_SQLITE_QUEUE = 64 << 20, ST_SQLITE_KEYS = 1 << 20 };

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Selects those keys of the store that are at most ?1 seconds older than its newest key. */
+/* Selects those keys of the store that are at most ?1 seconds older than the store's newest key. */
 static const char of_store[] =
     "SELECT * FROM (SELECT " ST_KEPT_COLUMNS
     " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "

@@ -112,8 +112,8 @@ static bool make_store(st_sqlite *self, const char *path, const char *release,
     return true;
 }
 
-/* Checks that the database has every commit up to the commit that the mark (note of the last
- * commit) names. */
+/* Checks that the database has every commit up to the one that the mark (the file with the number
+ * of the last commit) names. */
 static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
 {
     st_mark mark;

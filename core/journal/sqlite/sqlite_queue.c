@@ -16,8 +16,9 @@ st_sqlite_room *st_room_of(st_item *item)
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
-    /* The room has memory for one head of a frame (encoded record) more than there are records: the
-     * record with a body uses another place than the others, directly before the body. */
+    /* The room has memory for the heads (encoded records without bodies) of one record more than
+     * there are, because the head of a record with a body is written directly before the body, not
+     * in the array of heads. */
     return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
            !__builtin_add_overflow(heads, entries, out) &&

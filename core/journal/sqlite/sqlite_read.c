@@ -38,8 +38,8 @@ struct st_reader {
     st_mesh_row row;
     stage_of_load at;
     st_frame frame;
-    /* `number` is that of the last record read, `chain` the chain (a hash) of the record after
-     * it */
+    /* number: the number of the last record read; chain: the chain (a hash) that the record after
+     * it must have */
     uint64_t number, chain;
     sqlite3_stmt *records, *parts, *base;
     int64_t snapshot;

@@ -265,7 +265,7 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
         return outcome;
     }
     if (head == NULL || head->row.card.record + 1 != entry->number) {
-        /* the number of the record does not follow that of the last record on the disk */
+        /* the number of the record must follow that of the last record on the disk, but does not */
         return ST_SQL_FAILED;
     }
     uint64_t chain = st_frame_seal(entry->frame, entry->size, head->row.chain);

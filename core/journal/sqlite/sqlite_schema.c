@@ -247,8 +247,8 @@ static const char *const texts[STATEMENTS] = {
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
-/* Returns the connection `db` with the statements of this file in place of the connection's own
- * statements. */
+/* Returns a copy of the connection `db` with the statements of this file in place of the statements
+ * of `db`. */
 static st_db borrowed(const st_db *db)
 {
     return (st_db){.handle = db->handle, .texts = texts};

@@ -24,15 +24,16 @@ typedef struct st_identity {
     char made_by[ST_RELEASE];
 } st_identity;
 
-/* How far the database has come: its last commit, the position of its last record, and its number
- * of meshes. This row is written with each commit. */
+/* The row that each commit updates: the number of the last commit, the position of the last record,
+ * and the number of meshes. */
 typedef struct st_progress {
     uint64_t commits, position, meshes;
 } st_progress;
 
-/* The row of a mesh. `card` has the mesh's facts; `origin` is the random number with which the
- * chain of hashes of its records began (record_bytes.h), `chain` is the hash that the next record
- * of the mesh must have, and `base` is the number of the record from which the mesh is loaded. */
+/* The row of a mesh. `card` is the mesh's short description (name, counts and so on); `origin` is
+ * the random number with which the chain of hashes of its records began (record_bytes.h), `chain`
+ * is the hash that the next record of the mesh must have, and `base` is the number of the record
+ * from which the mesh is loaded. */
 typedef struct st_mesh_row {
     int64_t key;
     st_card card;
@@ -53,7 +54,7 @@ typedef struct st_snapshot_row {
 /* The kinds of rows in the table `purge`, which lists what is to be deleted. */
 typedef enum st_purge_kind {
     ST_PURGE_MESH = 1,    /* the records of a mesh that was removed */
-    ST_PURGE_RECORDS = 2, /* the records of a mesh before number `before` */
+    ST_PURGE_RECORDS = 2, /* the records of a mesh whose number is below `before` */
     ST_PURGE_PARTS = 3    /* the parts of a snapshot */
 } st_purge_kind;
 
@@ -70,7 +71,7 @@ typedef struct st_kept_row {
     uint64_t digest[2];
     double time;
     uint64_t incarnation, revision, metadata, position;
-    bool made; /* the request with the key created the mesh, so its answer was 201 */
+    bool made; /* true if the request with the key created the mesh, so that its answer was 201 */
 } st_kept_row;
 
 /* Memory for the texts of the row of a stored Idempotency-Key. */
@@ -92,7 +93,7 @@ uint32_t st_job_sum(const st_job *job);
 enum { ST_PART_HEAD = 5 };
 uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size);
 
-/* --- rows that are read: the columns in the order that the functions expect --- */
+/* --- reading rows: lists of columns, in the order that the functions below expect --- */
 
 #define ST_MESH_COLUMNS                                                                          \
     "key, id, name, incarnation, origin, metadata, revision, record, chain, created, modified, " \
@@ -120,9 +121,10 @@ bool st_job_read(sqlite3_stmt *statement, st_job *out);
 
 /* Makes the tables, in one transaction. */
 st_sql st_schema_make(st_db *db, const st_identity *identity);
-/* Upgrades tables of an older version to this version, in one transaction. */
+/* Upgrades tables of an older version to ST_SCHEMA_VERSION, in one transaction. */
 st_sql st_schema_raise(st_db *db);
-/* Compares the SQL texts by which the tables were made with the texts of the version.
+/* Compares the SQL texts by which the tables were made with the texts that their version should
+ * have.
  * Returns ST_SQL_DAMAGED if they differ. */
 st_sql st_schema_check(st_db *db);
 /* Reads the identity of the store.

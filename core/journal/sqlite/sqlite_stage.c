@@ -10,7 +10,8 @@
 
 /* --- the thread that stages --- */
 
-/* The data being staged (written in advance): a content, or the rest of an encoded edit. */
+/* The data being staged (written to the disk in advance): a whole content, or those bytes of an
+ * encoded edit that are not staged yet. */
 typedef struct source {
     he_stored_writer *content;
     const unsigned char *edit;
@@ -220,8 +221,8 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
 /* The record after which the mesh had the content of a stage. If that record was lost, another
  * record may have its number now. */
 typedef struct staged_record {
-    bool same; /* whether the record on the disk is the one from which the stage was made */
-    /* `chain` is the chain of the record (a hash, record_bytes.h), `next` that of the record after
+    bool same; /* true if the record on the disk is the one from which the stage was made */
+    /* chain: the chain of the record (a hash, record_bytes.h); next: the chain of the record after
      * it */
     uint64_t chain, next;
 } staged_record;

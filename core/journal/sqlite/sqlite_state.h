@@ -37,9 +37,10 @@ enum { ST_LOG_PAGE_BYTES = 4096 };
 
 typedef enum st_item_kind {
     ST_ITEM_ROOM,    /* a group of records */
-    ST_ITEM_REBASE,  /* a stage is to become a base, from which its mesh is loaded */
-    ST_ITEM_UNSTAGE, /* a stage (content written in advance) is to be deleted */
-    ST_ITEM_CONDEMN  /* the card (short description) of a mesh is to be marked as damaged */
+    ST_ITEM_REBASE,  /* the item asks that a stage becomes a base, from which its mesh is loaded */
+    ST_ITEM_UNSTAGE, /* the item asks that a stage (content written in advance) is deleted */
+    /* The item asks that the card (short description) of a mesh is marked as damaged. */
+    ST_ITEM_CONDEMN
 } st_item_kind;
 
 typedef struct st_item {
@@ -58,7 +59,7 @@ typedef struct st_queued {
     bool staged_edit;
 } st_queued;
 
-/* What a room (memory of a group of records, or of a note) says about its job, the member `job`. */
+/* What the member `job` of a room (memory of a group of records, or of a note) means. */
 typedef enum st_job_word {
     ST_JOB_UNNAMED,
     ST_JOB_WORK,  /* the room has the records of the changes that the job made */
@@ -72,7 +73,7 @@ typedef struct st_sqlite_room {
     st_room room; /* the members that callers of the journal see */
     st_item item;
     uint64_t generation; /* value of `generation` of the journal when the room was reserved */
-    size_t charge;       /* bytes by which the room counts against the limit of the queue */
+    size_t charge;       /* how many bytes the room counts against the limit of the queue */
     bool freeing;
     /* `most` is how many records fit into the room, `count` how many it has so far */
     size_t most, count;
@@ -84,15 +85,15 @@ typedef struct st_sqlite_room {
     st_kept_row key; /* the Idempotency-Key, whose texts are in `key_text` and `key_holder` */
     char key_text[ST_KEY_TEXT + 1], key_holder[ST_KEY_HOLDER + 1];
     st_job_word job_word;
-    /* The job, whose texts and body are in the room's bytes. If job_word is ST_JOB_WORK, the job
-     * has only the facts that the records state. */
+    /* The job, whose texts and body are in the room's bytes. If job_word is ST_JOB_WORK, only those
+     * members are set that follow from the room's records. */
     st_job job;
     /* Space for the encoded records without bodies: ST_FRAME_HEAD bytes for each record. */
     unsigned char *heads;
     st_queued entries[];
 } st_sqlite_room;
 
-/* Damage that was found while a mesh was loaded from the record `base`. */
+/* A finding: damage that was found while a mesh was loaded from the record `base`. */
 typedef struct st_finding {
     uint64_t incarnation, base;
     char damage[ST_DAMAGE];
@@ -116,16 +117,16 @@ typedef struct st_slice {
 struct st_stage {
     st_item item;
     int64_t key; /* key of the stage's row in the table of snapshots; 0 before that row exists */
-    /* number of all parts of the stage; `written` is how many of them are written */
+    /* parts: number of all parts of the stage; written: how many of them are on the disk */
     uint64_t parts;
     uint64_t written;
     /* the slice (group of parts) that is being filled or written; NULL after the last slice */
     st_slice *slice;
-    /* How many parts of the slice the present transaction writes. In this transaction the row of
+    /* How many parts of the slice are written by the transaction in progress, in which the row of
      * the stage has the key `new_key`. */
     size_t writing;
     int64_t new_key;
-    bool waits; /* the slice is full and waits for the commit thread */
+    bool waits; /* true if the slice is full and waits for the commit thread */
     st_status status;
     st_stage *next; /* the next stage whose slice waits */
     /* The members from `incarnation` on are set only if the item is a rebase, which makes a staged
@@ -141,10 +142,11 @@ struct st_stage {
 /* The cached row of a mesh, so that the row need not be read for each record. */
 typedef struct st_head {
     st_mesh_row row; /* the row; if its key is 0, this slot of the cache is empty */
-    bool dirty;      /* the row on the disk is older than this cached row */
-    bool made;       /* the mesh has no row on the disk yet */
+    bool dirty;      /* true if the row on the disk is older than this cached row */
+    bool made;       /* true if the mesh has no row on the disk yet */
     bool listed;
-    /* list of the heads to be written: all dirty ones, and some that are not */
+    /* next head in the list of heads to be written; the list has all dirty heads, and some that are
+     * no longer dirty */
     struct st_head *next;
 } st_head;
 
@@ -202,19 +204,19 @@ struct st_sqlite {
     /* --- shared by threads, guarded by `lock` --- */
     pthread_mutex_t lock;
     pthread_cond_t work; /* signalled when the commit thread has work */
-    /* signalled when the commit thread has ended something that threads wait for */
+    /* signalled when the commit thread has done something that other threads wait for */
     pthread_cond_t moved;
     bool closing;
     st_write_mode mode;
-    uint64_t fulls; /* how often the disk was full */
+    uint64_t fulls; /* how often the disk became full */
     /* Number of damaged rows of the table `kept`, counted each time one is found. */
     uint64_t damaged_keys;
     char refusal[ST_HEALTH_TEXT]; /* the system's message about the failure, if the disk failed */
-    /* records or notes were lost, and not all losses are reported to the listener yet */
+    /* true if records or notes were lost, and not all losses are reported to the listener yet */
     bool losing;
     uint64_t generation;
-    /* `rooms` is how many rooms are reserved, `old_rooms` how many of these were reserved in an
-     * older generation, before a loss. */
+    /* rooms: how many rooms are reserved; old_rooms: how many of these were reserved before the
+     * last loss, in an older generation. */
     size_t rooms, old_rooms;
     uint64_t charged;      /* bytes of all rooms that are reserved or queued */
     st_item *first, **end; /* the queue */
@@ -225,8 +227,9 @@ struct st_sqlite {
     uint64_t meshes;  /* number of meshes, creations and removals in the queue included */
     uint64_t lost;    /* number of records and notes that were lost */
     unsigned waiting; /* number of threads that wait for the condition `moved` */
-    bool idle;        /* the commit thread waits for work */
-    bool log_is_long; /* loads wait until the write-ahead log was copied into the database */
+    bool idle;        /* true if the commit thread waits for work */
+    /* True if loads must wait until the write-ahead log was copied into the database. */
+    bool log_is_long;
     st_load_slot loads[ST_LOADS];
     unsigned loads_taken;
     st_finding findings[ST_FINDINGS];
@@ -235,7 +238,7 @@ struct st_sqlite {
     /* Measurements that the commit thread writes and any thread may read. */
     st_histogram syncs, commits, groups, checkpoints;
 
-    pthread_mutex_t telling; /* held while the listener is called */
+    pthread_mutex_t telling; /* a mutex that is locked while the listener is called */
     bool is_heard;
     st_journal_listener listener;
 
@@ -246,7 +249,7 @@ struct st_sqlite {
     /* --- used by the commit thread only --- */
     st_db db;
     st_heads heads;
-    /* number of commits, newest position and number of meshes at the last commit */
+    /* the row of the last commit: number of commits, newest position and number of meshes */
     st_progress progress;
     /* `last_mesh` and `last_snapshot` are the highest keys of rows in the tables of meshes and
      * snapshots */
@@ -254,16 +257,18 @@ struct st_sqlite {
     /* The number of pages of the write-ahead log after the last commit. Other threads may read
      * it. */
     _Atomic uint64_t log_pages;
-    /* Number of pages of the write-ahead log at the last checkpoint, which may not have copied all
-     * of them; 0 once the log was overwritten from the start. */
+    /* Number of pages of the write-ahead log at the last checkpoint, even if that did not copy all
+     * of them; 0 once the log is written from its start again. */
     uint64_t log_tried;
-    uint64_t keys; /* highest possible number of rows of the table `kept` (Idempotency-Keys) now */
-    bool purged;   /* nothing is left to be purged (deleted) */
+    /* An upper bound of the present number of rows of the table `kept` (Idempotency-Keys). */
+    uint64_t keys;
+    bool purged; /* true if nothing is left to be purged (deleted) */
     /* `purging` is the row of the table `purge` that is worked on, `stuck` the row whose deletions
-     * met damage; a kind of 0 means that there is no such row. */
+     * met damaged rows; a kind of 0 means that there is no such row. */
     st_purge_row purging, stuck;
-    bool purge_damaged; /* the last slice of deletions (purge) met damage */
-    bool purge_ended;   /* the table `purge` itself is damaged */
+    bool purge_damaged; /* true if the last slice of deletions (purge) met damaged rows */
+    /* True if the table `purge` itself is damaged, so that nothing more is purged. */
+    bool purge_ended;
 };
 
 /* --- sqlite_queue.c --- */
@@ -373,11 +378,11 @@ st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t b
 st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inline);
 /* Purges everything that belongs to a mesh that was removed. */
 st_sql st_purge_mesh(st_sqlite *self, int64_t mesh);
-/* Deletes about `bytes` bytes of what the table `purge` lists. Sets *done when nothing is left to
- * be deleted. */
+/* Deletes about `bytes` bytes of rows that the table `purge` lists. Sets *done when nothing is left
+ * to be deleted. */
 st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done);
-/* Must be called after a transaction that met damage. Returns true if the damage was in the rows
- * being purged; the next slice then skips them. */
+/* Must be called after a transaction that met damaged rows. Returns true if these were rows to be
+ * purged; the next slice then skips them. */
 bool st_purge_gives_up(st_sqlite *self);
 /* Deletes contents that an earlier process was writing in advance when it ended. */
 st_sql st_purge_dead_stages(st_sqlite *self);
@@ -420,8 +425,8 @@ st_sqlite *st_sqlite_new(const st_sqlite_options *options);
 void st_sqlite_free(st_sqlite *self);
 /* Returns a journal that consists of the state `self` and the functions of this folder. */
 st_journal st_sqlite_filled(st_sqlite *self);
-/* Checks that the database is a store of a version that `release` knows. If not, `message` is a
- * sentence about `path`. *empty becomes true if the database has no tables yet. */
+/* Checks that the database is a store of a version that the program `release` knows. If not, writes
+ * a sentence about `path` to `message`. Sets *empty to true if the database has no tables yet. */
 bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
                              char message[ST_SQLITE_MESSAGE]);
 /* Writes a sentence about a statement that failed on the database at `path` to `message`. Returns

@@ -12,8 +12,8 @@
  * meshes beyond it stay.
  *
  * At the start, and after changes were lost, the counts are read from the journal. The lock of the
- * holders is taken after those of a mesh and of the table of meshes. A thread that holds it reads
- * nothing from the disk but the cards in the journal. */
+ * holders is taken after those of a mesh and of the table of meshes. A thread that holds this lock
+ * reads nothing from the disk but the cards in the journal. */
 #ifndef HE_STORE_HOLDERS_H
 #define HE_STORE_HOLDERS_H
 
@@ -52,7 +52,7 @@ typedef struct st_holding {
     uint64_t bytes;
 } st_holding;
 
-/* Replaces what a mesh counted before, *gone, by what the mesh counts now, *come.
+/* Replaces what a mesh counted for its holder before, *gone, by what the mesh counts now, *come.
  * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */
 st_status st_holders_move(st_holders *holders, const st_holding *gone, const st_holding *come);
 /* Replaces what a mesh counts like st_holders_move, but ignores the limits, because the change of

@@ -32,7 +32,8 @@ st_status st_book(const st_journal *journal, const st_room_need *need, st_bookin
 st_status st_book_edit(const st_journal *journal, const he_delta *delta, const he_mesh *after,
                        bool may_wait, st_booking *out);
 /* Books space in the journal for `records` records, of which the first has the whole content. If
- * the content was written to the disk in advance, `stage` is not NULL and is taken on success. */
+ * the content was written to the disk in advance, `stage` is not NULL, and on success the booking
+ * owns it. */
 st_status st_book_content(const st_journal *journal, const he_mesh *content, st_stage *stage,
                           size_t records, st_booking *out);
 /* Writes a content that is too large for the body of a record to the disk; may wait for the disk.
@@ -41,7 +42,7 @@ st_status st_book_stage(const st_journal *journal, const he_mesh *content, st_st
 /* Fills in the body and the stage (data written in advance) of the first record of the group from
  * the booking. */
 void st_booking_fill(const st_booking *booking, st_record *first);
-/* Gives the booked space back; none of the records may have been published. */
+/* Gives the booked space back; it must not be called once the records were published. */
 void st_booking_leave(const st_journal *journal, st_booking *booking);
 
 #endif

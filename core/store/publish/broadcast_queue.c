@@ -11,7 +11,7 @@ struct st_message {
      * queue's lock */
     uint32_t uses;
     st_place place;
-    uint64_t made; /* when the message was added, by st_clock_micros */
+    uint64_t made; /* time (st_clock_micros) at which the message was added */
     size_t length;
     char bytes[];
 };

@@ -44,11 +44,11 @@ typedef struct st_message st_message;
 typedef struct st_listener {
     struct st_queue *queue; /* NULL: not listening */
     uint64_t number;        /* number of the message that the listener read last, or is reading */
-    st_message *message;    /* the message being read; NULL: none */
+    st_message *message;    /* the message that the listener is reading; NULL: none */
     size_t sent;            /* bytes of `message` that were read */
     void (*wake)(void *context);
     void *context;
-    bool waiting; /* the listener is in the list of listeners to wake */
+    bool waiting; /* true if the listener is in the list of listeners to wake */
     struct st_listener *next, *previous;
 } st_listener;
 
@@ -73,15 +73,17 @@ typedef struct st_queue {
     /* number of the last message that was dropped; the ring holds all later messages */
     uint64_t floor_number;
     uint64_t allowed; /* messages with stamps up to this one may be read */
-    bool ended;       /* the queue has ended: no message will follow the newest one */
-    /* messages with stamps above `allowed` will never be allowed, because their changes are lost */
+    bool ended;       /* true if no message will follow the newest one */
+    /* true if messages with stamps above `allowed` will never be allowed, because their changes are
+     * lost */
     bool lost;
     size_t listeners;
-    uint64_t left; /* when the last listener left; 0: the queue never had a listener */
+    uint64_t left; /* time when the last listener left; 0: the queue never had a listener */
     st_listener *waiting;
 } st_queue;
 
-/* Makes an empty queue, as if its newest message were at `place`. `counts` must outlive the
+/* Makes an empty queue; the next message follows the place (stamp and key) `place`. `counts` must
+ * outlive the
  * queue. */
 void st_queue_init(st_queue *queue, st_place place, st_queue_counts *counts);
 /* Frees the messages of the queue, which may have no listener. */
@@ -91,7 +93,7 @@ void st_queue_clear(st_queue *queue);
  * it returns false, no message need be made. */
 bool st_queue_is_followed(st_queue *queue);
 /* Adds a message; its bytes are copied. If the bytes are NULL or memory is out, every listener
- * falls behind, because it cannot read the message of this place. */
+ * falls behind, because the message is missing from the queue. */
 void st_queue_add(st_queue *queue, st_place place, const char *bytes, size_t length);
 /* Adds a message that gets the place (stamp and key) of the newest message. Does nothing after
  * st_queue_end. */
@@ -101,8 +103,8 @@ uint64_t st_queue_newest(st_queue *queue);
 /* Allows listeners to read messages with stamps up to `stamp`, and wakes the listeners that wait
  * for these messages. */
 void st_queue_allow(st_queue *queue, uint64_t stamp);
-/* Declares that messages with stamps that are not allowed by now will never be allowed, because
- * their changes are lost. */
+/* Declares that messages whose stamps are not allowed yet will never be allowed, because their
+ * changes are lost. */
 void st_queue_lose(st_queue *queue);
 /* Declares that no message will be added to the queue any more. */
 void st_queue_end(st_queue *queue);
@@ -112,8 +114,8 @@ void st_queue_shed(st_queue *queue);
 /* Adds a listener, which begins after the newest message, even if listeners may not read that
  * message yet. Returns false if the queue has `most` listeners already. */
 bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most);
-/* Moves a listener back, so that it next reads the message after the first one with this key.
- * Returns false if a message that it should read was dropped. */
+/* Moves a listener back, so that the next message that it reads is the one after the first message
+ * with this key. Returns false if a message that it should read was dropped. */
 bool st_queue_rewind(st_listener *listener, uint64_t key);
 /* Sets the function that is called when a listener that got ST_QUEUE_WAIT can read on. The caller
  * must do this before the first read. */

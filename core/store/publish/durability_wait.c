@@ -19,8 +19,8 @@ struct st_waits {
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
-    /* The losses for which memory was out when they were to be listed, merged into one loss; there
-     * are none if `from` is above `to`. */
+    /* The losses for which there was no memory to list them, merged into one loss; there are none
+     * if `from` is above `to`. */
     st_loss rest;
     bool stopped;
 };
@@ -77,9 +77,9 @@ static bool concerns(const st_loss *loss, const st_shown *shown)
 {
     bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
                 loss->incarnation == shown->incarnation;
-    /* If all records that the answer shows were durable when it was begun (position <= since), none
-     * of these records can be lost. `since` may be above `position`: the journal may report a
-     * record as durable before its writer calls st_waits_appended. */
+    /* If all records that the answer shows were durable when the answer was begun (position <=
+     * since), none of these records can be lost. `since` may be above `position`: the journal may
+     * report a record as durable before its writer calls st_waits_appended. */
     return same && shown->since < shown->position && loss->from <= shown->position &&
            loss->to > shown->since;
 }

@@ -7,7 +7,7 @@
  *     durable   every record up to the position is durable: the answer may be sent
  *     lost      a record that the answer shows will never be durable; `reason` says why
  *     stopped   the server stops before it is known whether the records become durable
- * A lost position stays lost: a wait that is added after the loss ends as lost at once.
+ * A lost record stays lost: a wait for it that is added after the loss ends as lost at once.
  *
  * Waits are in a heap, the oldest position on top: when more records become durable, only the waits
  * that end are taken from the top, and no other waits are visited. */
@@ -23,8 +23,8 @@ typedef struct st_waits st_waits;
 /* The records that an answer to a client shows; if one of them is lost, the answer is wrong. */
 typedef struct st_shown {
     uint64_t position; /* position of the newest record that the answer shows; 0: it shows none */
-    /* The records up to this position were durable when the answer was begun, so a later loss of
-     * records does not concern them. */
+    /* The position up to which all records were durable when the answer was begun, so that a later
+     * loss does not concern them. */
     uint64_t since;
     /* incarnation of the mesh whose records the answer shows; 0: records of any mesh */
     uint64_t incarnation;
@@ -53,7 +53,7 @@ void st_waits_free(st_waits *waits); /* takes NULL */
 void st_waits_moved(st_waits *waits, uint64_t position);
 void st_waits_lose(st_waits *waits, const st_loss *loss);
 
-/* Notes the position of a record that was appended to the journal. The caller must call this
+/* Remembers the position of a record that was appended to the journal. The caller must call this
  * function before other threads can see the record. */
 void st_waits_appended(st_waits *waits, uint64_t position);
 /* Returns the position of the newest record in the journal, for answers that show the records of
@@ -74,9 +74,9 @@ bool st_waits_block(st_waits *waits, uint64_t position, uint64_t until);
 /* Adds a wait to the set. Returns false if the wait is over already: wait->end is then filled in,
  * and wait->resume is not called. */
 bool st_waits_add(st_waits *waits, st_wait *wait);
-/* Ends all waits as stopped, and every wait that is added later. When the call returns, no wait is
- * being resumed by another thread, so the caller may free what the waits belong to. No function
- * `resume` of a wait may call this function. */
+/* Ends all present and later waits as stopped. When the call returns, no wait is being resumed by
+ * another thread, so the caller may free what the waits belong to. No function `resume` of a wait
+ * may call this function. */
 void st_waits_stop(st_waits *waits);
 
 #endif

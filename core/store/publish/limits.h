@@ -1,4 +1,4 @@
-/* limits.h - maxima of the store's buffers that clients fill. */
+/* limits.h - the largest sizes that those buffers of the store may have which clients fill. */
 #ifndef HE_STORE_LIMITS_H
 #define HE_STORE_LIMITS_H
 

@@ -1,8 +1,8 @@
 /* store_counts.h - the counters of a store, for monitoring (st_store_measure).
  *
- * Counters are updated without a lock. The memory of all meshes is a sum that is never computed by
- * visiting the meshes: each mesh remembers which size it added last, adds the difference when its
- * size changes (st_mesh_weigh), and subtracts its size when it is freed. */
+ * Counters are updated without a lock. The memory of all meshes is a sum that is computed without
+ * visiting the meshes: each mesh remembers the size that it has in the sum; when its size changes
+ * (st_mesh_weigh) the difference is added, and when it is freed its size is subtracted. */
 #ifndef HE_STORE_STORE_COUNTS_H
 #define HE_STORE_STORE_COUNTS_H
 
@@ -14,7 +14,7 @@
 /* The outcome of loading a mesh from the disk. */
 typedef enum st_loaded {
     ST_LOADED_WHOLE,
-    ST_LOADED_NOTHING, /* there is no mesh with the id */
+    ST_LOADED_NOTHING, /* no mesh with the id exists */
     ST_LOADED_DAMAGED, /* it cannot be read */
     ST_LOADED_FAILED,  /* the mesh could not be loaded: memory was out, or the disk failed */
     ST_LOADED_COUNT
@@ -22,7 +22,7 @@ typedef enum st_loaded {
 
 /* The purposes for which a mesh uses memory, which are counted separately. */
 typedef enum st_weight {
-    ST_WEIGHT_MESHES, /* counts the meshes: 1 for each mesh in memory */
+    ST_WEIGHT_MESHES, /* not bytes, but the number of meshes: 1 for each mesh in memory */
     ST_WEIGHT_VERTICES,
     ST_WEIGHT_EDGES,
     ST_WEIGHT_FACES,

@@ -10,7 +10,8 @@
 enum {
     SRV_MAX_EMPTY_LINES = 8,
     SRV_MAX_METHOD = 16,
-    SRV_MAX_PARAMETERS = 64, /* most parameters of a query; libmicrohttpd needs memory for each */
+    /* The most parameters that a query may have; libmicrohttpd needs memory for each. */
+    SRV_MAX_PARAMETERS = 64,
     SRV_MAX_FIELDS = 100,
     SRV_MAX_HEAD = 16 * 1024,
     SRV_MAX_CHUNK_DIGITS = 16,

@@ -28,8 +28,9 @@ typedef struct srv_head {
 typedef struct srv_framing {
     const char *path; /* the path: points into the target, and ends at '?' or the target's end */
     size_t path_length;
-    const char *query;     /* the query: points into the target, or to "" if there is no query */
-    const char *authority; /* host and port in a target like http://HOST/PATH; NULL if none */
+    const char *query; /* the query: points into the target, or to "" if there is no query */
+    /* Host and port in a target like http://HOST/PATH; NULL if the target names none. */
+    const char *authority;
     size_t authority_length;
     const char *host; /* the value of the header Host, NULL if absent */
     bool chunked;
@@ -37,8 +38,9 @@ typedef struct srv_framing {
     uint64_t length;
 } srv_framing;
 
-/* Finds path, query and body of a request; `secure`: it came over TLS, so that the target may be
- * https://authority/path?query, too. Returns false with bad_path if the target is refused. */
+/* Finds path, query and body of a request. If `secure` is true, it came over TLS, and its target
+ * may be https://authority/path?query, too. Returns false with bad_path if the target is
+ * refused. */
 bool srv_framing_read(const srv_head *head, bool secure, srv_framing *out, api_problem *problem);
 /* Returns the first header line with this name, ignoring case, or NULL if there is none. */
 const srv_field *srv_head_find(const srv_head *head, const char *name);

@@ -78,7 +78,8 @@ typedef struct srv_syntax {
     uint8_t fault; /* an srv_fault */
     /* The header that is being read, if the values of this header are checked; else OTHER. */
     uint8_t field;
-    uint8_t phase; /* whether the position is before, within or after the text of the value */
+    /* Says whether the state machine is before, within or after the text of a header's value. */
+    uint8_t phase;
     /* Bit set of those headers that may occur only once and have occurred in this request. */
     uint8_t seen;
     uint8_t text_length;
@@ -90,12 +91,12 @@ typedef struct srv_syntax {
     uint16_t method, target; /* lengths of the method and of the target, as far as they were read */
     uint16_t extension;      /* bytes of the extensions of the present chunk */
     uint32_t extensions;     /* bytes of the extensions of all chunks of this request */
-    uint32_t head, limit;    /* bytes of headers read so far, and their maximum */
-    /* How many bytes of the body or chunk are still to come; while the size of a chunk is read, the
-     * size so far. */
+    uint32_t head, limit;    /* head: bytes of headers read so far; limit: their maximum */
+    /* How many bytes of the body or chunk are still to come. While the size of a chunk is read: the
+     * value of the digits read so far. */
     uint64_t left;
     uint64_t requests; /* number of requests begun on the connection */
-    /* After a fault: the bytes by rule S3 that are still to be passed on. */
+    /* After a fault: those bytes which end the request (rule S3) that are still to be passed on. */
     const char *ending;
     char text[SRV_SYNTAX_TEXT]; /* a header name or transfer coding, in lower case */
 } srv_syntax;
@@ -105,8 +106,8 @@ typedef struct srv_syntax {
  * if there is a fault, after which the buffer contains bytes of S3. Must not be called after a
  * fault. */
 size_t srv_syntax_check(srv_syntax *s, char *bytes, size_t got, size_t size);
-/* To be called after a fault: writes those bytes of S3 into `bytes` that did not fit before, and
- * returns their number, which is 0 when all have been written. */
+/* Must be called after a fault: writes into `bytes` those bytes that end the request (rule S3) and
+ * did not fit before. Returns their number, which is 0 when all have been written. */
 size_t srv_syntax_end(srv_syntax *s, char *bytes, size_t size);
 static inline bool srv_syntax_is_faulty(const srv_syntax *s)
 {
