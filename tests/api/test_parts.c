@@ -273,7 +273,7 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     several packed = pack_as(BOUNDARY, files);
     api_bench *b = bench_new();
     const char *const plain[] = {"Content-Type", "multipart/form-data", NULL};
-    expect_refused(400, "bad_header", "needs one boundary of 1 to 70 characters",
+    expect_refused(400, "bad_header", "needs exactly one parameter boundary, of 1 to 70 characters",
                    bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", plain, packed.bytes,
                                                         packed.length}));
     const char *const mixed[] = {"Content-Type", "multipart/mixed; boundary=xyz", NULL};

@@ -472,7 +472,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
          "record 1 belongs to another mesh"},
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 2 AND number = 3) "
          "WHERE mesh = 2 AND number = 4",
-         "record 4 has the number 3"},
+         "record 4 the store has a record with the number 3"},
         {"UPDATE record SET bytes = x'00' WHERE mesh = 2 AND number = 2", "record 2, byte"},
         {"DELETE FROM part WHERE part = 0", "part 0 of the content after record 7"},
         {"DELETE FROM part WHERE part = 2", "part 2 of the content after record 7 has"},

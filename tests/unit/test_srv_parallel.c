@@ -149,7 +149,7 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
 
 /* The meshes of the tests are so large that they are worked on in many parts. If `shuffled` is set,
  * vertices and faces are in random order. */
-enum { SIDE = 140 };
+enum { SIDE = 220 };
 
 static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
 {

@@ -230,7 +230,7 @@ test('? shows the keys', async (t) => {
     await press(page, '?');
     const help = page.getByRole('dialog');
     await help.waitFor();
-    for (const text of ['Next half-edge', 'Undo', 'Frame the selection']) {
+    for (const text of ['Next half-edge', 'Undo', 'Show the selection']) {
         assert.ok(await help.getByText(text).isVisible(), text);
     }
     await checkAccessible(page, 'help');
