@@ -77,9 +77,9 @@ typedef struct he_touched {
     he_ids moved;           /* vertices whose position changed */
 } he_touched;
 
-/* Adds the elements that a delta touched, whether it was applied forwards or backwards. `m` is the
- * mesh after the last of the deltas that are added.
- * Returns HE_UNSUPPORTED if the delta replaced the content.
+/* Adds to the lists the elements that a delta touched, whether it was applied forwards or
+ * backwards. `m` is the mesh after the last of the deltas that are added.
+ * Returns HE_UNSUPPORTED if the delta replaced all data of the mesh at once.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_touched_add(he_touched *touched, const he_mesh *m, const he_delta *delta,
                                       he_error *err);
