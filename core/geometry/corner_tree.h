@@ -16,8 +16,8 @@
  * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: testing
  * all of them takes less time than building and searching the tree (`make bench-space` measures
  * both). A search of the list finds the corner that comes first along the Z curve, as a search of
- * the tree would. Only a list that began with at most HE_CORNER_UNSORTED corners is not sorted: a
- * search finds the first corner in the order of that list. */
+ * the tree would. Only in a list that began with at most HE_CORNER_UNSORTED corners a search finds
+ * the first corner in the order of the list instead. */
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
@@ -26,7 +26,8 @@
 enum {
     HE_CORNER_LEAF = 6,
     HE_CORNER_FEW = 128, /* up to this many corners are kept in a list instead of a tree */
-    /* a list that began with up to this many corners is not sorted along the Z curve */
+    /* in a list that began with up to this many corners, a search finds the first one in the order
+     * of the list */
     HE_CORNER_UNSORTED = 16
 };
 

@@ -12,8 +12,8 @@ enum { HE_SETTLE_LINKS = 1 };
 /* Makes the half-edge that vertex v stores satisfy I8: it must leave v, and be a boundary half-edge
  * if v has any. `leaving` is any half-edge that leaves v. A stored half-edge that satisfies I8
  * stays. An edit calls this for each vertex it changed, once all links, origins and faces at v are
- * final. The function walks around v only if the stored half-edge is not a boundary half-edge
- * already. */
+ * final. The function walks around v unless the stored half-edge is a boundary half-edge that
+ * leaves v. */
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving);
 
 /* Returns the end of a fan. `in` is a boundary half-edge, with which one of the fans at its target

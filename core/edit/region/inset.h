@@ -12,8 +12,8 @@ enum { HE_INSET_STEPS = 1 << 22 };
  * rim goes this fraction of the way to the mean of its face's corners. In a region, the mean is
  * computed for each of its faces at the corner, and the corner goes towards the mean of these
  * points. With factor 0 the sides of the rim move in parallel by `distance`, within the planes of
- * their faces; a corner so sharp that it would move farther than four times `distance` moves only
- * that far. */
+ * their faces; a corner so sharp that it would have to move farther than four times `distance`
+ * moves less far than that. */
 typedef struct he_inset_width {
     double factor, distance;
 } he_inset_width;

@@ -18,8 +18,8 @@ typedef struct he_normals {
     he_mesh *m;
     const uint32_t *vertices; /* the vertices that the map moves; NULL: all vertices */
     size_t count;
-    /* A bit for each vertex: set if the vertex is in `vertices`; NULL unless faces have a column
-     * `normal`, since a face's normal changes only if all its corners are mapped. */
+    /* A bit for each vertex: set if the vertex is in `vertices`; NULL if `vertices` is NULL or no
+     * normals change. */
     uint64_t *chosen;
     double k[9];
     bool turns;
