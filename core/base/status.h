@@ -86,8 +86,7 @@ typedef enum he_status {
         HE_STATUS_COUNT
 } he_status;
 
-/* Kinds of elements that an error, an attribute or a label can belong to; HE_MESH_KIND stands for
- * the mesh itself. */
+/* The kinds of elements; HE_MESH_KIND stands for the mesh itself. */
 typedef enum he_kind {
     HE_VERTEX,
     HE_HALFEDGE,

@@ -37,8 +37,7 @@ enum {
     HE_RANGE = 8,     /* min and max apply */
     HE_DERIVED = 16,  /* a number or flag whose default is computed from the mesh, as `doc` says */
     /* If a request gives this parameter, even an HE_OP_LOCAL operation takes time linear in the
-     * whole mesh.
-     * */
+     * whole mesh. */
     HE_COSTS_MESH = 32,
     HE_WHOLE = 128, /* a number with a range; only whole numbers are allowed */
     /* The operation also visits neighbours of the elements: all corners of the faces around a
