@@ -280,8 +280,8 @@ static he_decimate_stop find_stop(const he_decimation *d, uint32_t faces)
     return HE_STOP_EXHAUSTED;
 }
 
-/* Returns the first aligned address for nodes in memory that was allocated with room for one more
- * node. */
+/* Returns the first address for nodes that is aligned to a cache line, in a block that was
+ * allocated with room for one more node than needed. */
 static he_node *align(void *memory)
 {
     uintptr_t over = (uintptr_t)memory % HE_CACHE_LINE;

@@ -1,12 +1,13 @@
 /* decimate.h - simplifies a mesh by collapsing the edges that change the shape least.
  *
- * Edges are collapsed (edit/local/collapse.h), each time one of the cheapest by the quadrics of
- * Garland and Heckbert, "Surface simplification using quadric error metrics", 1997. A vertex has a
- * quadric (quadric.h): the sum of the squared distances to the planes of the faces about it, each
- * weighed by the face's area. An edge costs the least value of the sum of its ends' quadrics; the
- * vertex that stays moves to the point of that value, and keeps the sum. If many points are equally
- * good, as in flat regions or along straight edges, a point near the middle of the edge is taken;
- * if an end is better still, it is taken as it is.
+ * The decimation collapses edges one by one (edit/local/collapse.h), each time an edge whose cost
+ * is among the lowest. Costs come from the quadrics of Garland and Heckbert, "Surface
+ * simplification using quadric error metrics", 1997. A vertex has a quadric (quadric.h): the sum of
+ * the squared distances to the planes of the faces about it, each weighed by the face's area. The
+ * cost of an edge is the least value that the sum of the quadrics of its two ends has at any point;
+ * the vertex that stays moves to that point, and the sum becomes its quadric. If many points are
+ * equally good, as in flat regions or along straight edges, a point near the middle of the edge is
+ * taken; if the sum is less at the position of one end, the vertex that stays gets that position.
  *
  * Boundary edges and `feature` edges add planes that contain the edge and are perpendicular to its
  * faces, each weighed by `boundary_weight` times the square of the edge's length.
@@ -17,15 +18,16 @@
  * the surfaces. Errors below 1e-12 of the size of the mesh count as 0.
  *
  * ORDER. Edges are collapsed by rising product of cost and error; products that differ by less than
- * a quarter may come in either order. With the cost alone, the largest distance of the surfaces was
- * a tenth larger, and the mean no smaller, measured on a bumpy torus reduced from a million faces
- * to a tenth of them.
+ * a quarter may come in either order. When edges were ordered by cost alone, the largest distance
+ * between the surfaces was a tenth larger, and the mean no smaller, measured on a bumpy torus
+ * reduced from a million faces to a tenth of them.
  *
  * An edge is not collapsed
  *
- *     if edge_collapse refuses it: the link condition, locked elements, rules F1 to F4 for
- * features; if a face would turn by more than 60 degrees in this one step, or would have no area
- * but for rounding (less than 1e-6 of the square of its longest side) where it had one; if the
+ *     if edge_collapse refuses it because of the link condition, locked elements, or the rules F1
+ *     to F4 for features (marks.h); if a face would turn by more than 60 degrees in this one step,
+ *     or would get an area that is zero but for rounding (less than 1e-6 of the square of its
+ *     longest side) although its area was larger before; if the
  * vertex that would be deleted or move has more than HE_DECIMATE_DEGREE edges; if its error would
  * be more than `max_error`.
  *
@@ -35,12 +37,11 @@
  * edges with such an end. Nothing depends on chance or the clock.
  *
  * A face may turn a little in each of many steps, which no test limits: on rough surfaces some
- * faces flip. In a grid of 5,000 faces, with vertices moved by up to 0.3 of a cell in each
- * direction, up to 5 of the 2,500 faces left looked down.
+ * faces flip. In a horizontal grid of 5,000 faces that face up, with vertices moved by up to 0.3 of
+ * a cell in each direction, up to 5 of the 2,500 faces that were left faced down.
  *
- * Vertices keep their ids or are deleted, and so are edges and faces: nothing is created.
- * Interpolated attributes of the two vertices are mixed by the position of the new point between
- * them. */
+ * Each vertex, edge and face keeps its id or is deleted; no element is created. Interpolated
+ * attributes of the two vertices are mixed by the position of the new point between them. */
 #ifndef HE_ALGO_DECIMATE_H
 #define HE_ALGO_DECIMATE_H
 
@@ -79,11 +80,11 @@ typedef struct he_decimated {
 /* decimate: V - n for n collapses. A collapse deletes one face at a boundary edge, two at an
  * interior edge, and the edges accordingly.
  *
- * The work is done in a copy, and then each word of the mesh that differs is written once. If more
- * than HE_DECIMATE_RECORDED faces would be deleted, the copy replaces the content instead, recorded
- * as one replacement that keeps ids and the old arrays; the sets of changes are then empty. That
- * takes a quarter of the memory that a record of each word would take: 264 bytes for each deleted
- * face.
+ * A copy of the mesh is decimated, and then each word of the mesh that differs from the copy is
+ * written once and recorded for undo. If more than HE_DECIMATE_RECORDED faces would be deleted, the
+ * arrays of the copy replace those of the mesh instead. That is recorded as one replacement, which
+ * keeps ids and the old arrays; the change then lists no changed elements. A record of each word
+ * would take four times as much memory: 264 bytes for each deleted face.
  *
  * `out` may be NULL.
  * Returns HE_NOT_TRIANGLE naming a face, if one is no triangle.

@@ -6,14 +6,14 @@
  * planes' weights: enough to find a point in a flat region accurately, too little to matter on
  * curved surfaces. */
 static const double PULL = 1e-6;
-/* An end of the edge is preferred to another point if it costs less by more than this, which allows
- * for rounding. */
+/* The position of an end of the edge is preferred to the best point only if its cost is lower by
+ * more than this, so that rounding does not decide. */
 static const double ROUNDING = 1e-14;
 /* This multiple of an edge's length is added to the cost of its collapse, so that among edges whose
  * collapse costs nothing the shortest comes first. */
 static const double LENGTH = 1e-9;
-/* Bounds the priorities of edges: where a small part of a large mesh has tiny costs, the priorities
- * must still fit a float. */
+/* Priorities are multiplied by this, so that even the tiny costs in a small part of a large mesh
+ * give priorities that a float can hold. */
 static const double WITHIN = 0x1p40;
 /* Errors below this, relative to the size of the mesh, are rounding noise and count as zero. */
 static const double NOTHING = 1e-12;

@@ -7,8 +7,8 @@
 /* The largest angle by which one collapse may turn a face, as a squared cosine: that of 60
  * degrees. */
 static const double TURN = 0.25;
-/* A face counts as having area if its squared doubled area, relative to the fourth power of its
- * longest side, is above this. */
+/* A face counts as having area if the square of its doubled area, divided by the fourth power of
+ * its longest side, is above this. */
 static const double SLIVER = 1e-12;
 
 static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
@@ -126,8 +126,8 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* Returns true if the refused edges of the vertex need not return to the queue yet, because it has
- * very many edges (HE_DECIMATE_PATIENT). The vertex is then in the list `late`. */
+/* Returns true if the refused edges of the vertex need not go back into the queue yet, because the
+ * vertex has very many edges (HE_DECIMATE_PATIENT). The vertex is then in the list `late`. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];
@@ -137,8 +137,8 @@ static bool is_late(he_decimation *d, uint32_t vertex)
     return (d->flags[vertex] & HE_NODE_LATE) != 0 || he_ids_add(&d->late, vertex, NULL) == HE_OK;
 }
 
-/* Returns the edges of a vertex that were put ASIDE to the queue; if another vertex was merged into
- * it (`grown`), also those that were too expensive (DEAR). */
+/* Puts the edges of a vertex that are ASIDE (refused) back into the queue; if another vertex was
+ * merged into it (`grown`), also those that are DEAR (too expensive). */
 static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
 {
     uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;

@@ -5,15 +5,16 @@
  * two about half its size, so that no product of them leaves the range of a double.
  *
  * AN EDGE'S COST is outdated as soon as another vertex was merged into one of its ends. Costs
- * hardly ever fall, so it is computed again only when the edge is first in the queue: most edges
- * are deleted before that. The edge then returns to the queue, unless it still is among the first.
+ * hardly ever fall, so an outdated cost is computed again only when its edge comes first in the
+ * queue: most edges are deleted before that. With the new cost the edge goes back into the queue,
+ * unless that cost is still among the lowest.
  *
- * ASIDE is an edge that was refused. It is in no queue, and returns when the faces around one of
- * its ends have changed.
+ * An edge is ASIDE after its collapse was refused. It is not in the queue, and goes back into it
+ * when the faces around one of its ends have changed.
  *
- * DEAR (too expensive) is an edge with an error above the maximum. It is in no queue either, and is
- * tried again when another vertex was merged into one of its ends: an error is a mean, and may
- * fall. */
+ * An edge is DEAR (too expensive) while the error of its collapse is above the maximum. It is not
+ * in the queue, and is tried again when another vertex was merged into one of its ends: an error is
+ * a mean, so it may become smaller. */
 #ifndef HE_ALGO_DECIMATION_H
 #define HE_ALGO_DECIMATION_H
 
@@ -26,23 +27,24 @@
 
 #include <stdalign.h>
 
-/* Flags of a vertex. HE_NODE_LOCKED and HE_NODE_HELD never change: edge_collapse would refuse to
- * move or to delete such a vertex. */
+/* Flags of a vertex. HE_NODE_LOCKED and HE_NODE_HELD mark vertices that edge_collapse would refuse
+ * to move or to delete; these two flags never change. */
 enum {
     HE_NODE_LOCKED = 1, /* the vertex may neither be deleted nor move */
     /* An edge or face at the vertex is locked: the vertex may move, but not be deleted. */
     HE_NODE_HELD = 2,
     HE_NODE_ASIDE = 4, /* some edges of the vertex may be ASIDE (refused, in no queue) */
     HE_NODE_DEAR = 8,  /* some edges of the vertex may be DEAR (too expensive, in no queue) */
-    /* Refused edges of the vertex return to the queue later, see HE_DECIMATE_PATIENT. */
+    /* The vertex has so many edges that its refused edges are tried again only after several
+     * changes, see HE_DECIMATE_PATIENT. */
     HE_NODE_LATE = 16,
     HE_NODE_GREW = 32 /* another vertex was merged into this one while it was HE_NODE_LATE */
 };
 
-/* At a vertex of more edges than HE_DECIMATE_PATIENT, refused edges are not tried again after every
- * change nearby, but only after a number of changes that is 1 / HE_DECIMATE_PART of its degree, and
- * when the queue is empty. A single change concerns few of the vertex's edges, but all its refused
- * edges would be tried again. */
+/* At a vertex of more than HE_DECIMATE_PATIENT edges, refused edges are not tried again after every
+ * change of a face around the vertex, but only after so many changes as the vertex has edges,
+ * divided by HE_DECIMATE_PART, or when the queue is empty. A single change concerns few of the
+ * vertex's edges, but all its refused edges would be tried again. */
 enum { HE_DECIMATE_PATIENT = 32, HE_DECIMATE_PART = 2 };
 
 /* Where an edge is stored. */
@@ -51,12 +53,13 @@ typedef enum he_edge_place { HE_EDGE_QUEUED, HE_EDGE_ASIDE, HE_EDGE_DEAR } he_ed
 enum { HE_CACHE_LINE = 64 };
 
 typedef struct he_node {
-    /* Sum of the planes' quadrics, relative to `place`. */
+    /* The quadric of the vertex (see decimate.h), relative to its position `place`. */
     alignas(HE_CACHE_LINE) he_quadric quadric;
     he_vec3 place;
     uint32_t degree;
     uint32_t features; /* number of feature edges at the vertex; 3 stands for 3 or more */
-    /* If HE_NODE_LATE: changes nearby since the vertex's edges returned to the queue. */
+    /* If the vertex is HE_NODE_LATE: number of changes of faces around it since its refused edges
+     * last went back into the queue. */
     uint32_t changes;
 } he_node;
 
@@ -68,13 +71,14 @@ typedef struct he_merges {
 
 typedef struct he_decimation {
     he_mesh *mesh;
-    he_node *nodes;      /* a node for each vertex, which fills two cache lines */
+    he_node *nodes;      /* one node for each vertex; a node fills two cache lines */
     void *memory;        /* the allocated block of memory that contains `nodes` */
     uint8_t *flags;      /* the HE_NODE_... flags of each vertex */
     uint8_t *places;     /* whether each edge is in the queue, ASIDE or DEAR: an he_edge_place */
     he_edge_queue queue; /* contains no edge twice */
-    he_merges *merges;   /* where merges are noted, or NULL */
-    he_progressive *log; /* where collapses are recorded, or NULL */
+    /* receives the elements that each collapse merges; NULL if they are not needed */
+    he_merges *merges;
+    he_progressive *log; /* receives a record of each collapse; NULL if none is needed */
     const he_column *feature;
     /* `most` is the largest allowed error, in the coordinates inside the decimation (see
      * `exponent`) */
@@ -85,11 +89,12 @@ typedef struct he_decimation {
     double inward; /* 2^-exponent */
     /* Largest error of a collapse so far, in the coordinates inside the decimation. */
     double error;
-    /* The work done so far: the number of edges judged, plus an eighth of the number of half-edges
-     * visited around their ends. A unit of either kind takes about the same time, and one collapse
-     * at a vertex of large degree may take 256 units. */
+    /* The work done so far: the number of edges whose cost was computed, plus an eighth of the
+     * number of half-edges visited around their ends. One edge takes about as long as eight
+     * half-edges; a single collapse at a vertex of large degree may add 256. */
     uint64_t work;
-    he_ids late; /* vertices that got the flag HE_NODE_LATE, and perhaps still have it */
+    /* all vertices with the flag HE_NODE_LATE, perhaps also vertices that have lost it */
+    he_ids late;
 } he_decimation;
 
 /* A possible collapse of an edge. */
@@ -131,18 +136,18 @@ void he_decimation_end(he_decimation *d);
 he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside);
 /* Computes the cheapest collapse of an edge. Returns false if neither end may be deleted. */
 bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
-/* Makes mesh `m` equal to `made`, a copy of it that was decimated.
+/* Makes mesh `m` equal to `made`, a decimated copy of `m`.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                                            he_error *err);
 /* Decides whether an edge belongs in the queue, ASIDE or DEAR (see the head of decimation.h), and
  * computes the cheapest collapse of the edge unless it is ASIDE. */
 he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);
-/* Records that an edge is in the queue, ASIDE or DEAR, as `place` says. It must not be in the queue
- * already. */
+/* Puts an edge, which must not be in the queue, into the queue or marks it as ASIDE or DEAR, as
+ * `place` says. */
 void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const he_candidate *what);
-/* Returns the edges of vertices that have the flag HE_NODE_LATE to the queue: vertices of many
- * edges that were not tried again after changes. Returns false if there are none. */
+/* Puts the refused edges of all vertices with the flag HE_NODE_LATE back into the queue. Returns
+ * false if no vertex has the flag. */
 bool he_decimation_catch_up(he_decimation *d);
 /* Collapses an edge and updates the vertices' quadrics and the queue.
  * Returns HE_LIMIT if a face would flip.

@@ -2,9 +2,10 @@
  *
  * A bucket holds the edges whose priorities agree in exponent and two binary digits: edges whose
  * priorities differ by less than a quarter may come in either order. Within a bucket edges are in
- * order of arrival, mostly by id, so that neighbours are near in memory; that gains more than a
- * finer order, which gives no better mesh. They are stored in chunks of 64 bytes, and a chunk is
- * taken as a whole, so that the data of its edges can be prefetched. */
+ * order of arrival, mostly by id, so that neighbours are near in memory; that saves more time than
+ * a finer order would, and a finer order gives no better mesh. The edges of a bucket are stored in
+ * chunks of 64 bytes, and a chunk is taken out as a whole, so that the data of its edges can be
+ * prefetched. */
 #ifndef HE_ALGO_EDGE_QUEUE_H
 #define HE_ALGO_EDGE_QUEUE_H
 
@@ -29,7 +30,8 @@ typedef struct he_edge_queue {
     he_queue_chunk *chunks;
     /* The first chunk of each bucket; all later chunks of the bucket are full. */
     uint32_t *first;
-    /* `free` is the first chunk to use again; chunks from `used` on were never used */
+    /* `free` is the first chunk of the list of emptied chunks; chunks from index `used` on were
+     * never used */
     uint32_t free, used;
     /* One bit for each bucket: set if the bucket has edges. */
     uint64_t filled[HE_QUEUE_WORDS];
@@ -59,8 +61,8 @@ static inline void he_queue_clear(he_edge_queue *queue)
     he_mem_free(queue->first);
 }
 
-/* Returns the bucket of a priority, which must not be negative. A lower priority never has a higher
- * bucket than a higher priority has. */
+/* Returns the bucket of a priority, which must not be negative. Buckets have the order of their
+ * priorities. */
 static inline uint32_t he_queue_bucket(float priority)
 {
     uint32_t bits;

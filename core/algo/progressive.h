@@ -2,8 +2,9 @@
  * original.
  *
  * H. Hoppe, "Progressive meshes", 1996: a decimation is recorded collapse by collapse, and each
- * collapse is undone by a vertex split. Undone in reverse order, they lead through all levels of
- * detail to the original mesh, with equal ids, ends of edges, corners of faces and positions.
+ * collapse is undone by a vertex split. Undoing the collapses in reverse order leads through all
+ * levels of detail to the original mesh, with equal ids, ends of edges, corners of faces and
+ * positions.
  *
  *              c                               c
  *              o                               o
@@ -42,15 +43,17 @@ typedef struct he_progressive_split {
  * empty. */
 typedef struct he_progressive {
     he_mesh *base;
-    /* In the order of the collapses: the first split is applied last. */
+    /* The splits in the order of the collapses that they undo, so the last split of the array is
+     * applied first. */
     he_progressive_split *splits;
     size_t count, capacity;
     he_ids moved;
 } he_progressive;
 
 /* Decimates a copy of `m` and records the collapses; the coarsest level is what he_decimate makes
- * with these options. `progress`, which may be NULL, need not be that of the mesh: other threads
- * may read the mesh meanwhile. Returns the errors of he_decimate, too.
+ * with these options. Progress is reported to `progress`, which may be NULL, and not to the watch
+ * of the mesh, so other threads may read the mesh meanwhile. Returns the errors of he_decimate,
+ * too.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,

@@ -6,8 +6,9 @@
  *
  *     q(x) = x' A x + 2 b' x + c        A symmetric, 3 by 3
  *
- * Here x is relative to a point that the quadric's owner knows, a vertex. So the numbers are as
- * small as the edges, wherever the mesh is, and few digits are lost. */
+ * Here x is relative to the vertex to which the quadric belongs; the quadric does not store its
+ * position. So coordinates are about as large as the edges are long, wherever the mesh lies, and
+ * few digits are lost. */
 #ifndef HE_ALGO_QUADRIC_H
 #define HE_ALGO_QUADRIC_H
 
@@ -49,7 +50,7 @@ static inline double he_quadric_at(const he_quadric *q, he_vec3 x)
     return value > 0 ? value : 0;
 }
 
-/* Makes the quadric relative to another point, which lies `by` away from the present one. */
+/* Makes the quadric relative to another point: the present one plus the vector `by`. */
 static inline void he_quadric_shift(he_quadric *q, he_vec3 by)
 {
     q->c = he_quadric_at(q, by);
@@ -71,8 +72,8 @@ static inline void he_quadric_add(he_quadric *q, const he_quadric *more)
 }
 
 /* Finds where q(x) + pull * |x - home|^2 is least. A pull of more than a few 1e-12 of the trace of
- * A makes this well defined if the planes have no common point, as in a flat region. Returns false
- * if there are no planes. */
+ * A makes the result unique even if the planes do not determine one point, as in a flat region.
+ * Returns false if there are no planes. */
 static inline bool he_quadric_least(const he_quadric *q, double pull, he_vec3 home, he_vec3 *x)
 {
     double xx = q->xx + pull, yy = q->yy + pull, zz = q->zz + pull;

@@ -290,8 +290,8 @@ static void polygon_fill(const double *args, he_soup *soup)
 /* The largest length a shape may have. Larger lengths have no use, and their squares would
  * overflow. */
 #define LONGEST 1e100
-/* The largest number of segments along one side of a shape. A shape with so many segments along two
- * sides fits into no mesh and is refused by the limits of its sizes. */
+/* The largest number of segments along one side of a shape. A shape with this number of segments
+ * along two sides is too large for any mesh and is refused by the limits. */
 #define MOST 16777216
 
 #define LENGTH(name, fallback, doc)                            \
@@ -421,7 +421,7 @@ void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS])
     }
 }
 
-/* A number as text for a message, with a point for fractions in every locale. */
+/* A number as text for a message, with a decimal point in every locale. */
 typedef struct shown {
     char text[HE_NUMBER_TEXT + 1];
 } shown;

@@ -1,8 +1,9 @@
 /* shape.h - THE table of shapes from which a mesh can be made.
  *
- * A row has a shape's name, its parameters, and the numbers of vertices, faces and corners for
- * them, so that a request over a limit is refused before memory is allocated. The decoding of
- * {"shape": ...}, its documentation and the tests are driven by the rows.
+ * A row has a shape's name, its parameters, and a function that computes the numbers of vertices,
+ * faces and corners from these, so that a request over a limit is refused before memory is
+ * allocated. The decoding of {"shape": ...}, its documentation and the tests are driven by the
+ * rows.
  *
  * All shapes are centred at the origin with z up. Solids and closed surfaces wind so that normals
  * point outwards; flat ones (grid, disk, polygon) lie in z = 0 and face up. Points that symmetry
@@ -37,8 +38,8 @@ typedef struct he_shape {
     const char *doc;
     /* The list ends at the first parameter without a name. */
     he_shape_param params[HE_SHAPE_PARAMS];
-    /* Computes how many vertices, faces and corners the shape has. Only the functions declared
-     * below call it, with each argument at the index of its parameter. */
+    /* Computes how many vertices, faces and corners the shape has; args[i] is the value of
+     * params[i]. Only the functions declared below call it. */
     he_shape_size (*size)(const double *args);
     /* Fills the soup with the shape. If the soup's `progress` cancels the work, it returns early
      * with an incomplete soup. */

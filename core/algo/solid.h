@@ -5,8 +5,8 @@
 
 #include "build/build.h"
 
-/* Reports to the soup's `progress` how full the soup is, once for each row of a shape. Returns
- * false if the work was cancelled. */
+/* Reports to the soup's `progress` how full the soup is. A function that fills a soup calls it
+ * before each row of vertices or faces. Returns false if the work was cancelled. */
 bool he_solid_goes_on(const he_soup *soup);
 /* Appends a vertex to a soup that has room. */
 void he_solid_vertex(he_soup *soup, double x, double y, double z);

@@ -8,10 +8,10 @@
 
 /* --- sizes --- */
 
-/* Facts about the coarse mesh that all steps need. */
+/* What all steps need to know about the mesh before the first step. */
 typedef struct start {
     he_sizes sizes;
-    uint64_t *feature; /* one bit for each edge: set if the edge is a feature; NULL: no features */
+    uint64_t *feature; /* one bit for each edge: set if the edge is a feature; NULL if no edge is */
     uint64_t *fixed;
 } start;
 
@@ -180,7 +180,7 @@ static uint64_t rows_of(const he_sizes *s)
 }
 
 /* Computes the sizes after each step; fails if they are too large. A step multiplies sizes by at
- * most seven, so 64 bits are enough, and numbers of rows within the limit fit into ids. */
+ * most seven, so 64 bits are enough, and numbers of elements within the limit fit into ids. */
 _Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS,
                "HE_SUBDIVIDE_ROWS must be below the number of ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
@@ -249,9 +249,9 @@ static void clear_step(he_subdivide_step *s)
     he_mem_free(s->corner_from);
 }
 
-/* Returns an array with the index of each live row among the live rows; NULL if all rows are live.
- * *failed is set if memory is out. `link` has `stride` entries for each row; the first of them is
- * HE_DEAD in a deleted row. */
+/* Returns an array with the index of each live element among the live ones; NULL if none is
+ * deleted, or if memory is out, which sets *failed. `link` has `stride` entries for each element;
+ * the first of them is HE_DEAD if the element was deleted. */
 static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride, bool *failed)
 {
     if (rows->live == rows->issued) {
@@ -342,8 +342,7 @@ typedef struct refinement {
     he_scheme scheme;
     bool thirds;           /* the scheme is sqrt3, and this step cuts sharp edges in three */
     const he_sizes *sizes; /* sizes of the finer mesh */
-    /* The part of the whole progress that is reached before the step (`done`) and after it
-     * (`to`). */
+    /* the reported progress (0 to 1) before this step (`done`) and after it (`to`) */
     double done, to;
 } refinement;
 

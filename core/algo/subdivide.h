@@ -28,10 +28,11 @@
  * WHO SURVIVES. All old vertices. An edge that is cut in halves keeps its id in the half with the
  * origin of half-edge 2e, which still leaves it; an edge that is flipped keeps its id, and
  * half-edge 2e its face (edge_flip). A face keeps its id in the part at the origin of its stored
- * half-edge. New ids follow the order of the old ones: vertices by edge, then by face; edges:
- * second halves by edge, then those inside, by face and from its stored half-edge on; faces by
- * face, and within a face by corner, from the corner after that of the stored half-edge on, the
- * middle triangle last. Dead ids stay dead.
+ * half-edge. New ids follow the order of the old elements. Vertices: first one for each edge, then
+ * one for each face. Edges: first the second halves of the old edges, then the edges inside faces,
+ * face by face, from the stored half-edge of the face on. Faces: face by face, and within a face by
+ * corner, from the corner after that of the stored half-edge on, the middle triangle last. Ids of
+ * deleted elements stay unused.
  *
  * CURVES. An edge is sharp if it is on the boundary or its bool attribute `feature` is true, and
  * the parts of a sharp edge are sharp. Edges that are made inside faces are never sharp, whatever
@@ -39,23 +40,24 @@
  * smooth rule), on a curve (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth
  * Surface Reconstruction, 1994. At a vertex of two sharp edges the curve becomes their cubic
  * B-spline: the middle of an edge, and (1 6 1) / 8 at vertices, as in DeRose, Kass, Truong,
- * Subdivision Surfaces in Character Animation, 1998. Corners stay in place, and so do a boundary
- * vertex with one face, a bow-tie, an isolated vertex and a vertex whose `locked` was true before
- * the call. By sqrt3 sharp edges are not flipped; in every second step of one call they are cut in
- * three, by the B-spline's rules for that, (1 16 10) / 27 and (4 19 4) / 27, and the triangles
- * beside them become three at the two new vertices instead of having one inside.
+ * Subdivision Surfaces in Character Animation, 1998. Vertices of 3 or more sharp edges stay in
+ * place, and so do a boundary vertex with one face, a bow-tie, an isolated vertex and a vertex
+ * whose `locked` was true before the call. The scheme sqrt3 does not flip sharp edges; in every
+ * second step of one call it cuts them in three, by the B-spline's rules for that, (1 16 10) / 27
+ * and (4 19 4) / 27; a triangle beside such an edge is divided into three at the two new vertices
+ * on the edge, and gets no new vertex inside.
  *
  * ATTRIBUTES. Vertices: interpolated columns follow the rules of positions, so that a column that
  * is linear in the position remains so; in copied columns a new vertex gets the value of the origin
  * of half-edge 2e, of the nearer end of an edge that is cut in three, or of the corner of the
  * face's stored half-edge. Corners: linear within the old face; interpolated columns have the mean
  * of two corners on an edge, and the mean of all corners inside the face. Edges: both parts have
- * the edge's value, unless the rule is default; edges inside have the default. Faces: the parts
- * have the face's value, unless the rule is default. Parts of `feature` edges are features under
- * any rule.
+ * the edge's value, unless the attribute's rule is `default`; edges inside faces have the default
+ * value. Faces: the parts have the face's value, unless the attribute's rule is `default`. Parts of
+ * `feature` edges are features under any rule.
  *
- * LOCKED edges and faces are cut, like by other edits: the part that keeps the id is locked. New
- * vertices are never locked, even between locked ones: see marks.h. */
+ * LOCKED edges and faces are cut all the same, as by other edits; only the part that keeps the id
+ * is locked afterwards. New vertices are never locked, even between locked ones: see marks.h. */
 #ifndef HE_ALGO_SUBDIVIDE_H
 #define HE_ALGO_SUBDIVIDE_H
 
@@ -73,9 +75,9 @@ typedef struct he_subdivide_counts {
     uint32_t vertices, edges, faces;
 } he_subdivide_counts;
 
-/* Refines the mesh by `steps` steps of a scheme, 1 to HE_SUBDIVIDE_STEPS. Recorded as one
- * replacement that keeps ids (write.h). `counts`, which may be NULL, must have room for the counts
- * after each of the `steps`.
+/* Refines the mesh by `steps` steps of a scheme, 1 to HE_SUBDIVIDE_STEPS. The whole is recorded as
+ * one replacement that keeps ids (write.h). `counts`, which may be NULL, must have `steps` entries;
+ * each gets the counts after one step.
  *
  * Returns HE_LIMIT if there would be more than HE_SUBDIVIDE_ROWS, before memory is allocated.
  * Returns HE_NOT_TRIANGLE naming a face, if loop or sqrt3 meets one that is no triangle.
@@ -89,8 +91,9 @@ HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps
                                     he_subdivide_counts *counts, he_error *err);
 
 /* Decides from the mesh's counts alone, in constant time, whether he_subdivide will certainly
- * refuse because of its limit. HE_OK is no promise, because `linear` makes more elements of
- * polygons, and `sqrt3` of sharp edges, than is assumed.
+ * refuse because of its limit. If it returns HE_OK, he_subdivide may still refuse, because this
+ * function assumes fewer new elements than `linear` makes in faces that are no triangles, and than
+ * `sqrt3` makes at sharp edges.
  * Returns HE_LIMIT if it will certainly refuse. */
 HE_NODISCARD he_status he_subdivide_fits(const he_mesh *m, he_scheme scheme, unsigned steps,
                                          he_error *err);

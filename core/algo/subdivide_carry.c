@@ -206,8 +206,9 @@ static he_status carry_corners(const he_subdivide_step *s, const he_column *from
                                he_error *err)
 {
     he_status status = HE_OK;
-    /* If a new corner copies another new corner, it has the higher id of the two, because of the
-     * edges inside a face the first has the lowest id. So one pass in the order of ids suffices. */
+    /* A new corner that copies another new corner has a higher id than that one, because the first
+     * new edge inside a face has the lowest id of these edges. So one pass in the order of ids
+     * suffices. */
     for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
         status = he_progress_at(s->progress, h, 2 * (uint64_t)s->to->edges.issued, err);
         fill_corner(s, from, to, h);
@@ -296,8 +297,8 @@ he_status he_subdivide_attributes(const he_subdivide_step *s, he_error *err)
     if (to->columns == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes");
     }
-    /* Each column keeps its slot, because the records of other revisions refer to columns by
-     * slot. */
+    /* Each column keeps its index (slot), because the records of other revisions refer to columns
+     * by it. */
     to->column_count = to->column_capacity = from->column_count;
     he_status status = HE_OK;
     for (size_t i = 0; i < from->column_count && status == HE_OK; i++) {

@@ -24,8 +24,8 @@ static inline void gather(he_vec3 *to, he_vec3 what)
     *to = he_vec3_add(*to, what);
 }
 
-/* A subdivision rule: where a smooth vertex moves is the weighted sum of its old position (first
- * weight) and of the sum over its neighbours (second weight). */
+/* A subdivision rule: the new position of a smooth vertex is its old position times the first
+ * weight, plus the sum over its neighbours times the second weight. */
 typedef struct weights {
     double own, sum;
 } weights;
@@ -212,8 +212,9 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* Computes the vertices inside faces for catmull_clark and sqrt3. The vertex inside a face follows
- * from the rank of the face; for sqrt3 it is listed in `centre`. */
+/* Computes the vertices inside faces for catmull_clark and sqrt3. The id of the vertex inside a
+ * face follows from the index of the face among the live faces; for sqrt3 it is listed in
+ * `centre`. */
 static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -273,7 +274,8 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
             linear_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_SQRT3:
-            break; /* cut_in_thirds places points on sharp edges, when the sums are complete */
+            /* cut_in_thirds places the points on sharp edges later, when the sums are complete */
+            break;
         }
     }
     return HE_OK;

@@ -3,7 +3,7 @@
 #include "algo/subdivide_step.h"
 #include "base/parallel.h"
 
-/* The names of the parts of a half-edge h that is cut in halves, for which functions follow:
+/* The functions below return the parts of a half-edge h that is cut in halves:
  *
  *     half-edge h    o ----first(h)----> o ----second(h)----> o
  *                  origin              middle               target */
@@ -190,8 +190,8 @@ static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, 
 {
     cutting *c = context;
     const he_subdivide_step *s = c->s;
-    /* This is a copy of the lane's ids: those of several lanes share a cache line, and threads that
-     * write to one cache line slow each other down. */
+    /* The ids of this lane are copied, because those of several lanes share a cache line, and
+     * threads that write to one cache line slow each other down (false sharing). */
     fresh at = c->at[lane];
     he_status status = HE_OK;
     for (size_t f = from; f < to && status == HE_OK; f++) {
@@ -226,8 +226,9 @@ static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error 
     if (status == HE_OK) {
         status = he_run_lanes(s->progress, lanes, from->faces.issued, cut_lane, &c, err);
     }
-    /* With several lanes, a later lane may have found an error in a later face first. Running again
-     * in one lane finds the first, so the error does not depend on the number of threads. */
+    /* With several lanes, the error that is found first may be in a later face. Running again in
+     * one lane finds the error of the first face, so the result does not depend on the number of
+     * threads. */
     return lanes > 1 && status != HE_OK && status != HE_CANCELLED ? cut_faces(s, 1, err) : status;
 }
 

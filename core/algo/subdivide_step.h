@@ -1,5 +1,5 @@
-/* subdivide_step.h - one step of subdivide: makes the content of the finer mesh from that of the
- * coarser one.
+/* subdivide_step.h - one step of subdivide: makes the arrays (he_content) of the finer mesh from
+ * those of the coarser mesh.
  *
  *     subdivide.c         sizes, memory, the loop over the steps, replacing the mesh
  *     subdivide_split.c   links where edges are cut in halves (loop, catmull_clark, linear)
@@ -7,20 +7,21 @@
  *     subdivide_rules.c   positions of vertices
  *     subdivide_carry.c   attributes
  *
- * Ids of new elements count from the rows issued in `from`, in the order of subdivide.h. */
+ * The ids of new elements follow the last id of the coarser mesh, in the order that subdivide.h
+ * states. */
 #ifndef HE_ALGO_SUBDIVIDE_STEP_H
 #define HE_ALGO_SUBDIVIDE_STEP_H
 
 #include "algo/subdivide.h"
 #include "mesh/layout.h"
 
-/* The sizes of a mesh's content after a step. They have 64 bits because an estimate may exceed what
- * fits into a mesh. */
+/* The numbers of elements of a mesh after a step. They have 64 bits because an estimate may exceed
+ * what fits into a mesh. */
 typedef struct he_sizes {
-    uint64_t vertices, edges, faces; /* numbers of rows, deleted ones included */
+    uint64_t vertices, edges, faces; /* numbers of elements, deleted ones included */
     uint64_t live_vertices, live_edges, live_faces;
     uint64_t boundary; /* number of boundary half-edges */
-    /* `sharp`: number of sharp edges; `sharp_sides`: number of faces beside them */
+    /* `sharp`: number of sharp edges; `sharp_sides`: number of their half-edges that have a face */
     uint64_t sharp, sharp_sides;
     /* `polygons`: number of faces that are no triangles; `corners`: number of corners of these
      * faces */
@@ -33,8 +34,9 @@ typedef enum he_source_how {
     HE_FROM_ROW,     /* value of half-edge a */
     HE_FROM_MIDDLE,  /* mean of the values of half-edges a and b */
     HE_FROM_THIRD,   /* 2/3 of the value of half-edge a and 1/3 of that of half-edge b */
-    HE_FROM_FACE,    /* mean of the values in the face of half-edge a */
-    HE_FROM_NEW      /* a copy of the value of half-edge a of the finer mesh */
+    HE_FROM_FACE,    /* mean of the values of all corners in the face of half-edge a */
+    /* a copy of the value of half-edge a; here a is a half-edge of the finer mesh */
+    HE_FROM_NEW
 } he_source_how;
 
 typedef struct he_corner_source {
@@ -49,10 +51,11 @@ typedef struct he_subdivide_step {
     he_scheme scheme;
     bool thirds;    /* the scheme is sqrt3, and this step cuts sharp edges in three */
     bool polygonal; /* the coarser mesh has faces that are no triangles */
-    /* The index of each live edge (face) among the live edges (faces); NULL if all rows are
-     * live. */
+    /* The index of each live edge among the live edges, and of each live face among the live faces;
+     * NULL if none is deleted. */
     uint32_t *edge_rank, *face_rank;
-    uint64_t *feature;      /* one bit for each edge: set if it is a feature; NULL: no features */
+    /* one bit for each edge: set if the edge is a feature; NULL if no edge is */
+    uint64_t *feature;
     uint64_t *feature_next; /* features of the finer content */
     /* A bit for each of the first `fixed_count` vertices: set if the vertex must stay in place;
      * NULL if none must. */
@@ -70,7 +73,7 @@ typedef struct he_subdivide_step {
      * They are made only if the mesh has attribute columns of this kind of element. A new edge
      * inside a face has no parent: HE_NONE. */
     uint32_t *vertex_from, *edge_from, *face_from;
-    /* How the values of each corner of `to` are computed. */
+    /* Says for each half-edge of `to` how its attribute values are computed. */
     he_corner_source *corner_from;
 } he_subdivide_step;
 
@@ -114,18 +117,20 @@ static inline void he_subdivide_set(he_content *to, uint32_t h, he_subdivide_lin
     to->face[h] = links.face;
 }
 
-/* Writes the links of the finer content `to`, with the vertices' stored half-edges, the features
- * and the parents of new rows. */
+/* Each function writes the links of the finer mesh `to`, the stored half-edges of its vertices, its
+ * features, and the parents of its new elements: he_subdivide_sqrt3 for that scheme,
+ * he_subdivide_split for all others. */
 HE_NODISCARD he_status he_subdivide_split(he_subdivide_step *s, he_error *err);
 HE_NODISCARD he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err);
 
-/* Computes vectors of the finer content from those of the coarser one by the scheme's rules:
- * positions, or three components of an attribute. They are finite if those in `from` are, however
- * large. */
+/* Computes a vector for each vertex of the finer mesh from the vectors of the coarser mesh by the
+ * scheme's rules. The vectors are positions, or three components of an attribute. The results are
+ * finite if the vectors in `from` are, however large these are. */
 HE_NODISCARD he_status he_subdivide_place(const he_subdivide_step *s, const he_vec3 *from,
                                           he_vec3 *to, he_error *err);
 
-/* Makes the arrays of parents, if attribute columns need them. */
+/* Allocates the arrays `vertex_from`, `edge_from`, `face_from` and `corner_from`, each only if
+ * attribute columns need it. */
 HE_NODISCARD he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err);
 HE_NODISCARD he_status he_subdivide_attributes(const he_subdivide_step *s, he_error *err);
 

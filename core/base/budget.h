@@ -1,9 +1,9 @@
 /* budget.h - a limit on how much work a call may still do.
  *
- * Work is charged in STEPS while it is done, not guessed beforehand: a step is what takes about as
- * long as looking at one half-edge or one box, some nanoseconds. What costs more, such as trying a
- * pair of triangles, is charged as many steps as it is worth. How many steps work takes depends on
- * its input alone, never on a clock or on the number of threads.
+ * Work is charged in STEPS while it is done, not estimated beforehand. A step is work that takes
+ * about as long as looking at one half-edge or one box, some nanoseconds; work that takes longer,
+ * such as testing a pair of triangles, is charged as several steps. The number of steps depends on
+ * the input alone, never on a clock or on the number of threads.
  *
  * A budget may carry a watch (progress and cancellation, progress.h), which is asked every
  * HE_BUDGET_STRIDE steps whether to go on, so that work that is charged while it is done can be

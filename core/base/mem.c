@@ -22,10 +22,10 @@ void he_mem_set_hook(const he_mem_hook *replacement)
     hook = replacement != NULL ? *replacement : (he_mem_hook){library_resize, NULL};
 }
 
-/* Reading a large mesh whose ids are in no spatial order misses the TLB as often as the caches;
- * transparent huge pages avoid that, and the system uses them only where madvise asks for them. The
- * advice covers every page of the block: a mapping of which one part has other flags could not be
- * moved when it grows, only copied.
+/* Reading a large mesh whose ids are in no spatial order misses the TLB as often as the caches.
+ * Transparent huge pages avoid the TLB misses, and the system uses them only where madvise asks for
+ * them. The advice covers every page of the block, because a mapping of which one part has other
+ * flags cannot be moved when it grows, only copied.
  *
  * If the C library gets a block by mmap, the block begins in the first page of the mapping,
  * directly behind the library's HEADER bytes. A large block anywhere else lies in the heap and gets

@@ -2,9 +2,10 @@
  *
  * The hook, which can replace the C library's allocator, is the only global variable of the kernel.
  * It is set once, before the first thread starts; tests install one that fails the N-th call, the
- * server one that counts bytes. All functions accept NULL where free does. Sizes are multiplied
- * with an overflow check: a product that does not fit fails like an allocation. A block of 4 MiB or
- * more that the C library got by mmap uses transparent huge pages where the system has them. */
+ * server one that counts bytes. Every function that frees or resizes accepts a NULL block, as free
+ * and realloc do. Sizes are multiplied with an overflow check: a product that does not fit fails
+ * like an allocation. A block of 4 MiB or more that the C library maps for itself (mmap) uses
+ * transparent huge pages where the system has them. */
 #ifndef HE_BASE_MEM_H
 #define HE_BASE_MEM_H
 

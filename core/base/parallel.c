@@ -58,8 +58,8 @@ he_status he_run_ranges(he_progress *progress, size_t count, he_range work, void
 typedef struct lanes {
     he_range work;
     void *context;
-    /* `count`: rows of the job; `length`: rows of each lane; `done`: rows that each lane has
-     * done */
+    /* numbers of rows: in the whole job (`count`), in each lane (`length`), and already done in
+     * each lane (`done`) */
     size_t count, length, done;
 } lanes;
 

@@ -2,19 +2,20 @@
  *
  * The kernel starts no threads. A host that has some lends them with its he_progress (progress.h,
  * `parallel`): the kernel cuts a job into parts, none of which writes what another reads, and hands
- * them to the host. Without an he_progress, or without a host, the parts run one after another on
- * the caller's thread.
+ * them to the host. Without an he_progress, or if that lends no threads, the parts run one after
+ * another on the caller's thread.
  *
- * A job is a loop over `count` rows. It is cut into ranges of HE_PART_ROWS rows, or into lanes: at
- * most HE_MOST_LANES long parts of equal length, each of which is done block by block in order.
+ * A job is a loop over the indices of `count` entries (rows) of arrays. It is cut into ranges of
+ * HE_PART_ROWS rows, or into lanes: at most HE_MOST_LANES long parts of equal length, each of which
+ * is done block by block in order.
  *
  *     he_run_ranges   0 |--0--|--1--|--2--|--3--|-4-| count   any thread takes the next range
  *     he_run_lanes    0 |0 0 0 0 0 0|1 1 1 1 1 1 1 1| count   a lane does its blocks in order
  *
- * The result must not depend on the number of threads: ranges are cut by `count` alone, and lanes
- * are for work that gives equal results with any number of lanes (counting, filing). If several
- * parts fail, the job returns the error of the first of them in order; parts that were not begun
- * are skipped.
+ * The result must not depend on the number of threads: how ranges are cut depends on `count` alone,
+ * and lanes are only for work whose result is equal for any number of lanes, such as counting. If
+ * several parts fail, the job returns the error of the first of them in order; parts that were not
+ * begun are skipped.
  *
  * Only the caller's thread checks for cancellation: it reports progress between parts, so each part
  * must be short. */
@@ -28,8 +29,8 @@ typedef he_status (*he_part)(void *context, uint32_t part, he_error *err);
 /* The functions a host provides. `run` calls part(context, i, ...) for each i below `parts`. It
  * begins the parts in order, on at most `threads` threads at once including the caller's, and
  * reports to `progress` (which may be NULL) on the caller's thread. It returns once every part that
- * was begun has ended: HE_OK, or the error of the first part that failed, or HE_CANCELLED. It never
- * waits for a thread that is busy with other work. */
+ * was begun has ended: HE_OK, or the error of the first part that failed, or HE_CANCELLED. `run`
+ * never waits for a thread that is busy with another job. */
 typedef struct he_parallel {
     he_status (*run)(void *self, uint32_t parts, he_part part, void *context, he_progress *progress,
                      he_error *err);
@@ -38,8 +39,8 @@ typedef struct he_parallel {
 } he_parallel;
 
 enum {
-    /* rows of a range: so many that working on them takes far longer than giving them to a thread,
-     * and so few that it takes far less than a second */
+    /* number of rows of a range: so many that the work on them takes far longer than handing them
+     * to a thread, and so few that the work takes far less than a second */
     HE_PART_ROWS = 16384,
     HE_MOST_LANES = 8
 };

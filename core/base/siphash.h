@@ -1,8 +1,8 @@
 /* siphash.h - a keyed hash of 128 bits: SipHash-2-4-128.
  *
  * J.-P. Aumasson and D. J. Bernstein, "SipHash: a fast short-input PRF" (INDOCRYPT 2012), in the
- * authors' variant with 128 bits of output. Without the key an attacker can neither foresee the
- * slot of a name in a hash table nor construct two request bodies with equal hashes.
+ * authors' variant with 128 bits of output. An attacker who does not know the key can neither
+ * foresee where a hash table puts a name nor construct two request bodies with equal hashes.
  *
  * Use:
  *
@@ -11,7 +11,8 @@
  *     he_siphash_add(&h, bytes, length);     any number of times
  *     he_siphash_end(&h, out);
  *
- * How the bytes are cut into pieces does not change the hash. */
+ * The hash depends only on the bytes, not on how they are distributed over the calls of
+ * he_siphash_add. */
 #ifndef HE_BASE_SIPHASH_H
 #define HE_BASE_SIPHASH_H
 
@@ -20,7 +21,7 @@
 
 typedef struct he_siphash {
     uint64_t v[4];
-    unsigned char tail[8]; /* the last bytes added, as long as they do not fill a word of 8 bytes */
+    unsigned char tail[8]; /* the last bytes added, those that do not yet fill a word of 8 bytes */
     uint64_t length;
 } he_siphash;
 

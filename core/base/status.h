@@ -23,7 +23,7 @@
     X(IDS_EXHAUSTED, "ids_exhausted", "No ids are left in this mesh")                            \
     X(LIMIT, "limit_exceeded", "A configured limit was exceeded")                                \
     X(CANCELLED, "cancelled", "The work was cancelled")                                          \
-    /* statuses for input that is wrong by itself */                                             \
+    /* statuses for input that is wrong whatever the mesh is */                                  \
     X(SYNTAX, "syntax", "The input is not well formed")                                          \
     X(BAD_VALUE, "bad_value", "A value is outside its allowed range")                            \
     X(NOT_FINITE, "not_finite", "A number is not finite")                                        \
@@ -31,7 +31,7 @@
     X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")              \
     X(BEYOND_FLOAT, "beyond_float", "A coordinate is too large for the floats of the format")    \
     X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                           \
-    /* statuses for elements that the caller must not name */                                    \
+    /* statuses for ids that the caller must not pass */                                         \
     X(NO_SUCH_ELEMENT, "no_such_element", "There is no such element")                            \
     X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                             \
     X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                         \
@@ -86,7 +86,7 @@ typedef enum he_status {
         HE_STATUS_COUNT
 } he_status;
 
-/* Kinds of element; HE_MESH_KIND is the mesh itself. */
+/* The kinds of elements; HE_MESH_KIND stands for the mesh itself. */
 typedef enum he_kind {
     HE_VERTEX,
     HE_HALFEDGE,

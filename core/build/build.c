@@ -58,9 +58,9 @@ static he_status build_corners(const he_column *from, size_t halfedges, const ui
     return HE_OK;
 }
 
-/* Makes the attributes of the mesh. If the soup may be emptied (`take`), all columns but those of
- * corners, whose rows get other numbers, are moved instead of copied. Moving cannot fail, so it
- * comes last. */
+/* Makes the attributes of the mesh. If the soup may be emptied (`take`), columns are moved instead
+ * of copied, except those of corners, because half-edges are not numbered like corners. Moving
+ * cannot fail, so it comes last. */
 static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
                                he_error *err)
 {

@@ -1,10 +1,12 @@
-/* build.h - makes a mesh from a polygon soup, which is a list of vertices and of faces over them.
+/* build.h - makes a mesh from a polygon soup: a list of vertices, and a list of faces that name
+ * their vertices.
  *
  * Readers of files and documents fill a soup piece by piece; he_build makes the mesh, in time
- * linear in the corners whatever their order and the valences, or reports everything a half-edge
- * mesh cannot represent. Vertices and faces keep the soup's order as ids; edges are numbered by
- * their first appearance in the faces, with half-edge 2e running as that face does. halfedge(f)
- * leaves the face's first corner. Nothing is merged, dropped or reversed. */
+ * linear in the number of corners, whatever their order and the degrees of vertices, or reports
+ * everything in the soup that a half-edge mesh cannot represent. Vertices and faces keep the soup's
+ * order as ids; edges are numbered by their first appearance in the faces, and half-edge 2e belongs
+ * to the face in which edge e appears first. The stored half-edge of a face leaves its first
+ * corner. Nothing is merged, dropped or reversed. */
 #ifndef HE_BUILD_BUILD_H
 #define HE_BUILD_BUILD_H
 
@@ -12,11 +14,12 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* Limits on the size of a soup; 0 means that there is no limit but those of every mesh. */
+/* Limits on the size of a soup. 0 means that only the limits of every mesh apply. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
-    uint64_t bytes;        /* memory of the soup */
-    he_progress *progress; /* watch of filling and building (progress.h); may be NULL */
+    uint64_t bytes; /* memory of the soup */
+    /* watch of the work of filling and building the soup (progress.h); may be NULL */
+    he_progress *progress;
 } he_limits;
 
 typedef struct he_soup {
@@ -25,14 +28,16 @@ typedef struct he_soup {
     size_t vertex_count, vertex_capacity;
     uint32_t *corners; /* vertex of each corner; the corners of a face are consecutive */
     size_t corner_count, corner_capacity;
-    uint32_t *starts; /* first corner of each face; the last face may still be getting corners */
+    /* index of the first corner of each face; to the last face corners may still be added */
+    uint32_t *starts;
     size_t face_count, face_capacity;
     /* The attributes of the soup. HE_VERTEX columns have a row for each vertex, HE_FACE columns for
      * each face, HE_HALFEDGE columns for each corner, HE_MESH_KIND columns have one row. Shorter
      * columns are filled up with their default. */
     he_column **columns;
     size_t column_count, column_capacity;
-    he_materials materials; /* materials; the mesh gets all of them, even those that no face uses */
+    /* the materials of the soup; the mesh gets all of them, even those that no face uses */
+    he_materials materials;
 } he_soup;
 
 void he_soup_init(he_soup *soup, const he_limits *limits);
@@ -66,14 +71,16 @@ typedef struct he_defect {
     he_status reason;
     he_kind kind; /* kind of the element at fault: HE_FACE or HE_VERTEX */
     uint32_t id;
-    uint32_t corner;        /* corner of the face; HE_NONE if no single corner is at fault */
-    uint32_t vertex, other; /* the vertex, or both ends of the edge, at fault; else HE_NONE */
+    /* index of the corner at fault within its face; HE_NONE if no single corner is */
+    uint32_t corner;
+    /* the vertex at fault, or both ends of the edge at fault; else HE_NONE */
+    uint32_t vertex, other;
 } he_defect;
 
 enum { HE_REPORT_DEFECTS = 100 };
 
 typedef struct he_report {
-    /* the first defects: those of faces, then of edges, then of vertices */
+    /* the first defects found: first those of faces, then of edges, then of vertices */
     he_defect defects[HE_REPORT_DEFECTS];
     uint64_t total; /* number of all defects */
 } he_report;
@@ -90,9 +97,9 @@ he_status he_report_fail(const he_report *report, he_error *err);
 HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
 
 /* he_build makes a mesh, which the caller owns. If the soup has defects, the call fails with the
- * reason and element of the first one, and `report` (which may be NULL) gets the first
- * HE_REPORT_DEFECTS. The soup is only read, unless `flags` has HE_BUILD_TAKE: then columns and
- * positions are moved instead of copied, and the soup is cleared on success.
+ * reason and element of the first defect, and `report` (which may be NULL) gets the first
+ * HE_REPORT_DEFECTS defects. The soup is only read, unless `flags` has HE_BUILD_TAKE: then columns
+ * and positions are moved instead of copied, and the soup is cleared on success.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the soup has more elements than there are ids.
  * Returns HE_CANCELLED if the work was cancelled. */

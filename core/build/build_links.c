@@ -4,8 +4,9 @@
 #include "build/soup_check.h"
 
 /* The state of the passes over corners, edges and vertices that make the links. Each pass writes
- * rows in order and reads at random: where ids are in no spatial order, a random read costs a third
- * of a random write. Until half-edge h gets its links, next[h] is the corner that h leaves. */
+ * array entries in order and reads others at random, because where ids are in no spatial order, a
+ * random read costs a third of a random write. Until half-edge h gets its links, next[h] is the
+ * corner that h leaves. */
 typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;

@@ -6,9 +6,10 @@
 #include "build/swing.h"
 #include "mesh/layout.h"
 
-/* Issues the edges and faces of the soup, for which the content `c` has memory, and writes their
- * links and those of the vertices, which exist already. Edges are numbered as build.h says.
- * Afterwards swings->swing holds the half-edge of each corner instead of its swing.
+/* Creates the edges and faces of the soup in `c`, the arrays of the mesh, which have room for them,
+ * and writes their links and those of the vertices. The vertices must exist already. Edges are
+ * numbered as build.h says. Afterwards swings->swing holds the half-edge of each corner instead of
+ * its swing.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_build_links(const he_corners *corners, he_swings *swings, he_content *c,

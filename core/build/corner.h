@@ -20,8 +20,9 @@ typedef struct he_corner {
 HE_NODISCARD he_status he_corners_init(const he_soup *soup, he_corners *out, he_error *err);
 void he_corners_clear(he_corners *corners);
 
-/* Finds the face and the neighbours of corner c. `degree` must equal all->degree. Callers have one
- * loop for each degree and pass it as a constant, because a division by a constant is fast. */
+/* Finds the face and the neighbours of corner c. `degree` must equal all->degree. It is a parameter
+ * so that callers can have a loop for each degree and pass a constant, because dividing by a
+ * constant is fast. */
 static inline he_corner he_corner_find(const he_corners *all, uint32_t c, uint32_t degree)
 {
     uint32_t face = degree != 0 ? c / degree : all->face_of[c];

@@ -1,9 +1,9 @@
 /* keep.h - joins vertices of a soup without losing their attributes: values that differ move to the
  * corners.
  *
- * If a vertex that has corners is joined to one with another value of an attribute, the attribute
- * becomes an attribute of corners, so that neither value is lost. edit/piece/keep.h does this for
- * meshes; it has a drawing and the rules. */
+ * If two vertices that are joined have different values of an attribute, and the one that
+ * disappears has corners, the attribute becomes an attribute of corners, so that neither value is
+ * lost. edit/piece/keep.h does this for meshes; it has a drawing and the rules. */
 #ifndef HE_BUILD_KEEP_H
 #define HE_BUILD_KEEP_H
 

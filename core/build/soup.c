@@ -32,17 +32,17 @@ static size_t bytes_of(const he_soup *soup)
            (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
 }
 
-/* A growing array of the rows of a soup of one kind: vertices, faces or corners. */
+/* One of the growing arrays of a soup: that of vertices, faces or corners. */
 typedef struct rows {
     void *array;
     size_t size; /* bytes of a row */
     size_t count, capacity;
-    uint64_t limit;   /* how many rows the soup may have; 0: as many as `most` */
-    uint64_t most;    /* how many rows a mesh can have */
+    uint64_t limit;   /* how many entries the soup may have; 0: as many as `most` */
+    uint64_t most;    /* how many entries a mesh can have */
     const char *name; /* for messages */
 } rows;
 
-/* Makes room for one more row of an array. */
+/* Makes room for one more entry of an array. */
 static he_status grow(const he_soup *soup, rows *r, he_error *err)
 {
     uint64_t allowed = r->limit != 0 && r->limit < r->most ? r->limit : r->most;

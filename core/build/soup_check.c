@@ -125,7 +125,8 @@ static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entr
 
 typedef struct pairing {
     const he_soup *soup;
-    uint32_t *mate; /* the other corner along each corner's edge; NULL to number edges instead */
+    /* for each corner the other corner along its edge; NULL if edges are to be numbered instead */
+    uint32_t *mate;
     uint32_t *edge; /* number of each corner's edge, if edges are numbered */
     size_t edges;
     he_report *report;
@@ -141,8 +142,8 @@ static void begin_edge(pairing *p, const filed *a)
     p->edges++;
 }
 
-/* Pairs entry `b` with the earlier entry `a`, which is the first corner along the same edge, or
- * gives it the number of that edge. */
+/* Pairs entry `b` with the earlier entry `a`, which is the first corner along the same edge. If
+ * edges are numbered instead, gives `b` the number of that edge. */
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;

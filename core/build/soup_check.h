@@ -22,14 +22,15 @@ enum { HE_SMALL_FACE = 16 };
 uint32_t he_soup_find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp,
                              uint32_t mark);
 
-/* Adds to *total the number of faces beyond the second along an edge, and of edges along which two
- * faces run in the same direction. All faces must have passed he_soup_check_faces. */
+/* Counts in *total each face at an edge that has two faces already, and each edge along which its
+ * two faces run in the same direction. All faces must have passed he_soup_check_faces. */
 HE_NODISCARD he_status he_soup_check_edges(const he_soup *soup, he_report *report, uint64_t *total,
                                            he_error *err);
 
 /* Numbers the edges: edge[c] becomes the number of the edge from corner c to the next corner of its
- * face. Corners along an edge get the same number, whatever their direction and however many they
- * are. `edge` has a word for each corner; all faces must have passed he_soup_check_faces. */
+ * face. All corners whose sides are the same edge get the same number, whatever their direction and
+ * number. `edge` must have an entry for each corner; all faces must have passed
+ * he_soup_check_faces. */
 HE_NODISCARD he_status he_soup_number_edges(const he_soup *soup, uint32_t *edge, size_t *edges,
                                             he_error *err);
 

@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Flags for what one part of the parallel work has found. */
+/* Flags that say what a part of the parallel work has found in its faces or vertices. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
 enum { SMALL_VERTEX = 24 };
@@ -130,7 +130,8 @@ static uint32_t end_of(const swinging *t, size_t v)
  * corner to its swing (the next corner counter-clockwise), or is `count` if it has none. */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
-    /* `entered`: a bit for each corner that is the swing of another; `met`: corners reached */
+    /* `entered` has a bit for each corner, set if it is the swing of another one; `met` counts the
+     * corners reached */
     uint32_t entered = 0, met = 0;
     for (uint32_t i = 0; i < count; i++) {
         entered |= follow[i] < count ? 1u << follow[i] : 0;
@@ -181,9 +182,9 @@ typedef struct neighbours {
 } neighbours;
 
 /* Finds the swings around a vertex of few corners, and what is wrong there. If the swings form one
- * ring, nothing is wrong; only otherwise is the reason searched. No branch depends on the ids,
- * which may have no pattern. If two faces run along an edge in the same direction, two corners of
- * this vertex lead to the same other vertex. */
+ * ring, nothing is wrong; otherwise the reason is searched. No branch depends on the ids, since
+ * branches on irregular ids would be mispredicted. If two faces run along an edge in the same
+ * direction, two corners of this vertex lead to the same other vertex. */
 static unsigned swing_few(const swinging *t, const uint32_t *filed, uint32_t count,
                           const neighbours *beside, size_t *matched)
 {

@@ -10,17 +10,19 @@
  *                     \                   the mate of a corner (the one whose half-edge is the
  *          ------------ v -----> c        twin) is the swing of the next corner of its face
  *
- * Once the corners are sorted by vertex, one vertex after another is checked, in a few words that
- * lie together in memory: which of its edges have two faces, that no edge has three faces or two in
- * the same direction, and that the swings around the vertex reach all its corners. */
+ * The corners are sorted by vertex; then one vertex after another is checked, each in a few words
+ * that lie together in memory. The check finds which edges at the vertex have two faces, and
+ * whether an edge has three faces or two in the same direction, or swings around the vertex do not
+ * reach all its corners. */
 #ifndef HE_BUILD_SWING_H
 #define HE_BUILD_SWING_H
 
 #include "build/corner.h"
 
 typedef struct he_swings {
-    uint32_t *swing; /* the next corner around the vertex of each corner; HE_NONE at a boundary */
-    uint32_t *first; /* first corner of each vertex, HE_NONE if the vertex has none */
+    uint32_t *swing; /* for each corner the next corner around its vertex; HE_NONE at a boundary */
+    /* for each vertex the corner at which swings begin, HE_NONE if the vertex has no corner */
+    uint32_t *first;
     uint32_t *spare; /* a word for each corner, memory that the caller may use for anything */
     size_t edges;
 } he_swings;

@@ -15,7 +15,7 @@ static int exponent_of(double half)
 {
     int exponent = 0;
     double part = frexp(half, &exponent);
-    /* if `part` is 0.5, `half` is itself a power of two */
+    /* if `part` is 0.5, `half` itself is a power of two */
     return part == 0.5 ? exponent - 1 : exponent;
 }
 

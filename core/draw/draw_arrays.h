@@ -11,16 +11,17 @@
  *          /   \            bit 30: b -> c
  *         a-----b           bit 31: c -> a
  *
- * A side whose bit is clear is a diagonal. Sides that are edges run as the face does.
+ * A side whose bit is clear is a diagonal. Sides that are edges have the direction of the face's
+ * half-edges.
  *
  * A vertex's row depends on that vertex and the frame (he_frame). A face's triangles depend on the
  * face, the order of its corners from the stored half-edge, their positions unless the face is a
  * triangle, and the frame. So an edit changes only the rows of elements that it touches. The caller
- * that keeps the array of triangles decides where in it they are: see draw_slots.h.
+ * decides where in the array the triangles of a face are: see draw_slots.h.
  *
- * A face whose corners are all visible from its first one is drawn as the fan of that corner; a
- * quadrilateral is cut along the diagonal that flips no triangle, or the shorter one if neither
- * does; all other faces are cut as triangulation.h says. */
+ * A face whose corners are all visible from its first one is drawn as the fan of triangles at that
+ * corner; a quadrilateral is cut along the diagonal that makes no flipped triangle, or along the
+ * shorter diagonal if neither makes one; all other faces are cut as triangulation.h says. */
 #ifndef HE_DRAW_DRAW_ARRAYS_H
 #define HE_DRAW_DRAW_ARRAYS_H
 
@@ -35,8 +36,8 @@
  *
  * The scale is a power of two, and the origin a multiple of an eighth of its inverse: so an edit
  * that hardly changes the box does not change the frame, nor the rows of vertices that did not
- * move. A box whose longest side is below 2^-1021, or below 2^-900 of its largest coordinate, is
- * drawn smaller than the ball. */
+ * move. A mesh whose box has a longest side below 2^-1021, or below 2^-900 of its largest
+ * coordinate, is drawn much smaller than the ball. */
 typedef struct he_frame {
     he_vec3 origin;
     double scale;
@@ -59,7 +60,8 @@ typedef struct he_draw_arrays {
 } he_draw_arrays;
 
 /* Prepares to draw all faces. Borrows the mesh, which must not change while it is drawn; `frame`
- * must keep its vertices with edges within the unit ball. he_draw_arrays_clear frees the drawing.
+ * must bring all vertices that have edges into the unit ball. he_draw_arrays_clear frees the
+ * drawing.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits. */
 HE_NODISCARD he_status he_draw_arrays_init(he_draw_arrays *drawing, const he_mesh *m,
@@ -78,10 +80,12 @@ void he_draw_arrays_vertex(const he_draw_arrays *drawing, uint32_t id, float out
 
 /* The position of a walk over the triangles of a face. {0} is a walk that has ended. */
 typedef struct he_draw_arrays_walk {
-    uint32_t face, left; /* the face, and how many of its triangles the walk has not reached */
+    /* `face` is the face, `left` the number of its triangles that the walk has not reached */
+    uint32_t face, left;
     /* half-edges: `apex` leaves the apex of the fan, `at` is the outer side of the next triangle */
     uint32_t apex, at;
-    const uint32_t *cut; /* the next triangle if the face is not drawn as a fan, else NULL */
+    /* the next triangle in he_draw_arrays.cut if the face is not drawn as a fan, else NULL */
+    const uint32_t *cut;
 } he_draw_arrays_walk;
 
 /* Begins a walk over the triangles of a face that was prepared, always in the same order. The walk

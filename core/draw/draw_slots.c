@@ -323,9 +323,9 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
     return face == HE_NONE || face == HE_DEAD ? HE_OK : he_ids_add(&t->faces, face, err);
 }
 
-/* Adds the elements whose rows in the arrays may be changed by a record of a delta. A half-edge
- * that changed its face has a record that names both faces, so any other record of a half-edge adds
- * only the present face. */
+/* Adds the elements whose rows in the arrays may be changed by a record of a delta. If a half-edge
+ * changed its face, one of its records names both faces, so for every other record of a half-edge
+ * only its present face is added. */
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -401,8 +401,8 @@ static bool is_triangle(const he_mesh *m, uint32_t face)
     return m->c.next[m->c.next[m->c.next[first]]] == first;
 }
 
-/* Adds the moved vertices and the faces around them to the touched elements. Triangles are left
- * out, as only larger faces may be cut in another way after a move. */
+/* Adds the moved vertices and the faces around them to the touched elements. Faces that are
+ * triangles are left out, as only larger faces may be cut into other triangles after a move. */
 static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *err)
 {
     he_status status = he_ids_sort(&t->moved, err);
@@ -449,8 +449,8 @@ static he_status check_frame(const he_draw_slots *s, const he_mesh *m, const he_
     return HE_OK;
 }
 
-/* The lengths of the touched faces' runs of slots: `length` has two numbers for each face, before
- * and after the update; `before` and `after` are the sums. */
+/* The lengths of the runs of slots of the touched faces. `length` has two numbers for each face:
+ * its length before and after the update; `before` and `after` are the sums over all faces. */
 typedef struct runs {
     uint32_t *length;
     uint64_t before, after;

@@ -13,11 +13,12 @@
  *
  * A LAYOUT is an assignment of slots to faces, with one frame (draw_arrays.h); it has a number. It
  * is updated by the deltas of the mesh, at a cost proportional to them and to the faces they touch.
- * It ends, and another one must be made, when the content was replaced, when a vertex leaves the
- * unit ball of the frame, when more than half of the vertices moved and the mesh would get another
- * frame, or when more than half of the slots are dead.
+ * A layout ends, and another one must be made, when all data of the mesh were replaced, when a
+ * vertex leaves the unit ball of the frame, when more than half of the vertices moved and the mesh
+ * would get another frame, or when more than half of the slots are dead.
  *
- * CHANGED ROWS are remembered by revision, as long as they are fewer than half of all rows. */
+ * CHANGED ROWS are remembered by the revision that changed them, as long as they are fewer than
+ * half of all rows. */
 #ifndef HE_DRAW_DRAW_SLOTS_H
 #define HE_DRAW_DRAW_SLOTS_H
 
@@ -26,16 +27,16 @@
 
 enum {
     HE_DRAW_SLOT_BINS = 64,
-    /* at least so many changed rows are remembered, however small the mesh is */
+    /* this many changed rows are remembered even if they are more than half of all rows */
     HE_DRAW_SLOT_CHANGES = 4096
 };
 
 /* A flag in a word of he_draw_slots.owner: the slot has no face. */
 #define HE_DRAW_SLOT_DEAD ((uint32_t)1 << 31)
 
-/* One update of the slots from a revision to a later one. Its changes are entries of
- * `changed_vertices` and `changed_slots` in he_draw_slots: they begin where those of the step
- * before end, and end before the indices `vertices` and `slots`. */
+/* One update of the slots from a revision to a later one. The rows that it changed are listed in
+ * `changed_vertices` and `changed_slots` of he_draw_slots: the entries of this step begin where
+ * those of the step before end, and end before the indices `vertices` and `slots`. */
 typedef struct he_draw_slot_step {
     uint64_t revision; /* revision after the step */
     size_t vertices, slots;
@@ -45,14 +46,15 @@ typedef struct he_draw_slot_step {
 typedef struct he_draw_slots {
     uint64_t layout, revision;
     he_frame frame;
-    uint32_t vertices;    /* number of rows of vertices, as many as ids issued */
+    uint32_t vertices;    /* number of rows of vertices: one for each vertex id ever issued */
     uint32_t count, dead; /* number of all slots, and number of dead slots */
     /* face of each slot; if the slot is dead, HE_DRAW_SLOT_DEAD and a link to another freed run */
     uint32_t *owner;
     uint32_t *first; /* first slot of each face, HE_NONE if the face is dead */
     size_t owner_capacity, first_capacity;
     uint32_t faces; /* entries of `first` */
-    /* first freed run of the linked list for each length; bin 0 is the list of long runs */
+    /* first freed run of the linked list of each run length; bin 0 is the list of all longer
+     * runs */
     uint32_t bin[HE_DRAW_SLOT_BINS];
     uint64_t filled; /* a bit for each list in `bin`, set if the list is not empty */
 
@@ -75,18 +77,18 @@ typedef struct he_touched {
     he_ids moved;           /* vertices whose position changed */
 } he_touched;
 
-/* Adds the elements that a delta touched, whether it was applied forwards or backwards. `m` is the
- * mesh after the last of the deltas that are added.
- * Returns HE_UNSUPPORTED if the delta replaced the content.
+/* Adds to the lists the elements that a delta touched, whether it was applied forwards or
+ * backwards. `m` is the mesh after the last of the deltas that are added.
+ * Returns HE_UNSUPPORTED if the delta replaced all data of the mesh at once.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_touched_add(he_touched *touched, const he_mesh *m, const he_delta *delta,
                                       he_error *err);
 void he_touched_clear(he_touched *touched);
 
 /* Updates the slots to `m`, which is at `revision` and differs only in the elements of `touched`
- * from the mesh for which the slots were made or last updated. Sorts the lists of `touched`. On
- * HE_LIMIT, HE_NO_MEMORY and HE_IDS_EXHAUSTED the slots are as they were, but may remember fewer
- * changes.
+ * from the mesh for which the slots were made or last updated. Sorts the lists of `touched`. After
+ * HE_LIMIT, HE_NO_MEMORY or HE_IDS_EXHAUSTED the slots are unchanged, but may remember fewer
+ * changed rows than before.
  * Returns HE_LIMIT if the update takes more than `most` steps.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into 29 bits.

@@ -10,13 +10,14 @@
  *
  * Corners can be removed, never added; boxes shrink with them. Building the tree takes linear time,
  * removing a corner logarithmic time. A search visits the boxes that the triangle touches: few in
- * practice, all of them at worst. It counts what it visits, so that the caller can limit it.
+ * practice, all of them at worst. Each search counts the boxes and corners that it visits, so that
+ * the caller can limit the work.
  *
  * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: testing
  * all of them takes less time than building and searching the tree (`make bench-space` measures
  * both). A search of the list finds the corner that comes first along the Z curve, as a search of
- * the tree would. Only in a list made of at most HE_CORNER_UNSORTED corners it finds the first
- * corner in the order of the list instead. */
+ * the tree would. Only in a list that began with at most HE_CORNER_UNSORTED corners a search finds
+ * the first corner in the order of the list instead. */
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
@@ -25,11 +26,13 @@
 enum {
     HE_CORNER_LEAF = 6,
     HE_CORNER_FEW = 128, /* up to this many corners are kept in a list instead of a tree */
-    /* A list made of up to this many corners is searched in its own order. */
+    /* in a list that began with up to this many corners, a search finds the first one in the order
+     * of the list */
     HE_CORNER_UNSORTED = 16
 };
 
-/* The box around corners of a subtree. It is empty if the minimum is larger than the maximum. */
+/* The box around the corners of a node's subtree. It is empty if the minimum is larger than the
+ * maximum. */
 typedef struct he_corner_box {
     double min[2], max[2];
 } he_corner_box;
@@ -69,8 +72,9 @@ void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
 /* Returns a corner of the tree inside the closed triangle a, b, c, which must turn left; HE_NONE if
  * there is none. A corner counts as inside unless it is to the right of a side by more than
  * rounding (planar_loop.h), so corners on a straight side are inside, too. Corners at the position
- * of a, b or c do not count. Adds the boxes and corners visited to `steps`; HE_CORNER_LEAF corners
- * of a list, which cost about as much as a box, count as one. */
+ * of a, b or c do not count. Adds the boxes and corners visited to `steps`; in a list,
+ * HE_CORNER_LEAF corners count as one step, because testing them costs about as much as testing a
+ * box. */
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps);
 

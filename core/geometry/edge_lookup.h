@@ -2,9 +2,11 @@
  * does not change.
  *
  * he_find_halfedge searches the ring of the vertex of smaller degree, which is long if two vertices
- * of large degree share very many faces. The lookup sorts, for every vertex of more than
- * HE_EDGE_LOOKUP_DEGREE edges, its neighbours that have as many: such a pair is found by bisection,
- * any other by a short search. Making it is linear in the mesh. */
+ * of large degree share very many faces. A vertex is of large degree if it has more than
+ * HE_EDGE_LOOKUP_DEGREE edges. The lookup has, for every such vertex, a sorted list of its
+ * neighbours of large degree, so a pair of two such vertices is found by bisection, and any other
+ * pair by a short search around the vertex of smaller degree. Making the lookup takes time linear
+ * in the mesh. */
 #ifndef HE_GEOMETRY_EDGE_LOOKUP_H
 #define HE_GEOMETRY_EDGE_LOOKUP_H
 
@@ -14,12 +16,17 @@ enum { HE_EDGE_LOOKUP_DEGREE = 32 };
 
 /* An index of edges. {0} is empty. */
 typedef struct he_edge_lookup {
-    uint32_t *rank; /* rank of a vertex among those of large degree, or HE_NONE */
-    /* index in `lists` where the list of each rank begins; at the end, where the last list ends */
+    /* for each vertex its index among the vertices of large degree; HE_NONE if its degree is not
+     * large */
+    uint32_t *rank;
+    /* for each vertex of large degree the index in `lists` at which its list begins; one more entry
+     * says where the last list ends */
     uint32_t *starts;
-    uint32_t *lists; /* a list for each rank: the neighbours of large degree with smaller ids */
-    /* hash table of pairs of vertices that were joined after the lookup was made; 0 is a free
-     * slot */
+    /* one list after another: for each vertex of large degree, its neighbours of large degree
+     * with smaller ids */
+    uint32_t *lists;
+    /* hash table of pairs of vertices that got an edge after the lookup was made; a free entry
+     * is 0 */
     uint64_t *noted;
     size_t noted_count, noted_slots;
 } he_edge_lookup;
@@ -35,7 +42,7 @@ HE_NODISCARD he_status he_edge_lookup_reserve(he_edge_lookup *lookup, size_t ext
 /* Adds an edge that was made between a and b; he_edge_lookup_reserve must have made room. */
 void he_edge_lookup_add(he_edge_lookup *lookup, he_vertex a, he_vertex b);
 /* Returns true if an edge joins a and b. Adds the cost of the search to `*steps`. If `lookup` is
- * NULL or empty, searches around the vertices. */
+ * NULL or empty, the function searches around a and b instead. */
 bool he_edge_lookup_has(const he_mesh *m, const he_edge_lookup *lookup, he_vertex a, he_vertex b,
                         uint64_t *steps);
 

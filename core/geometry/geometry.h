@@ -7,10 +7,10 @@
  * Its length is the face's area and its direction the normal: towards the side from which the
  * corners run counter-clockwise. It does not depend on the first corner.
  *
- * DEGENERATE faces have a direction that is rounding noise only: the normal is the zero vector and
- * the function returns false. No finite input gives NaN or infinity: coordinates are scaled by
- * powers of two where their products would overflow or underflow, and an area, length or volume
- * that a double cannot hold is DBL_MAX.
+ * A face is DEGENERATE if the direction of its area vector is nothing but rounding noise. Its
+ * normal is the zero vector, and functions that find the normal return false. No finite input gives
+ * NaN or infinity: coordinates are scaled by powers of two where their products would overflow or
+ * underflow, and an area, length or volume that a double cannot hold is DBL_MAX.
  *
  * Functions that take one element check nothing (as in walk.h): the element must be live, and its
  * links must be as mesh.h promises. If links do not close, a walk still ends after as many steps as
@@ -43,15 +43,15 @@ bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
 HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_progress *progress, double *out,
                                          he_error *err);
 
-/* Returns the angle between a half-edge and the one before it, in [0, pi]; so a reflex corner gives
- * the smaller angle. At a boundary half-edge it is the angle between two boundary edges. Returns 0
- * if one of the two edges has no length. */
+/* Returns the angle between a half-edge and the one before it, in [0, pi]; for a reflex corner this
+ * is not the angle inside the face but the smaller one outside. At a boundary half-edge it is the
+ * angle between two boundary edges. Returns 0 if one of the two edges has no length. */
 double he_corner_angle(const he_mesh *m, he_halfedge h);
 
 /* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
     he_vec3 normal;   /* unit vector, or zero if the face is degenerate */
-    he_vec3 centroid; /* mean of the corners' positions, where face_poke puts a vertex */
+    he_vec3 centroid; /* the mean of the corners' positions */
     double area;
     uint32_t degree;
     bool degenerate;
@@ -111,9 +111,9 @@ typedef struct he_box {
 /* Finds the box around all live vertices, isolated ones included. If there are none, the box is
  * zero and the function returns false. */
 bool he_mesh_box(const he_mesh *m, he_box *out);
-/* Finds the box around the vertices that have edges. Scales and tolerances are taken from this box,
- * so that an isolated vertex far away has no influence. If there are no edges, the box is zero and
- * the function returns false. */
+/* Finds the box around the vertices that have edges. Scales and tolerances are derived from this
+ * box, so that an isolated vertex far away has no influence on them. If there are no edges, the box
+ * is zero and the function returns false. */
 bool he_surface_box(const he_mesh *m, he_box *out);
 
 /* The sum of the faces' areas, and the volume that a closed mesh encloses: positive if normals

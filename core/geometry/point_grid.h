@@ -1,14 +1,15 @@
-/* point_grid.h - a grid of points: finds the point of lowest number within a tolerance of another.
+/* point_grid.h - a grid of points: finds the point of lowest number within a tolerance of a given
+ * point.
  *
  *     for each point p, in the order of their numbers:
  *         he_point_grid_find    finds the lowest kept point within the tolerance of p, or HE_NONE
  *         he_point_grid_keep    keeps p under its own number, if no kept point was found
  *
- * Kept points are in a hash table of cells of 4 tolerances. Points within the tolerance of p are in
- * the cell of p or, if p is near a side of its cell, in the neighbour there: 8 cells at most (27
- * very far from 0), 3.4 on average. A cell holds few points, since kept points are farther apart
- * than the tolerance. So the total time is linear in the points, wherever they lie and whatever
- * their number. */
+ * Kept points are stored in a hash table by the cell in which they lie; cells are cubes of 4
+ * tolerances. Points within the tolerance of p are in the cell of p or, if p is near a side of its
+ * cell, in the neighbour there: 8 cells at most (27 very far from 0), 3.4 on average. A cell holds
+ * few points, since kept points are farther apart than the tolerance. So the total time is linear
+ * in the points, wherever they lie and whatever their number. */
 #ifndef HE_GEOMETRY_POINT_GRID_H
 #define HE_GEOMETRY_POINT_GRID_H
 
@@ -16,7 +17,8 @@
 #include "mesh/mesh.h"
 
 typedef struct he_point_grid_slot {
-    uint32_t hash, number; /* hash of a kept point, and its number + 1; both are 0 in a free slot */
+    /* `hash`: hash of a kept point; `number`: its number + 1; both are 0 in a free entry */
+    uint32_t hash, number;
 } he_point_grid_slot;
 
 /* A grid of kept points. {0} is empty. */
@@ -28,12 +30,12 @@ typedef struct he_point_grid {
     const he_vec3 *points; /* positions of all points by their numbers; borrowed */
 } he_point_grid;
 
-/* The points that are compared, and how near to each other two of them must be. */
+/* The points that are compared, and the tolerance within which two of them count as near. */
 typedef struct he_point_grid_points {
     const he_vec3 *at; /* positions of the points; borrowed while the grid is used */
     double tolerance;
-    /* A random number. The slot of a point depends on it, so a file cannot choose points that all
-     * fall into one slot. */
+    /* A random number, on which the hash of a point depends, so that the author of a file cannot
+     * choose points with equal hashes. */
     uint64_t seed;
 } he_point_grid_points;
 
@@ -44,7 +46,7 @@ HE_NODISCARD he_status he_point_grid_make(he_point_grid *out, const he_point_gri
                                           size_t most, he_progress *progress, he_error *err);
 void he_point_grid_clear(he_point_grid *grid);
 /* Finds the kept point of lowest number within the tolerance of p; HE_NONE if there is none. Sets
- * *home, which the caller passes on to he_point_grid_keep if it keeps p. */
+ * *home, which the caller must pass to he_point_grid_keep if it keeps p. */
 uint32_t he_point_grid_find(const he_point_grid *grid, he_vec3 p, uint32_t *home);
 void he_point_grid_keep(he_point_grid *grid, uint32_t home, uint32_t number);
 

@@ -9,8 +9,8 @@
 typedef struct he_ring {
     he_vec3 vector; /* twice the area vector */
     he_vec3 sum;    /* sum of the positions of the corners */
-    /* The sum of |u|^2 |v|^2 over the triangles of the fan, u and v being two sides of each: how
-     * large the terms of `vector` were before they cancelled. */
+    /* The sum of |u|^2 |v|^2 over the triangles of the fan, where u and v are two sides of the
+     * triangle. It says how large the terms of `vector` were before they cancelled each other. */
     double reach;
     uint32_t degree; /* number of corners; 0 if the links are broken */
 } he_ring;
@@ -24,8 +24,8 @@ uint32_t he_ring_budget(const he_mesh *m);
 /* Walks around the loop of half-edge `first`. `budget` is the number of half-edges that may still
  * be visited. */
 he_ring he_ring_walk(const he_mesh *m, uint32_t first, double scale, uint32_t *budget);
-/* Walks like he_ring_walk, in a scale in which nothing overflows or underflows: true lengths are
- * those of the ring times 2^exponent. */
+/* Walks like he_ring_walk, with coordinates scaled so that nothing overflows or underflows: true
+ * lengths are the lengths in `ring` times 2^exponent. */
 he_ring he_ring_measure(const he_mesh *m, uint32_t first, uint32_t *budget, int *exponent);
 he_ring he_ring_of_face(const he_mesh *m, he_face f, int *exponent);
 

@@ -25,8 +25,8 @@
 #include "geometry/planar_loop.h"
 
 /* Fills `corners` with triangles that all turn left, three corners for each, in the order that
- * triangulation.h requires; adds to `steps`. If that fails, `done` becomes false, which happens
- * only if the loop intersects itself.
+ * triangulation.h requires; adds to `steps`. *done becomes false if no triangulation was found,
+ * which happens only if the loop intersects itself.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_sweep_cut(const he_planar_loop *flat, uint32_t *corners, bool *done,
                                     uint64_t *steps, he_error *err);

@@ -9,8 +9,8 @@ bool he_triangle_has_area(const he_vec3 t[3]);
 
 /* Returns true if the triangles share a point other than a common corner or a side between two
  * common corners. Corners are common if they are at one position. Triangles with three common
- * corners intersect; one without area intersects nothing. The answer is exact, without rounding
- * (orient.h). */
+ * corners intersect; a triangle without area intersects nothing. The result is exact, without
+ * rounding (orient.h). */
 bool he_triangles_intersect(const he_vec3 a[3], const he_vec3 b[3]);
 
 #endif

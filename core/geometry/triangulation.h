@@ -9,13 +9,15 @@
  *
  * Longer loops are cut by ear clipping, see ears.h.
  *
- * With HE_ANY_DIAGONALS short loops are cut by ear clipping too, and the best triangulation is
- * searched only if that flips a triangle. This is for callers that need many triangulations fast.
+ * With the flag HE_ANY_DIAGONALS short loops are cut by ear clipping, too, and the best
+ * triangulation is searched only if ear clipping makes a flipped triangle. This is for callers that
+ * need many triangulations fast.
  *
- * With HE_AVOID_EDGES no diagonal is an existing edge, which an edit would double. In short loops
- * existing edges are avoided if that flips no triangle. In long ones an ear whose diagonal exists
- * is skipped; when only such ears are left the loop is refused, though another order of cuts might
- * have succeeded. If no diagonal of the triangulation exists as an edge, the flag changes nothing.
+ * With the flag HE_AVOID_EDGES no diagonal joins two vertices that an edge of the mesh joins
+ * already. In short loops such diagonals are avoided only if that flips no triangle. In long loops
+ * an ear with such a diagonal is skipped; when only such ears are left the loop is refused, though
+ * another order of cuts might have succeeded. The flag changes nothing if the triangulation without
+ * it has no such diagonal.
  *
  * WORK. A short loop takes at most three tables of HE_EXACT_CORNERS^3 / 6 steps each, a long one of
  * n corners about n log n steps. Searching for edges costs a few steps for each diagonal; if it
@@ -35,7 +37,8 @@
 enum { HE_EXACT_CORNERS = 64 };
 
 typedef struct he_triangulation {
-    /* The loop in its plane; without x and y if the triangulation is from the cache. */
+    /* The loop, projected into its plane; x and y are not filled if the triangulation is from the
+     * cache. */
     he_planar_loop flat;
     uint32_t *corners; /* three for each of the flat.n - 2 triangles, counter-clockwise */
     bool degenerate;   /* some triangle has no area in the plane, or is flipped */
@@ -46,14 +49,17 @@ typedef struct he_triangulation {
  * except that the caller may make edges of diagonals, if it reports them to `own`
  * (he_edge_lookup_reserve, he_edge_lookup_add). */
 typedef struct he_triangulation_work {
-    uint64_t steps;               /* steps taken, also for loops that were refused */
-    uint64_t searched;            /* how many of `steps` were spent searching for edges */
-    const he_edge_lookup *lookup; /* index of edges; NULL: edges are searched around their ends */
-    /* index of edges that is made when it is worth its cost; has the caller's diagonals, too */
+    uint64_t steps;    /* steps taken, also for loops that were refused */
+    uint64_t searched; /* how many of `steps` were spent searching for edges */
+    /* the index of edges that is used (`own` or the caller's); NULL: edges are searched around
+     * their ends */
+    const he_edge_lookup *lookup;
+    /* Index of edges, made when searches without it have cost as much as making it; the caller adds
+     * the diagonals that it makes. */
     he_edge_lookup own;
-    uint64_t sorted; /* value of `searched` when the index was made */
-    /* The watch that progress is reported to, as `done` of `of`; the caller counts both. `told` is
-     * the value of `steps` at the last report. */
+    uint64_t sorted; /* value of `searched` when `own` was made */
+    /* The watch to which progress is reported as step `done` of `of`; the caller sets these two.
+     * `told` is the value of `steps` at the last report. */
     he_progress *progress;
     uint64_t done, of, told;
 } he_triangulation_work;

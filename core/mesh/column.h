@@ -2,15 +2,16 @@
  *
  * A column belongs to a domain: vertices, half-edges (a corner's values belong to the half-edge
  * that leaves it inside its face), edges, faces, or the mesh (one row). Values are stored in the
- * machine's byte order, little-endian wherever hedge runs. A column with labels is categorical: its
- * values index the labels (groups, materials of a file).
+ * machine's byte order, which is little-endian on all machines that hedge supports. A column with
+ * labels (strings) is categorical: its values are indices of labels, such as the names of groups or
+ * materials of a file.
  *
  * The column's rule decides the values of elements that an edit makes:
- *   copy         the parent's value (the face that was split, the edge that was cut)
- *   interpolate  linear between the two ends at a split, the mean at a collapse
- *   default      the column's default
- * A weld never takes the mean, whatever the rule: values that differ become values of corners
- * (edit/piece/keep.h). */
+ *   copy         the parent's value (the face that was split, the edge that was cut) interpolate
+ *   interpolated linearly between two ends at a split, the mean at a collapse default      the
+ *   column's default
+ * When vertices are welded, the mean is never taken, whatever the rule: values that differ become
+ * values of corners (edit/piece/keep.h). */
 #ifndef HE_MESH_COLUMN_H
 #define HE_MESH_COLUMN_H
 
@@ -84,7 +85,7 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
     return column->data + row * column->row_bytes;
 }
 size_t he_column_bytes(const he_column *column);
-/* Returns the bytes of the rows of a column alone, without spare capacity. */
+/* Returns the size in bytes of a column's rows, without labels and spare capacity. */
 size_t he_column_rows_bytes(const he_column *column);
 bool he_column_same_kind(
     const he_column *a,
@@ -111,8 +112,8 @@ he_labels *he_labels_new(void);
 he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
 size_t he_labels_count(const he_labels *labels);
-/* Returns the bytes that would be freed if this reference to labels were freed: 0 while others
- * share the labels, and 0 for NULL. */
+/* Returns how many bytes releasing this reference to labels would free: 0 while other references to
+ * them exist, and 0 for NULL. */
 size_t he_labels_own_bytes(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
 /* Returns true if two lists of labels have equal strings in the same order. NULL equals only

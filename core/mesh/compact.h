@@ -14,10 +14,10 @@ typedef struct he_maps {
 
 void he_maps_clear(he_maps *maps);
 
-/* Removes the rows of deleted elements: live elements keep their order and get the ids 0, 1, 2...
- * Counts, links and attributes are otherwise unchanged; memory shrinks to fit. The delta (the
- * record of the edit) says only that the whole content was replaced. `maps` may be NULL; otherwise
- * the caller clears it.
+/* Removes the rows (array entries) of deleted elements: live elements keep their order and get the
+ * ids 0, 1, 2... Except for the ids, the mesh is unchanged; memory shrinks to fit. The delta (the
+ * record of the edit) says only that all data of the mesh were replaced. `maps` may be NULL;
+ * otherwise the caller clears it.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_compact(he_mesh *mesh, he_maps *maps, he_error *err);

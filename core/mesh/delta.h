@@ -3,18 +3,18 @@
  * A delta is a list of records of 16 bytes. Most say that one 32-bit word of one row of one column
  * changed from `before` to `after`: every column, links and doubles alike, is seen as rows of
  * words. Others say that a column was added or dropped, that a material was set, replaced or
- * removed, or that the whole content was replaced. Such a record names an object: the column,
- * material or content from before or after the change, whichever the mesh does not hold now; the
- * delta owns that object. Lineage records (this element came from that one, this one merged into
- * that one) change nothing.
+ * removed, or that the whole content (he_content, all arrays of the mesh) was replaced. Such a
+ * record names an object, which is a column, material or content. The delta owns the object that is
+ * not in the mesh now: after the edit or a redo the old one, after an undo the new one. Lineage
+ * records (this element came from that one, this one merged into that one) change nothing.
  *
  * Applied backwards a delta undoes its edit, applied forwards it does it again, bit for bit. Rows
- * that the edit issued stay issued when it is undone: they are dead then, and only a redo revives
- * them. he_delta_rollback is the exception, for edits that were never published: it takes back the
- * issued rows, too. Undo, redo and rollback cannot fail.
+ * of elements that the edit created stay issued when it is undone: the elements are deleted then,
+ * and only a redo revives them. he_delta_rollback is the exception, for edits that were never
+ * published: it removes these rows, too. Undo, redo and rollback cannot fail.
  *
- * Deleting a row writes dead values to all its columns, so a delta has all values that are needed
- * to revive the row. Its size is proportional to the edit. */
+ * Deleting an element overwrites its row in all columns, so a delta has all values that are needed
+ * to revive the element. The size of a delta is proportional to the edit. */
 #ifndef HE_MESH_DELTA_H
 #define HE_MESH_DELTA_H
 
@@ -31,16 +31,19 @@ typedef enum he_col {
     HE_COL_POSITION,
     /* The constants from here to HE_COL_REPLACED name no columns: records with them say something
      * other than that a word changed. */
-    HE_COL_PARENT, /* `row` is the new element, `before` the one it came from, `word` the kind */
-    /* `row` is the deleted element, `before` the one it was merged into, `word` the kind */
+    /* `row` is the new element, `before` its parent (the element it came from), `word` their
+     * kind */
+    HE_COL_PARENT,
+    /* `row` is the deleted element, `before` the element it was merged into, `word` their kind */
     HE_COL_MERGED,
-    HE_COL_COLUMN_ADDED, /* `row` is the slot of the column, `before` its index in `objects` */
+    /* `row` is the index of the column in the mesh, `before` its index in `objects` */
+    HE_COL_COLUMN_ADDED,
     HE_COL_COLUMN_DROPPED,
-    /* `row` is the slot of the material, `before` its index in `objects`, `after` the mark of the
-     * material that was in the slot before the edit, 0 if none was */
+    /* `row` is the index of the material in the mesh's table, `before` its index in `objects`,
+     * `after` the `mark` (hash) of the material that was there before the edit, 0 if none was */
     HE_COL_MATERIAL,
     /* `before` is the index in `objects` of the content; `row` is 1 if ids name other elements than
-     * before */
+     * before the replacement */
     HE_COL_REPLACED,
     HE_COL_ATTRIBUTE
 } he_col;
@@ -81,17 +84,18 @@ HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t 
 void he_delta_free(he_delta *delta);
 /* Removes the records of a delta but keeps the memory. */
 void he_delta_empty(he_delta *delta);
-/* Returns the memory of a delta: the capacity of its records, but only the rows (not the capacity)
- * of its columns and contents, so that a delta read back from storage counts as much as before it
- * was stored. */
+/* Returns the size of a delta in bytes. Spare capacity counts for its records, but not for its
+ * columns and contents, so that a delta that is read back from storage counts as much as it did
+ * before it was stored. */
 size_t he_delta_bytes(const he_delta *delta);
 /* Frees the capacity of a delta beyond its records; if memory is out, the capacity stays. */
 void he_delta_trim(he_delta *delta);
 
 /* Shortens the part of a delta from record `from` on: all records of one word become one record,
- * with the value before the first and after the last. Lineage records stay. Edits that write a word
- * many times use it, so that the delta has no more records than words that changed. The caller must
- * not roll back to a savepoint after `from`, and no column or content may have been replaced since.
+ * with the `before` of the first and the `after` of the last. Lineage records stay. Edits that
+ * write a word many times use it, so that the delta has no more records than words that changed.
+ * The caller must not roll back to a savepoint after `from`, and no column or content may have been
+ * replaced since.
  * Returns HE_NO_MEMORY if memory is out; the records are as they were.
  * Returns HE_CANCELLED if the work was cancelled; some records are folded, and undo and redo
  * still lead to equal states. */
@@ -109,9 +113,9 @@ void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
 /* Applies a delta forwards to a mesh that has not issued the delta's rows, such as one just loaded.
  * The delta must own the objects (columns, materials, a content) that its edit put into the mesh,
- * as after an undo; afterwards it owns those that the edit took out of the mesh. The mesh has then
- * issued as many rows as `issued` says for each kind, and undo and redo work as usual. On failure
- * the mesh is as it was.
+ * as after an undo; afterwards it owns the objects that the edit took out of the mesh. Afterwards
+ * the mesh has also issued as many rows of each kind as `issued` says, and undo and redo work as
+ * usual. On failure the mesh is as it was.
  * Returns HE_CORRUPT if the mesh is not in the state the edit was made on; *refused, which may be
  * NULL, is then the index of the first record that differs.
  * Returns HE_NO_MEMORY if memory is out. */
@@ -119,9 +123,9 @@ HE_NODISCARD he_status he_delta_forward(he_delta *delta, he_mesh *mesh,
                                         const uint32_t issued[HE_KIND_COUNT], size_t *refused,
                                         he_error *err);
 
-/* The caller must call this before it undoes or redoes a delta that replaced the content. It makes
- * the content that the delta owns issue, as deleted elements, the ids that `mesh` has issued
- * meanwhile. Otherwise these ids would be issued a second time.
+/* The caller must call this before it undoes or redoes a delta that replaced the content. It
+ * extends the content that the delta owns by deleted elements, one for each id that `mesh` has
+ * issued since the replacement. Otherwise these ids would be issued a second time.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err);
 
@@ -153,8 +157,9 @@ void he_delta_rollback(he_mesh *mesh, he_savepoint to);
 typedef struct he_changes {
     he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
-    bool replaced;   /* the whole content was replaced; the lists are empty */
-    bool renumbered; /* the content was replaced, and ids name other elements than before */
+    bool replaced; /* all data of the mesh were replaced; the lists are empty */
+    /* all data of the mesh were replaced, and ids name other elements than before */
+    bool renumbered;
     /* There are changes that no list shows: a column or material was added or removed, or a value
      * of the mesh, or a link or value of a boundary half-edge, differs. If a column with labels was
      * added, removed or replaced by another with its name, `modified` has the elements whose label
@@ -168,9 +173,9 @@ typedef struct he_changes {
  * with their edges. */
 HE_NODISCARD he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from,
                                        size_t to, bool undone, he_changes *out, he_error *err);
-/* A part of a delta that was applied. he_changes_sum finds the net changes of several parts, in the
- * order in which they were applied, with `mesh` in the state after the last one; changes that
- * cancel each other out are not listed. */
+/* A part of a delta, which was applied forwards or backwards. he_changes_sum finds the net changes
+ * of several parts, in the order in which they were applied, with `mesh` in the state after the
+ * last one; changes that cancel each other out are not listed. */
 typedef struct he_change_part {
     const he_delta *delta;
     size_t from, to;

@@ -7,15 +7,16 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* The numbers of rows of a table; each row belongs to one element. `issued`, how many were ever
- * added, only grows, except in he_compact and when an edit that was never published is rolled
- * back. */
+/* The numbers of rows of one kind of element; a row is the element's entry in each of the arrays.
+ * `issued`, the number of rows ever added, only grows, except in he_compact and when an edit that
+ * was never published is rolled back. */
 typedef struct he_rows {
     uint32_t issued, live, capacity;
 } he_rows;
 
-/* The content of a mesh, as parallel arrays: traversal is 1.5 to 2.8 times as fast as with an array
- * of structs. The links of half-edges are in four arrays of 2 * edges.capacity entries each. */
+/* The content of a mesh: all its data, in parallel arrays, because traversal is then 1.5 to 2.8
+ * times as fast as with an array of structs. The links of half-edges are in four arrays of 2 *
+ * edges.capacity entries each. */
 typedef struct he_content {
     he_rows vertices, edges, faces;
     uint32_t boundary_halfedges;
@@ -23,7 +24,7 @@ typedef struct he_content {
     uint32_t *vertex_halfedge;
     uint32_t *next, *prev, *origin, *face;
     uint32_t *face_halfedge;
-    he_column **columns; /* the attribute columns by slot; NULL where a column was dropped */
+    he_column **columns; /* the attribute columns; the entry of a column that was dropped is NULL */
     size_t column_count, column_capacity;
     he_materials materials;
 } he_content;

@@ -15,8 +15,8 @@
 /* Allows a mesh to have the cache of long faces.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_long_faces_allow(he_mesh *mesh, he_error *err);
-/* Empties the cache of a mesh. The caller must do this before the mesh changes, while no other
- * thread reads the mesh. The cache may be filled again afterwards. */
+/* Empties the cache of a mesh. It must be called before the mesh is changed, while no other thread
+ * reads the mesh. The cache may be filled again after the change. */
 void he_long_faces_forget(he_mesh *mesh);
 /* Frees the cache of a mesh; he_mesh_free calls it. */
 void he_long_faces_clear(he_mesh *mesh);

@@ -1,4 +1,5 @@
-/* marks.h - marks: attributes that edits respect.
+/* marks.h - marks: attributes `feature`, `locked` and `selected`, of which edits respect the first
+ * two.
  *
  * A mark is a bool attribute of one component under one of these names. An attribute of another
  * type or number of components is no mark.

@@ -6,11 +6,12 @@
  * limit.
  *
  * The face attribute `material` names the material of each face: it is an attribute with labels,
- * and the label "" means no material. If a label has no row in the table, only the name of that
- * material is known, as in an OBJ file without its library. A row need not be named by any face.
+ * and the label "" means no material. If the table has no material of a label's name, only the name
+ * of that material is known, as in an OBJ file without its library. The table may have materials
+ * that no face uses.
  *
- * A row never changes: an edit replaces it by another one. Copies of a mesh share rows by reference
- * count. Names are unique in a table. */
+ * A material never changes: an edit replaces it by another one. Copies of a mesh share materials by
+ * reference count. Names are unique in a table. */
 #ifndef HE_MESH_MATERIAL_H
 #define HE_MESH_MATERIAL_H
 
@@ -24,7 +25,9 @@
 enum {
     HE_MATERIALS = 4096,
     HE_MATERIAL_NAME = 1023
-}; /* maximum of slots in a table, and of bytes in a material's name */
+    /* HE_MATERIALS: the most slots of a table; HE_MATERIAL_NAME: the most bytes of a material's
+       name */
+};
 
 typedef struct he_look {
     double base_color[4];

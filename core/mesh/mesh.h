@@ -80,7 +80,7 @@ typedef struct he_face {
 
 /* No element, such as the face of a boundary half-edge. */
 #define HE_NONE UINT32_MAX
-/* The value of every link in the row of a deleted element. */
+/* The value that all links of a deleted element have. */
 #define HE_DEAD (UINT32_MAX - 1u)
 /* Most rows of a table: half-edge 2e + 1 of the last edge must have an id below HE_DEAD. */
 #define HE_MAX_ROWS (UINT32_MAX / 2u - 1u)
@@ -97,8 +97,8 @@ typedef struct he_delta he_delta;
 /* Returns an empty mesh, or NULL if memory is out. */
 he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
-/* Makes an independent copy with equal ids, dead rows and attributes; no delta records the writes
- * to the copy. */
+/* Makes an independent copy with equal ids, deleted elements and attributes; no delta records what
+ * is written to the copy. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
 /* Copies a mesh like he_mesh_copy, with `progress` (which may be NULL), which afterwards is the
  * watch of the copy (he_mesh_set_progress). */
@@ -107,17 +107,17 @@ HE_NODISCARD he_status he_mesh_copy_with_progress(const he_mesh *mesh, he_progre
 /* Returns true if two meshes are equal in every issued row of every column and have issued equally
  * many ids of each kind. */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
-/* Compares like he_mesh_equal, but ignores rows that only one of the meshes has issued, if they are
- * dead. */
+/* Compares like he_mesh_equal, but ignores deleted elements whose ids only one of the meshes has
+ * issued. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
 /* Makes all long work with this mesh report its progress to the watch `progress` (progress.h),
  * which may cancel the work: it then fails with HE_CANCELLED. NULL removes the watch. No other
  * thread may use the mesh, and the watch must exist until it is removed. */
 void he_mesh_set_progress(he_mesh *mesh, he_progress *progress);
-/* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. An
- * edit that is cancelled then leaves the mesh half edited, because a rollback would take about as
- * long as the edit did. Any other failure leaves the mesh as it was. */
+/* Declares that the mesh is a private copy which its owner frees as soon as an edit is cancelled.
+ * After this call a cancelled edit leaves the mesh half edited, because a rollback would take about
+ * as long as the edit did. Any other failure leaves the mesh as it was. */
 void he_mesh_expend(he_mesh *mesh);
 
 /* Returns the bytes of memory of a mesh, counted from the capacities of its columns. */

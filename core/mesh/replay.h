@@ -1,19 +1,21 @@
 /* replay.h - a copy of a mesh that moves from revision to revision along the log of the mesh's
  * deltas.
  *
- * The deltas belong to a mesh that is edited meanwhile; the copy only reads them. It crosses one
- * delta at a time, forwards (as the edit was made) or backwards (as it is undone), and then equals
- * the mesh at that point of the log: every live row, every column, and the high-water marks.
+ * The deltas belong to the original mesh, which may be edited meanwhile; the copy only reads them.
+ * The copy crosses one delta at a time, forwards (as the edit was made) or backwards (as it is
+ * undone), and then equals the mesh at that point of the log: every live row, every column, and the
+ * high-water marks.
  *
  *     log     ... 40 --D--> 41 --E--> 42 --D undone ...      crossing D at 42 again leads to 41's
  *     copy              <------- 42                          links, but keeps what 42 has issued
  *
  * A record of a word has both values, before and after the change. A column or content that was
  * replaced does not fit into a record: the delta owns it as an object, but only the object from
- * before or from after the edit, whichever the mesh does not hold now. So when a copy first crosses
- * such a delta, the delta must own the objects that the copy needs afterwards (`held`). From then
- * on the copy keeps the objects that a crossing has taken out of it. Crossings of one delta
- * alternate between forwards and backwards, because undo and redo of one edit do. */
+ * before or from after the edit, whichever the mesh does not hold now. So when the copy first
+ * crosses such a delta, the delta must own the objects that are in the mesh after the crossing
+ * (he_crossing.held). From then on the copy keeps the objects that each crossing has taken out of
+ * it. Crossings of one delta alternate between forwards and backwards, because undo and redo of one
+ * edit do. */
 #ifndef HE_MESH_REPLAY_H
 #define HE_MESH_REPLAY_H
 
@@ -25,8 +27,10 @@ typedef struct he_crossing {
     /* A number that identifies the delta among all deltas that the copy will ever cross. */
     uint64_t key;
     const he_delta *delta;
-    bool undo;              /* the delta is crossed backwards */
-    bool held;              /* the delta owns the objects that the copy needs after the crossing */
+    bool undo; /* the delta is crossed backwards */
+    /* true if the delta owns the objects (columns, materials, a content) that are in the mesh
+     * after the crossing */
+    bool held;
     const uint32_t *issued; /* how many ids of each kind the mesh has issued after the crossing */
 } he_crossing;
 

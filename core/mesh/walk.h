@@ -67,8 +67,8 @@ static inline he_halfedge he_swing_cw(const he_mesh *m, he_halfedge h)
 }
 
 /* An edit at a random place of a large mesh spends most of its time waiting for memory. The
- * prefetch functions request all rows that the edit will read together, so that it waits once and
- * not for each row. They accept any id, also of deleted elements. */
+ * prefetch functions request all array entries that the edit will read at once, so that the edit
+ * waits once and not for each entry. They accept any id, also of deleted elements. */
 static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
 {
     if (h.i < 2u * m->c.edges.issued) {
@@ -104,8 +104,9 @@ static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
     }
 }
 
-/* Prefetches for a loop that edits edges and knows which ones come next: `next` directly after the
- * present edge, `soon` later. Their memory is then read while the present edge is edited. */
+/* Prefetches for a loop that edits edges and knows which ones come next: edge `next` follows
+ * directly after the present edge, edge `soon` later. Their memory is then read while the present
+ * edge is edited. */
 static inline void he_prefetch_coming(const he_mesh *m, he_edge next, he_edge soon)
 {
     he_prefetch_links(m, he_edge_halfedge(soon, 0));

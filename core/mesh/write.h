@@ -6,8 +6,8 @@
  *     COMMIT   the functions below. They cannot fail.
  * Between he_new_* and the end of COMMIT every link of a new row must be set.
  *
- * If an edit consists of several edits of which a later one may be refused, he_edit_begin and
- * he_edit_end must enclose them, which then roll back all of them. */
+ * If an edit consists of several edits and a later one may be refused, they must stand between
+ * he_edit_begin and he_edit_end; if one fails, he_edit_end rolls back all of them. */
 #ifndef HE_MESH_WRITE_H
 #define HE_MESH_WRITE_H
 
@@ -17,24 +17,25 @@
 #include <assert.h>
 #include <string.h>
 
-/* The most rows and records that the COMMIT part of an edit will need. he_reserve adds the records
- * for the links, positions and attributes of new rows itself. */
+/* The most rows (array entries of new elements) and records that the COMMIT part of an edit will
+ * need. he_reserve adds the records for the links, positions and attributes of new rows itself. */
 typedef struct he_reservation {
     uint32_t vertices, edges, faces;
-    /* Upper bounds of the rows of elements that the edit deletes. */
+    /* Upper bounds of the numbers of elements that the edit deletes. */
     size_t deleted_vertices, deleted_edges, deleted_faces;
-    /* upper bound of the links written to rows that are neither new nor deleted */
+    /* upper bound of the number of links written in elements that are neither new nor deleted */
     size_t links;
-    /* upper bound of the positions written to rows that are neither new nor deleted */
+    /* upper bound of the number of positions written in vertices that are neither new nor
+     * deleted */
     size_t positions;
-    /* Upper bound of the rows, neither new nor deleted, whose attributes are written; each row
-     * counts once for all columns. */
+    /* Upper bound of the number of elements, neither new nor deleted, whose attributes are written;
+     * each counts once, however many columns it has. */
     size_t attributes;
-    size_t lineage; /* upper bound of the records of he_note_parent and he_note_merged */
+    size_t lineage; /* upper bound of the number of calls of he_note_parent and he_note_merged */
 } he_reservation;
 
-/* The most records that COMMIT makes for a row that it issues or deletes, without attributes. More
- * are counted than a row has links, because an edit may write a link twice. */
+/* The most records that COMMIT makes for each new or deleted element, without its attributes. These
+ * numbers are larger than an element's number of links, because an edit may write a link twice. */
 enum {
     HE_POSITION_RECORDS = sizeof(he_vec3) / 4,
     HE_VERTEX_RECORDS = 2 + HE_POSITION_RECORDS,
@@ -168,8 +169,8 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
 /* Writes a value of row_bytes bytes to a row of the attribute column in this slot. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
-/* These functions write dead links to a row. A row that was just issued has dead links until the
- * caller writes its links. */
+/* These functions set all links of an element to HE_DEAD. A new element has such links until the
+ * caller writes others. */
 static inline void he_clear_vertex(he_content *c, uint32_t v)
 {
     c->position[v] = (he_vec3){0, 0, 0};
@@ -298,8 +299,9 @@ HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, h
 
 /* These functions add or drop an attribute column, and record it in the delta. On success the mesh
  * owns `takes`, which must have as many rows as its domain has issued. The column gets the first
- * free slot. A slot may be used again, because the history is linear: a record that names a slot is
- * only applied while the column that it means is in the slot. */
+ * free slot (entry of the mesh's array of columns). A slot may be used again, because the history
+ * is linear: a record that names a slot is only applied while the column of which it tells is in
+ * that slot. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
 /* Puts a material into a slot of the mesh's table, in place of the one that is there; with NULL the
@@ -309,18 +311,18 @@ HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *er
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,
                                             he_error *err);
-/* Says how he_mesh_replace changes ids. That function replaces the whole content of a mesh by that
- * of `takes`, which is freed on success. The delta keeps the old content; if no delta is recording,
- * it is freed. HE_KEEPS_IDS promises that every id issued before is issued in `takes` and names the
- * same element or a deleted one, and that columns keep their slots. Such a replacement can be
- * undone and redone among other edits, after he_delta_ready. */
+/* Says how he_mesh_replace changes ids. That function replaces the content (all data) of a mesh by
+ * the content of `takes`, which is freed on success. The delta keeps the old content; if no delta
+ * is recording, the old content is freed. HE_KEEPS_IDS promises that every id issued before is
+ * issued in `takes` and names the same element or a deleted one, and that columns keep their slots.
+ * Such a replacement can be undone and redone among other edits, after he_delta_ready. */
 typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
 HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 
 /* The state between he_edit_begin and he_edit_end, which enclose several edits that succeed or fail
- * together. If no delta is recording, `own` records, so that the edits can be rolled back.
- * he_edit_end returns `status` unchanged. A cancelled edit of an expendable mesh (he_mesh_expend)
- * is not rolled back. */
+ * together. If no delta was recording, `own` is a delta that does, so that the edits can be rolled
+ * back. he_edit_end returns `status` unchanged. A cancelled edit of an expendable mesh
+ * (he_mesh_expend) is not rolled back. */
 typedef struct he_bracket {
     he_delta *own;
     he_savepoint mark;

@@ -17,13 +17,14 @@ typedef enum he_param_type {
     HE_PARAM_ELEMENTS, /* one id under the key `name`, or a list of ids under the key `plural` */
     HE_PARAM_NUMBER,   /* a finite double, within min and max where the row has a range */
     HE_PARAM_POINT,    /* a point [x, y, z] */
-    HE_PARAM_POINTS,   /* [x, y, z], or a list of those, one for each element */
+    HE_PARAM_POINTS,   /* a point [x, y, z], or a list of points, one for each element */
     HE_PARAM_FLAG,     /* true or false */
     HE_PARAM_CHOICE,   /* one of the strings in `choices` */
     HE_PARAM_MATRIX,   /* 16 numbers, row-major, last row 0 0 0 1 */
-    HE_PARAM_CYCLE, /* a list of element ids whose order matters and where repeats are refusals */
-    HE_PARAM_TEXT,  /* a string */
-    /* Red, green and blue, none below 0; with HE_OPACITY perhaps also the opacity. */
+    HE_PARAM_CYCLE,    /* a list of element ids whose order matters; repeated ids are refused */
+    HE_PARAM_TEXT,     /* a string */
+    /* red, green and blue, none below 0; with the flag HE_OPACITY a fourth number, the opacity, may
+     * follow */
     HE_PARAM_COLOR,
     HE_PARAM_MESH /* another mesh, which must not change meanwhile */
 } he_param_type;
@@ -31,21 +32,21 @@ typedef enum he_param_type {
 /* Flags of a parameter. */
 enum {
     HE_REQUIRED = 1,
-    HE_NULLABLE = 2,  /* an element that may be null in a request; HE_NONE then */
-    HE_EXCLUSIVE = 4, /* the ends of the range are excluded */
+    HE_NULLABLE = 2,  /* the element may be null in a request; the operation then gets HE_NONE */
+    HE_EXCLUSIVE = 4, /* `min` and `max` themselves are not allowed */
     HE_RANGE = 8,     /* min and max apply */
     HE_DERIVED = 16,  /* a number or flag whose default is computed from the mesh, as `doc` says */
-    /* If a request gives the parameter, a local operation costs as much as one of the whole mesh.
-     */
+    /* If a request gives this parameter, even an HE_OP_LOCAL operation takes time linear in the
+     * whole mesh. */
     HE_COSTS_MESH = 32,
-    HE_WHOLE = 128, /* a number with a range, which must be whole */
+    HE_WHOLE = 128, /* a number with a range; only whole numbers are allowed */
     /* The operation also visits neighbours of the elements: all corners of the faces around a
      * vertex, all edges at the corners of a face or along a loop, both loops of an edge. */
     HE_REACHES = 64,
     /* Each call walks around all elements that this parameter names: around the vertices and along
-     * the loops of faces and holes, and with HE_REACHES around all corners of their faces. A list
-     * of operations is charged for that, since it may name one vertex of large degree again and
-     * again. */
+     * the loops of faces and holes, and with HE_REACHES around all corners of their faces. A
+     * request with a list of operations is charged for these walks, since it may name one vertex of
+     * large degree again and again. */
     HE_WALKS = 256,
     HE_OPACITY = 512 /* a colour may have an opacity as its fourth number */
 };
@@ -73,7 +74,7 @@ typedef struct he_arg {
     uint32_t id;         /* value of an HE_PARAM_ELEMENT; HE_NONE for null */
     const uint32_t *ids; /* values of an HE_PARAM_ELEMENTS or HE_PARAM_CYCLE */
     size_t count;        /* number of ids or points */
-    bool list;           /* an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list */
+    bool list;           /* true if an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list */
     double number;
     const he_vec3 *points; /* values of an HE_PARAM_POINT or HE_PARAM_POINTS */
     bool flag;
@@ -116,8 +117,8 @@ typedef struct he_results {
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* How long an operation takes: the time of an HE_OP_LOCAL depends on the elements that the
- * operation touches; that of an HE_OP_WHOLE on the whole mesh, so this may take long. */
+/* On what an operation's time depends: on the elements that it touches (HE_OP_LOCAL), or on the
+ * size of the whole mesh (HE_OP_WHOLE), so that it may take long. */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
 /* Marks a change of V, E or F that depends on the mesh. */
@@ -133,14 +134,14 @@ typedef struct he_op {
      * if the work can be cancelled, HE_CANCELLED; the list ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* change of the numbers of vertices, edges and faces, in this order */
-    /* The time of the operation relative to `transform`: for each element of the mesh if it takes
-     * the whole mesh, else for each element of its lists. It was measured, and rounded up; 0 means
-     * 1. */
+    /* The measured time of the operation relative to that of `transform`, rounded up: for each
+     * element of the mesh if the operation is HE_OP_WHOLE, else for each element of its lists. 0
+     * means 1. */
     unsigned pace;
     /* Returns the factor by which the mesh grows, approximately; NULL if it keeps its size. */
     double (*growth)(const he_arg *args);
     /* Finds a refusal from the mesh's counts alone, before the operation begins; NULL if no refusal
-     * can be found in this way. HE_OK is no promise of success. */
+     * can be found in this way. HE_OK does not mean that the operation will succeed. */
     he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
     /* Performs the operation. Only he_op_run calls it. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
@@ -169,9 +170,10 @@ bool he_op_declares(const he_op *op, he_status status);
 
 /* Fills in an argument for every parameter: the parameter's default, with `given` false. */
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
-/* Applies one operation. Arguments are those of he_op_defaults, some of them given. The decoder has
- * checked ranges, groups and finiteness (asserted here). A refusal changes nothing. Neither does a
- * list of elements that is given and empty: its results are null, 0 and empty lists. */
+/* Applies one operation. The arguments are those of he_op_defaults, of which the caller has
+ * replaced some. Ranges, groups and finiteness must have been checked; this is asserted. If the
+ * operation is refused, or if a list of elements is given and empty, the mesh does not change; with
+ * an empty list the results are null, 0 and empty lists. */
 HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                                  he_results *out, he_error *err);
 void he_results_clear(he_results *results);

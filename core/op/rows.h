@@ -1,5 +1,5 @@
-/* rows.h - the arrays of rows, for table.c and op.c, and the functions with which rows fill in
- * results. */
+/* rows.h - the arrays of rows of the operation table, for table.c and op.c, and the functions with
+ * which rows fill in results. */
 #ifndef HE_OP_ROWS_H
 #define HE_OP_ROWS_H
 
@@ -29,8 +29,8 @@ size_t he_table_number(const he_op *op);
  *     enum { EDGE_BISECT_EDGE, EDGE_BISECT_T };                    indices of args
  *     enum { EDGE_BISECT_OUT_VERTEX, EDGE_BISECT_OUT_EDGE };       indices of results
  *
- * The row places each parameter and result with its slot, `[EDGE_BISECT_T] = {.name = "t", ...}`,
- * so that an adapter and its row cannot mean different parameters. A slot is named after the
+ * The row places each parameter and result at its slot (index), `[EDGE_BISECT_T] = {.name = "t",
+ * ...}`, so that an adapter and its row cannot mean different parameters. A slot is named after the
  * operation and the parameter (its plural if there is one) or, behind OUT, the result:
  * .ci/lint-slots compares the names. */
 

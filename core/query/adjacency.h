@@ -32,8 +32,8 @@
 /* Flags of the functions below. */
 enum { HE_CLOCKWISE = 1 };
 
-/* Where the function of a relation puts the ids of neighbours; its members are private to
- * adjacency.c. */
+/* The collector to which the function of a relation passes the ids of neighbours. Its members are
+ * private to adjacency.c. */
 struct he_gather;
 
 typedef struct he_relation {
@@ -70,17 +70,17 @@ typedef struct he_neighbours {
     unsigned flags;
 } he_neighbours;
 
-/* Finds the neighbours of many elements. `limit` is the most half-edges to visit, since a list may
- * name one vertex of a thousand neighbours a thousand times; if `limit` is 0, only what fits into
- * 32-bit offsets is a limit. The caller clears `out`. Returns the errors of he_relation_append,
- * too. Returns HE_LIMIT if more half-edges would be visited. */
+/* Finds the neighbours of many elements. `limit` is the largest number of half-edges to visit,
+ * since a list may name one vertex of a thousand neighbours a thousand times; 0 means that only the
+ * range of 32-bit offsets limits it. The caller clears `out`. Returns the errors of
+ * he_relation_append, too. Returns HE_LIMIT if more half-edges would be visited. */
 HE_NODISCARD he_status he_relation_dense(const he_mesh *m, const he_neighbours *asked,
                                          uint64_t limit, he_dense *out, he_error *err);
 void he_dense_clear(he_dense *dense);
 
-/* Appends the faces that have both vertices as corners, in the order about `a`: up to two beside
- * the edge between them, and faces in which they are corners without a common edge. Takes time
- * linear in the sum of the degrees.
+/* Appends the faces that have both vertices a and b as corners, in the order about `a`: up to two
+ * beside the edge between a and b, and faces in which a and b are corners that no side joins. Takes
+ * time linear in the sum of the degrees.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if a vertex is not live.
  * Returns HE_CORRUPT if links do not close.
  * Returns HE_NO_MEMORY if memory is out. */

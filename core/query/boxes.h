@@ -2,9 +2,9 @@
  * as triangles.
  *
  * The tree is built top-down by binned surface area heuristics (I. Wald, "On fast construction of
- * SAH-based bounding volume hierarchies", 2007), each node down to HE_BOXES_LEAF things; from depth
- * HE_BOXES_DEEP on it is halved instead, so that no input makes it deeper than the stacks of the
- * walks.
+ * SAH-based bounding volume hierarchies", 2007), down to nodes of at most HE_BOXES_LEAF things.
+ * From depth HE_BOXES_DEEP on nodes are halved instead, so that no input makes the tree deeper than
+ * the stacks with which it is walked.
  *
  *     nodes    0: the root; children of a node are neighbours, first and first + 1
  *     order    the things, in the order of leaves
@@ -20,9 +20,9 @@
 
 enum {
     HE_BOXES_LEAF = 4,
-    /* Nodes at this depth or deeper are halved without a search for the best cut. */
+    /* Nodes at this depth or deeper are halved without a search for the best division. */
     HE_BOXES_DEEP = 48,
-    /* Size of the stack of a walk down the tree; no path from the root is as long. */
+    /* Number of nodes on the stack of a walk down the tree; every path from the root is shorter. */
     HE_BOXES_STACK = 96
 };
 
@@ -71,8 +71,8 @@ typedef struct he_boxes_visit {
      * node. This callback may be NULL. Nodes whose boxes do not intersect are skipped in any
      * case. */
     bool (*is_needless)(void *context, uint32_t a, uint32_t b);
-    /* Tries each thing of leaf a with each of leaf b; if a and b are the same leaf, tries its
-     * things with one another. An error ends the visit. */
+    /* Tests each thing of leaf a against each thing of leaf b; if a and b are one leaf, tests its
+     * things against each other. An error ends the visit. */
     he_status (*try_leaves)(void *context, const he_box_node *a, const he_box_node *b,
                             he_error *err);
 } he_boxes_visit;

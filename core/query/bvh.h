@@ -1,19 +1,18 @@
 /* bvh.h - a tree of boxes over the triangles of a mesh: rays, nearest points, self-intersections.
  *
- * The triangles are those of draw_arrays.h, so a ray hits what is drawn. The tree is one of
- * boxes.h; the triangles of a hub (hubs.h), and those of a face that has many, have subtrees of
- * their own.
+ * The triangles are those of draw_arrays.h, so a ray hits what is drawn. The tree is made by
+ * boxes.h. The triangles at a hub (a position at which very many meet, hubs.h) form a subtree of
+ * their own, and so do those of a face of many triangles.
  *
- *     nodes      as in boxes.h, over `triangles`
- *     boxes      in coordinates times `scale`, a power of two that brings the faces near the unit
- *                cube, whatever isolated vertices there are: no finite input overflows. Faces that
+ *     nodes      as in boxes.h, over `triangles` boxes      in coordinates times `scale`, a power
+ *     of two that brings the faces near the unit cube and does not depend on isolated vertices, so
+ *     that no finite input overflows. Faces that
  *                are 1e70 times smaller than the largest coordinate of a face count as points for
  *                rays and nearest points. The boxes are floats, rounded outward
  *     discs      around the same triangles, see bvh_disc.h
  *
- * A tree belongs to the state of the mesh when it was made: the functions take that mesh as an
- * argument, and a mesh that has changed needs a new tree. Trees are never written to, so any number
- * of threads may search one.
+ * A tree is valid as long as the mesh for which it was made does not change; the functions take
+ * that mesh as an argument. Trees are never written to, so any number of threads may search one.
  *
  * BUDGETS (base/budget.h) are charged HE_BVH_LOOK for each box and triangle that a ray or a point
  * visits, a step for each pair of boxes and HE_BVH_PAIR for each pair of triangles that is tried; a
@@ -51,8 +50,8 @@ typedef struct he_bvh {
     he_hubs hubs;
 } he_bvh;
 
-/* Makes a tree, in O(n log n) time for n triangles. `progress`, which may be NULL, need not be that
- * of the mesh: other threads may read the mesh meanwhile.
+/* Makes a tree, in O(n log n) time for n triangles. Progress is reported to `progress`, which may
+ * be NULL, and not to the watch of the mesh, so other threads may read the mesh meanwhile.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face is too large for the arrays of a drawing
  * (draw_arrays.h), or there are more than 2^31 triangles.
@@ -71,7 +70,7 @@ typedef struct he_hit {
     double distance;
 } he_hit;
 
-/* A ray; `max` is the greatest distance from its origin at which it hits, in the mesh's unit. */
+/* A ray, which hits nothing farther from its origin than `max`, in the mesh's unit. */
 typedef struct he_ray {
     he_vec3 origin;
     he_vec3 direction; /* of any length but zero */
@@ -98,14 +97,14 @@ HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_v
 /* Appends pairs of faces that intersect, each pair once and the lesser id first, in rising order:
  * faces that share a point which is not a corner of both, whether they are neighbours or not.
  * Corners at one position count as one corner, so an open seam is no intersection; faces that fold
- * back onto their neighbour, or overlap, are. Decided without rounding (orient.h), from signs alone
- * as in P. Guigue and O. Devillers, "Fast and robust triangle-triangle overlap test using
- * orientation predicates", 2003. Triangles without area intersect nothing, and those of one face
- * are not tried against each other.
+ * back onto their neighbour, or overlap, do intersect. The decision is exact, without rounding
+ * (orient.h), from signs alone as in P. Guigue and O. Devillers, "Fast and robust triangle-triangle
+ * overlap test using orientation predicates", 2003. Triangles without area intersect nothing, and
+ * triangles of one face are not tested against each other.
  *
- * `complete` is set to false, and there may be more pairs, if the budget ran out or if `most` pairs
- * were found, in which pairs of faces of many triangles may count several times. `progress` may be
- * NULL.
+ * `complete` is set to false if the budget ran out or `most` pairs were found; there may be more
+ * pairs then. A pair of faces of many triangles may count several times towards `most`. `progress`
+ * may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most,

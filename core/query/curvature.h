@@ -1,16 +1,16 @@
 /* curvature.h - discrete curvature at vertices, and cotangent weights of edges.
  *
- * All values are those of the surface of triangles with which draw_arrays.h fills the faces: a
- * polygon of more than three corners counts by those of its triangles that touch the vertex or
- * edge. The triangles of a face need not turn in the plane of the face, so the angles at a corner
- * add up to what the surface has there, above pi if the corner is reflex.
+ * All values are those of the surface of triangles with which draw_arrays.h fills the faces: of a
+ * polygon of more than three corners, only the triangles that touch the vertex or edge count. The
+ * triangles of a face need not turn in the plane of the face, so the angles at a corner add up to
+ * what the surface has there, above pi if the corner is reflex.
  *
- * DEGENERATE triangles, whose sides are parallel up to rounding, add their angles (a side of no
- * length is at right angles to the others) and nothing else.
+ * DEGENERATE triangles, whose sides are parallel up to rounding, contribute only their angles to
+ * the results; a side of length 0 counts as perpendicular to the others.
  *
  * M. Meyer, M. Desbrun, P. Schroeder and A. H. Barr, "Discrete differential-geometry operators for
- * triangulated 2-manifolds", 2003: the cotangent formula, and the mixed area, of which every vertex
- * has its share of the surface and no triangle a negative one. U. Pinkall and K. Polthier,
+ * triangulated 2-manifolds", 2003: the cotangent formula, and the mixed area, which gives every
+ * vertex a share of the surface, never a negative part of a triangle. U. Pinkall and K. Polthier,
  * "Computing discrete minimal surfaces and their conjugates", 1993: the weights.
  *
  * Undefined values are NaN; no other function of the kernel returns NaN. Units: radians, 1 /

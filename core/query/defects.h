@@ -38,15 +38,16 @@ typedef enum he_defect_code {
     HE_DEFECTS
 } he_defect_code;
 
-/* Returns a name such as "bowtie", and the kind of the elements that have the defect. */
+/* he_defect_name returns the name of a defect, such as "bowtie"; he_defect_kind returns the kind of
+ * the elements that have the defect. */
 const char *he_defect_name(he_defect_code code);
 he_kind he_defect_kind(he_defect_code code);
 
 /* The lengths below or above which an element counts as a defect. */
 typedef struct he_thresholds {
     double merge, flat, small;
-    /* Seed for hashing positions. A client that makes the mesh must not know it, or it could make
-     * all positions collide. */
+    /* Seed for hashing positions. Clients must not know the seed: a client that knows it could make
+     * a mesh of which all positions have one hash. */
     uint64_t seed;
 } he_thresholds;
 
@@ -63,7 +64,9 @@ typedef struct he_defect_found {
     /* The second element concerned, such as the vertex at the same position; HE_NONE: there is
      * none. */
     uint32_t other;
-    double value; /* what was measured, as the head of defects.h says; 0 if that names no value */
+    /* the measured value that the table at the head of defects.h names for this defect; 0 if it
+     * names none */
+    double value;
 } he_defect_found;
 
 typedef struct he_defect_list {
@@ -81,8 +84,9 @@ typedef struct he_defects {
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
                     double value);
 
-/* Finds all defects except self-intersections in a mesh that passed he_check. `progress`, which may
- * be NULL, need not be that of the mesh: other threads may read the mesh meanwhile.
+/* Finds all defects except self-intersections in a mesh that passed he_check. Progress is reported
+ * to `progress`, which may be NULL, and not to the watch of the mesh, so other threads may read the
+ * mesh meanwhile.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds,

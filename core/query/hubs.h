@@ -16,14 +16,18 @@ enum { HE_HUB_SPOKES = 32 };
 
 typedef struct he_hubs {
     uint32_t count;
-    uint32_t *first;  /* count + 1 indices: where in `spokes` the spokes of each hub begin */
-    uint32_t *spokes; /* the triangles at each hub, hub after hub, each hub's in rising order */
-    he_vec3 *places;  /* positions of the hubs */
+    /* `count` + 1 indices of `spokes`: where the spokes of each hub begin, and where the last
+     * ones end */
+    uint32_t *first;
+    /* the triangles at the hubs, one hub after another, for each hub in rising order */
+    uint32_t *spokes;
+    he_vec3 *places; /* positions of the hubs */
 } he_hubs;
 
 /* Finds the hubs of `count` triangles. Each is given as three vertices, and the next triangle
  * begins `stride` words later. A triangle with two corners at one hub is one spoke of it. Takes O(n
- * log n) time in the corners at hubs, and linear time in all others. The caller clears `out`.
+ * log n) time for n corners at hubs, and linear time for all other corners. The caller clears
+ * `out`.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED or HE_LIMIT if the budget ends the work. */
 HE_NODISCARD he_status he_hubs_find(const he_mesh *m, const uint32_t *triangles, size_t stride,

@@ -1,9 +1,9 @@
-/* idmap.h - a set of ids that numbers them in order of arrival.
+/* idmap.h - a set of ids, numbered in the order in which they were added.
  *
  * A walk over part of a mesh must remember the elements it has visited, at a cost proportional to
- * what it touched and not to the mesh. The n-th id added gets the index n, so the caller can keep
- * facts about an element (its depth, its distance) in arrays parallel to `ids`, and `ids` itself is
- * the queue of a breadth-first walk. {0} is empty. */
+ * what it touched and not to the mesh. The n-th id added gets the index n, so the caller can store
+ * values for each element (such as its depth) in arrays parallel to `ids`, and `ids` itself is the
+ * queue of a breadth-first walk. {0} is empty. */
 #ifndef HE_QUERY_IDMAP_H
 #define HE_QUERY_IDMAP_H
 
@@ -11,8 +11,8 @@
 
 typedef struct he_idmap {
     he_ids ids; /* the ids in the order in which they were added */
-    /* Hash table of indices in `ids`, each + 1, or 0 if free; open addressing, at most half
-     * full. */
+    /* Hash table with open addressing, at most half full. An entry is an index in `ids`, plus 1; 0
+     * if it is free. */
     uint32_t *slots;
     unsigned log2; /* logarithm of the number of slots, 0 while there are none */
 } he_idmap;

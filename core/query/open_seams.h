@@ -5,9 +5,9 @@
 
 #include "mesh/mesh.h"
 
-/* Counts the pairs of boundary half-edges that run between two positions in opposite directions: a
- * weld with tolerance 0 would make one edge of each pair. 0 and -0 are equal positions; a half-edge
- * with both ends at one position is skipped. Takes time linear in the boundary.
+/* Counts the pairs of boundary half-edges that run between two positions in opposite directions:
+ * welding the mesh with tolerance 0 would make one edge of each pair. 0 and -0 are equal positions;
+ * a half-edge with both ends at one position is skipped. Takes time linear in the boundary.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_open_seams_count(const he_mesh *m, uint64_t *out, he_error *err);
 

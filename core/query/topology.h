@@ -8,9 +8,9 @@
  *     genus = (2 components - euler - boundary loops) / 2, the number of handles; it means nothing
  *             if there is a bow-tie, because fans share a vertex that the formula counts once
  *
- * Everything is linear in the mesh, except for union-find's inverse Ackermann, and uses flat
- * arrays. Links that do not close, or lead to elements that do not exist, give HE_CORRUPT; every
- * function may return HE_NO_MEMORY. The caller clears outputs. */
+ * All functions take time linear in the size of the mesh, except for the inverse Ackermann factor
+ * of union-find. Links that do not close, or lead to elements that do not exist, give HE_CORRUPT;
+ * every function may return HE_NO_MEMORY. The caller clears outputs. */
 #ifndef HE_QUERY_TOPOLOGY_H
 #define HE_QUERY_TOPOLOGY_H
 
@@ -32,7 +32,7 @@ typedef struct he_topology {
     /* There is no boundary half-edge; a mesh without faces is not closed. */
     bool closed;
     bool manifold; /* there is no bow-tie; a mesh without faces is not manifold */
-    /* How many faces have each degree, by rising degree; degrees of no face are left out. */
+    /* the degrees that occur, in rising order, each with its number of faces */
     he_degree_count *degrees;
     size_t degree_count;
 } he_topology;
@@ -57,7 +57,8 @@ typedef struct he_boundaries {
 HE_NODISCARD he_status he_boundaries_find(const he_mesh *m, he_boundaries *out, he_error *err);
 void he_boundaries_clear(he_boundaries *boundaries);
 
-/* COMPONENTS. The two relations by which faces are joined into components. */
+/* COMPONENTS. The two relations by which faces are connected into components: a shared edge, or a
+ * shared vertex. */
 typedef enum he_connection { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_connection;
 
 typedef struct he_component {
@@ -69,7 +70,7 @@ typedef struct he_component {
 } he_component;
 
 typedef struct he_components {
-    he_component *components; /* in the order of their lowest faces */
+    he_component *components; /* in the order of the lowest face ids of the components */
     size_t count, capacity;
 } he_components;
 
@@ -78,8 +79,8 @@ HE_NODISCARD he_status he_components_find(const he_mesh *m, he_connection by, he
 void he_components_clear(he_components *components);
 
 /* Finds for each face that was ever issued the number of its component by edge, HE_NONE if the face
- * was deleted, and the number of components. They are numbered from 0 by their lowest face. The
- * caller frees the array. */
+ * was deleted, and the number of components. Components are numbered from 0 in the order of their
+ * lowest face ids. The caller frees the array. */
 HE_NODISCARD he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *count,
                                            he_error *err);
 

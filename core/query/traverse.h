@@ -13,7 +13,7 @@
 /* A PATH follows a list of steps from a half-edge; the whole list is taken `repeat` times. */
 typedef enum he_step { HE_STEP_NEXT, HE_STEP_PREV, HE_STEP_TWIN } he_step;
 typedef enum he_until {
-    HE_UNTIL_COUNT, /* the path ends only when its list of steps was taken `repeat` times */
+    HE_UNTIL_COUNT, /* the path ends only after its list of steps was taken `repeat` times */
     HE_UNTIL_START, /* the path also ends when it first returns to the half-edge `from` */
     /* The path also ends at the first half-edge without a face, or when the whole list of steps was
      * taken and led back to `from`. */
@@ -23,16 +23,18 @@ typedef enum he_until {
 typedef struct he_path_steps {
     const he_step *list;
     size_t count;
-    /* How often the list of steps is taken, may be 0; UINT64_MAX is for paths that end by
-     * `until`. */
+    /* How many times the list of steps is taken; may be 0. UINT64_MAX is for paths that `until`
+     * ends. */
     uint64_t repeat;
-    he_until until; /* tested after each step, not before the first */
+    /* condition at which the path ends; it is tested after each step, not before the first */
+    he_until until;
     uint64_t limit; /* the most steps that may be taken; 0: no bound */
 } he_path_steps;
 
 /* Appends the half-edges of the path, beginning with `from`: one more than the steps taken. A path
- * that ends by `until` always ends: a list of steps maps half-edges one to one, so after as many
- * rounds as there are half-edges the path has come back (else HE_CORRUPT). `progress` may be NULL.
+ * with the condition HE_UNTIL_START or HE_UNTIL_BOUNDARY always ends: the list of steps maps
+ * half-edges one to one, so after at most as many rounds as there are half-edges the path has
+ * returned to `from`; if it has not, HE_CORRUPT is returned. `progress` may be NULL.
  * Returns HE_LIMIT if the path would take more steps than `limit`.
  * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_BAD_VALUE if the list of steps is empty. */
@@ -66,16 +68,20 @@ typedef enum he_measure {
 } he_measure;
 
 typedef struct he_path {
-    bool found;       /* false: no path joins the two vertices, which is no error */
-    he_ids vertices;  /* from, ..., to; only `from` if they are one vertex */
-    he_ids edges;     /* the edges between successive vertices: one fewer than vertices */
-    double length;    /* in the measure asked for; DBL_MAX if a double cannot hold it */
-    uint64_t visited; /* half-edges visited, also if no path was found: the cost of the search */
+    bool found; /* false: no path joins the two vertices, which is no error */
+    /* the vertices of the path, from `from` to `to`; a single one if these are equal */
+    he_ids vertices;
+    he_ids edges; /* the edges between successive vertices: one fewer than vertices */
+    /* length of the path in the measure that the caller chose; DBL_MAX if it is too large for a
+     * double */
+    double length;
+    uint64_t visited; /* number of half-edges that the search visited, also if no path was found */
 } he_path;
 
-/* Finds the shortest path by Dijkstra's algorithm (1959), with a heap of four children a node,
- * until `to` is settled; HE_BY_EDGES makes it a breadth-first search. Among several shortest paths
- * the order of the links decides, equally on every machine. The caller clears `out`. */
+/* Finds the shortest path by Dijkstra's algorithm (1959), with a heap in which a node has four
+ * children, until the distance of `to` is final; HE_BY_EDGES makes it a breadth-first search. Which
+ * of several shortest paths is found depends only on the links of the mesh, so it is the same on
+ * every machine. The caller clears `out`. */
 HE_NODISCARD he_status he_traverse_shortest_path(const he_mesh *m, he_vertex from, he_vertex to,
                                                  he_measure by, he_path *out, he_error *err);
 void he_path_clear(he_path *path);

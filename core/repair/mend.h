@@ -1,4 +1,4 @@
-/* mend.h - the soup under repair, shared by the files of this folder. */
+/* mend.h - a polygon soup (build.h) while it is repaired; shared by the files of this folder. */
 #ifndef HE_REPAIR_MEND_H
 #define HE_REPAIR_MEND_H
 
@@ -11,7 +11,9 @@ typedef struct he_mend {
     /* The number that each corner of the soup had in the input; NULL if all corners kept their
      * numbers. */
     uint32_t *corner_from;
-    uint64_t *turned; /* one bit for each face, set if orient reversed it; NULL if none was */
+    /* one bit for each face: set if the repair `orient` reversed the face; NULL if it reversed
+     * none */
+    uint64_t *turned;
 } he_mend;
 
 static inline void he_mend_name(he_repair_account *account, uint32_t a, uint32_t b)
@@ -40,13 +42,13 @@ void he_mend_faces(const he_soup *soup, uint32_t *face_of);
 HE_NODISCARD he_status he_mend_weld(he_mend *m, double tolerance, he_error *err);
 HE_NODISCARD he_status he_mend_drop_degenerate(he_mend *m, he_error *err);
 HE_NODISCARD he_status he_mend_drop_duplicates(he_mend *m, he_error *err);
-/* Orients the faces. With `force`, a component that cannot be oriented is oriented as well as
- * possible; without, it fails. */
+/* Orients the faces. If a component cannot be oriented, it is oriented as well as possible if
+ * `force` is true; else the function fails. */
 HE_NODISCARD he_status he_mend_orient(he_mend *m, bool force, he_error *err);
 HE_NODISCARD he_status he_mend_split(he_mend *m, he_error *err);
 
-/* Decides whether he_build would refuse the soup, whose faces are oriented already, unless it is
- * split. */
+/* Decides whether the repair `split` is needed: whether he_build would refuse the soup as it is.
+ * Its faces must be oriented already. */
 HE_NODISCARD he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err);
 
 #endif

@@ -10,9 +10,9 @@
  * of the edge. */
 #define HE_BEVEL_MOST 0.99
 
-/* Returns where the edge of half-edge h is cut, as a part of its length: `width` (above 0) from the
- * origin of h, but at most HE_BEVEL_MOST. An edge whose ends are at one position is cut
- * half-way. */
+/* Returns where the edge of half-edge h is cut, as a fraction of its length from the origin of h:
+ * that of the length `width` (above 0), but at most HE_BEVEL_MOST. An edge whose ends are at one
+ * position is cut half-way. */
 static inline double he_bevel_part(const he_mesh *m, he_halfedge h, double width)
 {
     he_vec3 a = he_position(m, he_origin(m, h)), b = he_position(m, he_target(m, h));

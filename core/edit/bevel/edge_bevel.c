@@ -17,7 +17,8 @@ typedef struct bevel_end {
     /* The other half-edges that leave this end in the fan of the bevelled edge, counter-clockwise
      * from `along`. */
     he_ids ring;
-    /* The fan's hole is before this index of `ring`; 0: the end is interior, there is no hole. */
+    /* The index in `ring` of the first half-edge after the hole in the fan; 0 if the end is
+     * interior, so that there is no hole. */
     size_t gap;
     /* The new vertex on the edge of ring[0]; new vertex `first` + i is on the edge of ring[i]. */
     uint32_t first;
@@ -33,8 +34,9 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
         if (!he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* This half-edge ends the fan: a hole, or other fans, follow it counter-clockwise. The fan
-         * begins where turning clockwise from the edge ends, so the walk continues there. */
+        /* This half-edge ends the fan: counter-clockwise after it come a hole or other fans. The
+         * walk continues at the beginning of the fan, which is found by turning clockwise from the
+         * bevelled edge. */
         out->gap = out->ring.count;
         h = along;
         while (!he_is_boundary_halfedge(m, he_twin(h))) {
@@ -173,8 +175,8 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
     return (he_vertex){end->first + (uint32_t)i};
 }
 
-/* Returns where edge i at this end of the bevelled edge is cut, as a part of the length of edge i:
- * 0 at this end, 1 at its other end. */
+/* Returns where edge i at this end of the bevelled edge is cut, as a fraction of the length of edge
+ * i: 0 at this end, 1 at the other end of edge i. */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
     return he_bevel_part(m, at(end, i), width);

@@ -18,13 +18,14 @@
  *          o-->o   face or hole         /   \
  *         /     \                      /     \
  *
- * If a loop is that of a face, the face is deleted first. The vertices and edges of the loop of a
- * stay; those of the loop of b are merged into them. A vertex moves half-way to the vertex that is
- * merged into it. Values in which the two vertices differ move to their corners (keep.h); `moved`,
- * which may be NULL, gets the number of these values. Corner values follow their half-edges.
+ * If a loop is the border of a face, that face is deleted first. The vertices and edges of the loop
+ * of a stay; those of the loop of b are merged into them. A vertex moves half-way to the vertex
+ * that is merged into it. Values in which the two vertices differ move to their corners (keep.h);
+ * `moved`, which may be NULL, gets the number of these values. Corner values follow their
+ * half-edges.
  *
- * At no vertex does a fan become closed while the vertex has other fans: the half-edges around a
- * joined vertex are those of its two vertices, one ring after the other.
+ * No vertex gets a closed fan beside another fan: the half-edges around a merged vertex are those
+ * around its first vertex, followed by those around its second.
  *
  * Takes time linear in the number of half-edges around the vertices of both loops.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
@@ -35,8 +36,8 @@
  * Returns HE_SHARED_VERTEX if the loops share a vertex.
  * Returns HE_BOUNDARY_EDGE if an edge that results from two would have no face.
  * Returns HE_DOUBLED_EDGE if two edges that are not on the loops would join the same two vertices.
- * Returns HE_LOCKED_ELEMENT if an element is locked (marks.h) that would be deleted or moved, or an
- * edge or face at a vertex of b, which would get another vertex.
+ * Returns HE_LOCKED_ELEMENT if an element is locked (marks.h) that would be deleted or moved, or if
+ * an edge or face at a vertex of the loop of b is locked, since it would get another vertex.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, uint64_t *moved,
                                     he_error *err);

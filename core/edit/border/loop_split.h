@@ -9,7 +9,8 @@
 typedef struct he_loop_parts {
     he_vertex vertices[3];
     he_edge edges[3];
-    /* The cap (face that closes the cut) at the old vertices, then that at the new vertices. */
+    /* The two caps (faces that close the cut): first the one at the old vertices, then the one at
+     * the new vertices. */
     he_face faces[2];
 } he_loop_parts;
 
@@ -30,8 +31,9 @@ typedef struct he_loop_parts {
  *
  * The new vertices lie where the old ones do, have their values and descend from them. The new
  * edges descend from the old ones, and their half-edges 2e have the same direction. Elements to the
- * right of the cycle get the new vertices as ends and corners. The caps have no parents; their
- * corners get the values of the half-edges that were in the place of their half-edges.
+ * right of the cycle get the new vertices as ends and corners. The caps have no parents; each of
+ * their corners gets the value of the half-edge that ran along that edge of the cycle, in that
+ * direction, before the cut.
  *
  * `out` may be NULL. Takes time linear in the degrees of the three vertices.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

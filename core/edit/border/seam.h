@@ -9,7 +9,8 @@
 
 /* The results of edge_cut. */
 typedef struct he_seam {
-    /* The new vertices, in rising order of the half-edges with which their parts of fans begin. */
+    /* The new vertices, in rising order of the first half-edges of the parts of fans that got
+     * them. */
     he_ids vertices;
     he_ids edges; /* the new edges, in the order of the ids of the edges that were cut */
 } he_seam;
@@ -35,16 +36,16 @@ typedef struct he_seam {
  *        |                      --x y--
  *
  * A cut edge keeps its id on the side of half-edge 2e. On the other side is a new edge, which
- * descends from it; the corner values of the face there move to it. Half-edge 2e of a new edge runs
- * along its face.
+ * descends from the cut edge; the corner values that the face on that side had along the cut edge
+ * move to the new edge. Half-edge 2e of a new edge belongs to that face.
  *
  * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_seam_clear frees it.
  * Takes time linear in the size of the fans at the ends of the edges.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
- * Returns HE_DOUBLED_EDGE if both sides would join the same two vertices, since each end has a
- * closed fan and no other cut edge.
+ * Returns HE_DOUBLED_EDGE if an edge and its copy would join the same two vertices, because neither
+ * end would be divided: each has a closed fan and no other cut edge.
  * Returns HE_LOCKED_ELEMENT if an edge or face that would get a new vertex is locked (a locked edge
  * may be cut, and so may edges at a locked vertex).
  * Returns HE_NO_MEMORY if memory is out.
@@ -53,8 +54,8 @@ HE_NODISCARD he_status he_edge_cut(he_mesh *m, const uint32_t *edges, size_t cou
                                    he_error *err);
 void he_seam_clear(he_seam *seam);
 
-/* Where the ends of two edges lie after edge_weld: half-way between both, where those of edge a
- * were, or where those of edge b were. */
+/* Where edge_weld puts the merged ends of edges a and b: half-way between their two positions, at
+ * the position of the end of a, or at that of the end of b. */
 typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
 
 /* edge_weld makes one edge of two boundary edges, so that their faces are on its two sides: V - 1
@@ -67,10 +68,11 @@ typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
  *        o-------p s-------o            o-------p-------o
  *
  * r is merged into q, s into p, and b into a, so the ids of a stay. The ends of a move half-way to
- * those of b; or they stay with HE_KEEP_A, or move to those of b with HE_KEEP_B. Values in which
- * the merged ends differ move to their corners (keep.h); `moved`, which may be NULL, gets the
- * number of these values. Edge a keeps its values. A common end stays as it is. At a bow-tie the
- * order of the fans is changed if other fans are between a and b (ring.h).
+ * those of b; with HE_KEEP_A they stay, with HE_KEEP_B they move to the positions of the ends of b.
+ * Values in which the merged ends differ move to their corners (keep.h); `moved`, which may be
+ * NULL, gets the number of these values. Edge a keeps its attribute values. An end that a and b
+ * have in common stays as it is. At a bow-tie the order of the fans is changed if other fans are
+ * between a and b (ring.h).
  *
  * Takes time linear in the size of the faces at the ends of b.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

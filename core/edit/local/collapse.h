@@ -28,7 +28,7 @@
  *
  * v moves to `to`, or if that is NULL to the point at t from u (0) to v (1). Interpolated
  * attributes of v are taken at t, or half-way between u and v if `to` is not NULL. An edge into
- * which another is merged takes the mean of both.
+ * which another is merged gets the mean of the values of the two edges.
  *
  * The link condition (Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving edge contraction",
  * 1999), for polygons and boundaries:
@@ -40,14 +40,15 @@
  *     L4  No face except those beside the edge has both u and v as corners.
  *     L5  The edge is not one of a tetrahedron.
  *
- * If these hold, no edge is doubled (L1, L3) and no fan closes beside another: an interior edge has
- * an interior end (L2), whose only fan opens at the edge and is spliced into the other end's; at a
- * boundary edge two open fans are put end to end, and the outer ends stay apart (L3).
+ * If these hold, no two edges join the same vertices (L1, L3), and no vertex gets a closed fan
+ * beside another fan. For an interior edge has an interior end (L2), whose only fan is opened at
+ * the edge and inserted into the fan of the other end; and at a boundary edge two open fans are put
+ * end to end, and their outer ends stay apart (L3).
  *
  * The output `vertex` is v and may be NULL. Takes at most time linear in the half-edges of the
  * mesh, and constant time if degrees are bounded.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
- * Returns HE_LINK_CONDITION if a part of it fails, which the message names.
+ * Returns HE_LINK_CONDITION if one of L1 to L5 does not hold; the message names which.
  * Returns HE_BAD_VALUE unless 0 <= t <= 1.
  * Returns HE_NOT_FINITE if `to` is not finite.
  * Returns HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if the rules of marks.h forbid it.
@@ -55,8 +56,8 @@
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);
 
-/* he_edge_collapse with both a position and a parameter: the target of h moves to `to`, and its
- * attributes are interpolated at t from the origin of h (0) to the target (1). */
+/* Collapses like he_edge_collapse, but takes both a position and a parameter: the target of h moves
+ * to `to`, and its attributes are interpolated at t from the origin of h (0) to the target (1). */
 HE_NODISCARD he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to,
                                            he_error *err);
 

@@ -15,14 +15,14 @@
  *              \      . /  .                     \ | /         from -> to
  *                from o                       from o
  *
- * The part to the left of from -> to keeps the id and the values of f; the other part f' is new,
- * descends from f and has the half-edge `from`. The new corners copy the values of the corners that
- * were divided.
+ * The part to the left of from -> to keeps the id and the values of f. The other part f' is new,
+ * descends from f and contains half-edge `from`. At both ends of the diagonal the new corner copies
+ * the values of the old one.
  *
  * `edge` is the diagonal, and `face` is f'; each may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the face or a half-edge is not live.
  * Returns HE_NOT_A_CORNER if a half-edge is of another face.
- * Returns HE_SAME_CORNER if both are one corner.
+ * Returns HE_SAME_CORNER if `from` and `to` are equal.
  * Returns HE_ADJACENT_CORNERS if the corners are neighbours.
  * Returns HE_DOUBLED_EDGE if an edge elsewhere joins the two vertices.
  * Returns HE_NO_MEMORY if memory is out.
@@ -36,7 +36,7 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
 
 /* face_join is the inverse of face_split: V + 0, E - 1, F - 1. The edge is deleted, and the other
  * face is merged into f, the face of its half-edge 2e. Interpolated attributes of f become the mean
- * of both.
+ * of the two faces' values.
  *
  *           o-------o-------o             o-------o-------o
  *           |       ^       |             |               |
@@ -47,8 +47,8 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  * The output `face` is f and may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
- * Returns HE_SHARED_BOUNDARY if the faces have another corner in common, at which f would pass
- * twice.
+ * Returns HE_SHARED_BOUNDARY if the faces have a vertex in common besides the ends of the edge,
+ * which f would pass twice.
  * Returns HE_LOCKED_ELEMENT if the edge or one of the faces is locked.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);

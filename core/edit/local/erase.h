@@ -1,9 +1,9 @@
 /* erase.h - deletes faces, edges and vertices.
  *
  * A deleted face leaves a hole: its half-edges keep their links and become boundary half-edges.
- * Edges that are left without a face are deleted, so holes that touch along an edge merge. Around a
- * vertex half-edges only disappear, so turning about it still visits every fan; the vertex may
- * become a bow-tie.
+ * Edges that are left without a face are deleted, so holes that touch along an edge merge.
+ * Half-edges around a vertex only disappear, so a walk around the vertex still visits all its fans;
+ * the vertex may become a bow-tie.
  *
  *        o-------o-------o            o-------o-------o
  *        |       |       |            |       |       |
@@ -31,9 +31,10 @@ typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 
-/* edge_delete: deletes the faces beside the edges as face_delete does, and with them the edges. A
- * face beside two of the edges is deleted once. V varies, E falls by `count` or more, F by the
- * number of faces beside the edges. If the edit is refused, nothing changes.
+/* edge_delete: deletes the faces beside the edges as face_delete does, and with these faces also
+ * the edges themselves. A face beside two of the edges is deleted once. V varies, E falls by
+ * `count` or more, F by the number of faces beside the edges. If the edit is refused, nothing
+ * changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count,

@@ -27,8 +27,8 @@
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
  * Returns HE_SAME_ENDS if c = d.
- * Returns HE_LOW_DEGREE if an interior end has degree 3 or less (on the boundary an end of an
- * interior edge has at least 3 and keeps 2).
+ * Returns HE_LOW_DEGREE if an interior end has degree 3 or less (an end on the boundary has at
+ * least 3 edges, as the edge is interior, and keeps 2).
  * Returns HE_DOUBLED_EDGE if an edge joins c and d.
  * Returns HE_REPEATED_CORNER if d is on f already, or c on g.
  * Returns HE_FEATURE_EDGE if the edge is a feature.

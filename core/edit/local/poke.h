@@ -17,9 +17,10 @@
  *         halfedge(f)                 halfedge(f)
  *
  * The triangle of the stored half-edge keeps the id of f; the others descend from it. Half-edge 2e
- * of a new edge runs from the old corner to w. Ids follow the loop from the stored half-edge. w is
- * at `position`, or at the mean of the corners if that is NULL; its interpolated attributes, and
- * those of the corners at w, are the mean of those around the loop.
+ * of a new edge runs from the old corner to w. New ids are in the order of the loop, from the
+ * stored half-edge on. w is at `position`, or at the mean of the corners if `position` is NULL.
+ * Interpolated attributes of w, and of the corners at w, are the mean of the values around the
+ * loop.
  *
  * `vertex` is w; the ids of new edges and faces are appended to `edges` and `faces`. Each of the
  * three may be NULL.
@@ -30,9 +31,9 @@
 HE_NODISCARD he_status he_face_poke(he_mesh *m, he_face f, const he_vec3 *position,
                                     he_vertex *vertex, he_ids *edges, he_ids *faces, he_error *err);
 
-/* A plan to fill a loop, the border of a face or a hole, with triangles around a new vertex. With
- * `keep` the first triangle keeps the id of the face that has the half-edge `first`; without
- * `keep`, as for a hole, all n triangles are new faces. */
+/* A plan to fill a loop, the border of a face or a hole, with triangles around a new vertex. If
+ * `keep` is true, the first triangle keeps the id of the face of half-edge `first`; else, as in a
+ * hole, all n triangles are new faces. */
 typedef struct he_poke {
     he_halfedge first;
     bool keep;

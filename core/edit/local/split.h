@@ -6,7 +6,7 @@
 
 typedef struct he_split {
     he_vertex vertex;
-    /* The new part of the split edge, then the diagonals of the faces beside it. */
+    /* The new half of the split edge, then the new diagonals of the faces beside it. */
     he_edge edges[3];
     he_face faces[2];
     /* Number of faces beside the edge: 2, or 1 on the boundary; `edges` has one entry more. */
@@ -30,9 +30,9 @@ typedef struct he_split {
  * In a polygon a, b, c, ... left of a -> b the diagonal goes to c, so that b, c and w are a
  * triangle; in the face on the other side, b, a, d, ..., it goes to d.
  *
- * Edge e and both faces keep the part with a, the origin of half-edge 2e. New edge and faces have
- * the old ones as parents; the diagonals have none. In the output, what lies left of 2e comes
- * first.
+ * Edge e and both faces keep the part with a, the origin of half-edge 2e. The new half of the edge
+ * descends from e, and the new faces from the old ones; the diagonals have no parents. In the
+ * output the diagonal and face to the left of half-edge 2e come first.
  *
  * `out` may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

@@ -23,11 +23,11 @@
  * corner. u lies where v does; half-edge 2e runs from u to v, so that edge_collapse of it is the
  * inverse. If v is a bow-tie, whole fans may go to u, too.
  *
- * u descends from v, the edge has no parent; u has the values of v, and each new corner those of
- * the corner that was divided. The outputs are u and the new edge; each may be NULL.
+ * u descends from v and has its values; the new edge has no parent. Each new corner has the values
+ * of the corner in which the new edge lies. The outputs are u and the new edge; each may be NULL.
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
- * Returns HE_SAME_CORNER if a is b.
+ * Returns HE_SAME_CORNER if a and b are equal.
  * Returns HE_DIFFERENT_ORIGINS if a and b leave different vertices.
  * Returns HE_NO_FACE if both corners belong to holes.
  * Returns HE_NO_MEMORY if memory is out.

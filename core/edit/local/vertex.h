@@ -17,12 +17,12 @@ typedef enum he_move { HE_MOVE_TO, HE_MOVE_BY } he_move;
 
 /* vertex_move moves vertices; no element is made or deleted. Each of `count` vertices moves to a
  * point, or by an offset, as `how` says; `points` has one point or offset for each vertex, or a
- * single one for all of them.
+ * single point or offset for all of them.
  *
  * If the edit is refused, nothing changes.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_BAD_VALUE if the number of points is neither `count` nor one.
- * Returns HE_NOT_FINITE if a point, or a sum, is not finite.
+ * Returns HE_NOT_FINITE if a point or offset, or a new position, is not finite.
  * Returns HE_LOCKED_ELEMENT if a vertex is locked (marks.h), even if its position would not
  * change. */
 HE_NODISCARD he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count,

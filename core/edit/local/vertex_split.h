@@ -37,7 +37,7 @@ typedef struct he_vertex_parts {
  * side only.
  *
  * The edges v-left and v-right keep their ids; the edges u-left and u-right are new and descend
- * from them, as u does from v. Half-edge 2e of a new edge leaves u.
+ * from v-left and v-right; u descends from v. Half-edge 2e of a new edge leaves u.
  *
  * `out` may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
@@ -45,7 +45,7 @@ typedef struct he_vertex_parts {
  * Returns HE_NOT_NEIGHBOUR if left or right is no neighbour of v.
  * Returns HE_REPEATED_ELEMENT if left = right.
  * Returns HE_NOT_BOUNDARY if left or right is null and v is interior.
- * Returns HE_NO_SECTOR if no face lies from left to right.
+ * Returns HE_NO_SECTOR if no face lies counter-clockwise between left and right.
  * Returns HE_BAD_VALUE if both are null.
  * Returns HE_NOT_FINITE if `to` is not finite.
  * Returns HE_NO_MEMORY if memory is out.

@@ -17,9 +17,9 @@
  *    which others were merged.
  *
  * Corner values follow their half-edges. Values in which merged vertices differ move to their
- * corners (keep.h); an edge into which others are merged keeps its values. The delta records the
- * vertices and edges that were merged, and the faces that were deleted because they equal
- * another. */
+ * corners (keep.h); an edge into which others are merged keeps its attribute values. The delta (the
+ * record of the edit) lists the vertices and edges that were merged, and the faces that were
+ * deleted because they equal another. */
 #ifndef HE_EDIT_MERGE_MERGE_H
 #define HE_EDIT_MERGE_MERGE_H
 
@@ -51,7 +51,7 @@ typedef struct he_merge {
  * edge or face that would get another vertex is locked (marks.h).
  * Returns HE_NO_MEMORY if memory is out.
  *
- * Takes time O(n log n) for the n elements at the vertices and at their neighbours. */
+ * Takes time O(n log n) if there are n elements at the merged vertices and at their neighbours. */
 HE_NODISCARD he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved,
                                          he_error *err);
 

@@ -14,10 +14,11 @@ typedef struct he_merge_fate {
     /* 1 if the edge e is merged into an edge of the opposite direction: half-edge 2e becomes
      * half-edge 2 * into + 1. */
     uint32_t turned;
-    /* If the edge stays: the old half-edges whose faces will be left of half-edges 2e and 2e +
-     * 1. */
+    /* If the edge stays: occupant[0] and occupant[1] are the old half-edges whose faces will be to
+     * the left of half-edges 2e and 2e + 1. */
     uint32_t occupant[2];
-    uint32_t uses[2]; /* the number of faces that would be left of half-edges 2e and 2e + 1 */
+    /* the numbers of faces that would be to the left of half-edges 2e and 2e + 1 */
+    uint32_t uses[2];
 } he_merge_fate;
 
 /* What a merge will do to each element concerned. Lists of ids are sorted, unless their comment
@@ -38,13 +39,14 @@ typedef struct he_merge_plan {
     uint32_t *slots;
     size_t slot_count;
     he_ids faces;
-    /* What becomes of each face: HE_NONE if it stays, HE_DEAD if it is deleted, else the face that
-     * equals it and stays. */
+    /* What becomes of each face: HE_NONE if it stays, HE_DEAD if it is deleted; if it is deleted
+     * because another face has the same corners, the id of that face. */
     uint32_t *goes;
     he_ids rim; /* vertices that stay and whose half-edges change */
     /* The half-edge that each vertex of `rim` will store; HE_DEAD if the vertex is deleted. */
     uint32_t *stored;
-    he_ids holes;   /* pairs of boundary half-edges that will follow each other; unsorted */
+    /* pairs of boundary half-edges of which the second will be the next of the first; unsorted */
+    he_ids holes;
     size_t corners; /* number of corners of all faces in `faces` */
 } he_merge_plan;
 
@@ -94,7 +96,8 @@ static inline he_halfedge he_merge_heir(const he_merge_plan *p, he_halfedge h)
                         : (he_halfedge){2 * p->fates[i].into + ((h.i & 1) ^ p->fates[i].turned)};
 }
 
-/* Returns true if the edge of h stays and is not turned, so that h keeps its id. */
+/* Returns true if the edge of h is not merged into another edge or deleted, so that h keeps its
+ * id. */
 static inline bool he_merge_stays(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);

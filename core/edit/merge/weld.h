@@ -28,11 +28,11 @@ HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size
                                       he_error *err);
 
 /* weld: merges all vertices that are close together. Vertices are visited in rising order of ids.
- * Each one is merged into the first vertex that is no farther away than `tolerance` and was not
- * merged itself; if there is no such vertex, it stays, and later vertices may be merged into it. So
- * all vertices that become one lie in a ball around the one with the lowest id, and a chain of
- * vertices with small gaps does not become one vertex. With a tolerance of 0 vertices at equal
- * positions are merged.
+ * Each vertex is merged into the first earlier vertex that stays and is no farther away than
+ * `tolerance`; if there is no such vertex, the visited one stays, and later vertices may be merged
+ * into it. So all vertices that become one lie in a ball around the one with the lowest id, and a
+ * chain of vertices with small gaps does not become one vertex. With a tolerance of 0 vertices at
+ * equal positions are merged.
  *
  * The ids of the vertices into which others were merged are appended to `into`, in rising order.
  * Takes time linear in the number of vertices, with the grid of point_grid.h. Fails as vertex_weld

@@ -10,19 +10,19 @@
  *     | 4 | | 9 |              | 4 | 9 |
  *     o---o o---o              o---o---o
  *
- * A weld takes the mean of positions and of nothing else. If a vertex with corners is merged into
- * one with another value of an attribute, all corners of the mesh get the values of their vertices,
- * under the attribute's name. The attribute of vertices is then deleted, unless a vertex without
- * corners has a value of it that is not the default.
+ * When vertices are welded, only their positions are averaged, never their attributes. If a vertex
+ * with corners is merged into one with another value of an attribute, all corners of the mesh get
+ * the values of their vertices, under the attribute's name. The attribute of vertices is then
+ * deleted, unless a vertex without corners has a value of it that is not the default.
  *
  * If corners already have an attribute of that name, it is never changed. If it has the same type,
  * and the corners at the merged vertices have the values of these vertices, nothing needs to be
- * moved. Otherwise the new attribute is called NAME_2, or gets the first higher number that is
- * free; an attribute of such a name that has the values already suffices, too.
+ * moved. Otherwise the new attribute is called NAME_2, or NAME_ with the first higher number that
+ * is free. If a corner attribute of such a name has these values already, no new one is made.
  *
  * Marks (marks.h) are not moved. A vertex without corners cannot keep its value: the value of the
- * vertex it is merged into stays. If an attribute's rule is `default`, a vertex with the default
- * has no value to keep. */
+ * vertex it is merged into stays. If an attribute's rule is `default`, a vertex that has the
+ * default value has no value to keep. */
 #ifndef HE_EDIT_PIECE_KEEP_H
 #define HE_EDIT_PIECE_KEEP_H
 
@@ -52,9 +52,9 @@ typedef struct he_keeping {
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out,
                                      he_error *err);
-/* Ends the weld, whose outcome is `status`, and returns `status`. If the weld failed, the moved
- * values are put back. If it succeeded, `moved` (which may be NULL) gets the number of values that
- * were kept. */
+/* Must be called after the weld with its outcome `status`, which it returns. If the weld failed,
+ * the moved values are put back. If it succeeded, `moved` (which may be NULL) gets the number of
+ * values that were kept. */
 he_status he_keep_end(he_mesh *m, he_keeping *kept, he_status status, uint64_t *moved);
 
 #endif

@@ -1,6 +1,6 @@
 /* ring.h - maintains the ring of a vertex, which is the cycle of half-edges that leave it: chooses
- * which of them the vertex stores (invariant I8 of mesh.h), and changes the order in which its fans
- * are linked. */
+ * which of these half-edges the vertex stores (invariant I8 of mesh.h), and changes the order in
+ * which the fans of the vertex are linked. */
 #ifndef HE_EDIT_PIECE_RING_H
 #define HE_EDIT_PIECE_RING_H
 
@@ -12,7 +12,8 @@ enum { HE_SETTLE_LINKS = 1 };
 /* Makes the half-edge that vertex v stores satisfy I8: it must leave v, and be a boundary half-edge
  * if v has any. `leaving` is any half-edge that leaves v. A stored half-edge that satisfies I8
  * stays. An edit calls this for each vertex it changed, once all links, origins and faces at v are
- * final. The function walks around v only if the stored half-edge does not satisfy I8 at once. */
+ * final. The function walks around v unless the stored half-edge is a boundary half-edge that
+ * leaves v. */
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving);
 
 /* Returns the end of a fan. `in` is a boundary half-edge, with which one of the fans at its target

@@ -21,12 +21,13 @@ HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first,
 void he_triangles_clear(he_triangles *plan);
 
 /* he_triangles_reservation adds the memory that he_triangles_commit needs to `need`;
- * he_triangles_commit makes the planned triangles and cannot fail. With `keep` the loop is a face:
- * the triangle of its stored half-edge keeps the face's id, the other triangles descend from it,
- * and corners copy the values of the face's corners. Without `keep` the loop is a hole and all
- * triangles are new; the caller must call he_ring_settle for its vertices. Half-edge 2e of a new
- * edge lies in the triangle that was cut off. The lists `edges` and `faces` must have memory for
- * all new ids, or be NULL. */
+ * he_triangles_commit makes the planned triangles and cannot fail. If `keep` is true, the loop is
+ * the border of a face: the triangle of its stored half-edge keeps the face's id, the other
+ * triangles descend from the face, and corners copy the values of its corners. If `keep` is false,
+ * the loop is that of a hole and all triangles are new; the caller must then call he_ring_settle
+ * for the vertices of the loop. Half-edge 2e of a new edge belongs to the triangle that the edge
+ * cuts off from the rest of the loop. The lists `edges` and `faces` must have memory for all new
+ * ids, or be NULL. */
 void he_triangles_reservation(const he_triangles *plan, bool keep, he_reservation *need);
 void he_triangles_commit(he_mesh *m, he_triangles *plan, bool keep, he_ids *edges, he_ids *faces);
 

@@ -33,13 +33,14 @@
 typedef struct he_chords {
     uint32_t n;
     he_ids corner; /* the n half-edges of the face, the face's stored half-edge last */
-    /* The two corners of each chord, by their indices, the lower one first. A chord comes after all
-     * chords between its corners. */
+    /* The two corners of each chord, as indices in `corner`, the lower one first. A chord comes
+     * after all chords whose corners lie between its own. */
     he_ids pairs;
     /* the members from here on are used while planning */
-    he_ids partners; /* two partners (corners joined by a chord) for each corner */
-    /* The chords that have begun and not ended at the corner being visited. Each has the sides of
-     * the plane on which the part of the face beside it has corners. */
+    he_ids partners; /* two entries for each corner: the corners to which chords join it */
+    /* A stack of the chords that have begun and not yet ended at the corner being visited; each is
+     * stored with the sides of the plane on which the part of the face beside the chord has
+     * corners. */
     he_ids open;
     struct he_line_crossing *line;
     size_t line_capacity;

@@ -1,4 +1,4 @@
-/* plane.h - decides on which side of a plane each vertex of a mesh is.
+/* plane.h - decides on which side of a plane each vertex of a mesh lies.
  *
  * Every vertex is measured once, and all decisions of an edit use these numbers: two faces never
  * disagree about a vertex they share. A vertex within the tolerance counts as in the plane.
@@ -8,11 +8,12 @@
 
 #include "mesh/walk.h"
 
-/* A plane, and how near to it a vertex counts as in it. */
+/* A plane, and the tolerance within which a vertex counts as lying in the plane. */
 typedef struct he_plane {
     he_vec3 point;  /* any point of the plane */
     he_vec3 normal; /* the normal, of any length; it points to the side above */
-    /* The distance up to which a vertex is in the plane; NULL: the default of he_sides_find. */
+    /* The distance from the plane up to which a vertex counts as in the plane; NULL: the default
+     * that he_sides_find describes. */
     const double *tolerance;
 } he_plane;
 
@@ -28,11 +29,11 @@ typedef struct he_sides {
     double scale;
 } he_sides;
 
-/* Measures the vertices against a plane. Without a tolerance it takes 1e-9 of the longest side of
- * the box around the vertices that have edges, but no less than 2^-48 of their coordinates along
- * the normal, below which distances are rounding noise. An isolated vertex, however far away, has
- * no influence on the tolerance. A vertex that was put where an edge crosses the plane is in the
- * plane when measured again. he_sides_clear frees.
+/* Measures the vertices against a plane. If plane->tolerance is NULL, the tolerance is 1e-9 of the
+ * longest side of the box around the vertices that have edges, but no less than 2^-48 of their
+ * coordinates along the normal, below which distances are rounding noise. An isolated vertex,
+ * however far away, has no influence on the tolerance. A vertex that was put where an edge crosses
+ * the plane is in the plane when it is measured again. he_sides_clear frees the result.
  * Returns HE_NOT_FINITE if the point, normal or tolerance is not finite.
  * Returns HE_BAD_VALUE if the normal is zero or the tolerance is negative.
  * Returns HE_NO_MEMORY if memory is out. */

@@ -4,12 +4,14 @@
 
 #include "edit/plane/plane.h"
 
-/* The side of the plane that is kept; above is the side that the normal points to. */
+/* The side of the plane on which the mesh is kept; `above` is the side to which the plane's normal
+ * points. */
 typedef enum he_cut_side { HE_CUT_ABOVE, HE_CUT_BELOW } he_cut_side;
 
 typedef struct he_cut_parts {
-    uint32_t edges_split, faces_split; /* how many edges, and how many faces, were split */
-    uint32_t faces_deleted;            /* number of deleted faces, parts of split faces included */
+    /* `edges_split` and `faces_split`: numbers of edges and of faces that were split */
+    uint32_t edges_split, faces_split;
+    uint32_t faces_deleted; /* number of deleted faces, parts of split faces included */
     /* The faces that close the cut, in rising order of the half-edges with which their loops
      * begin. */
     he_ids caps;
@@ -38,8 +40,9 @@ typedef struct he_cut_parts {
  * it.
  * Returns HE_NOT_FINITE, HE_BAD_VALUE or HE_DOUBLED_EDGE as he_plane_split does.
  * Returns HE_LOCKED_ELEMENT if an element that would be deleted is locked (splitting is allowed).
- * Returns HE_OPEN_LOOP with `cap`, naming a vertex, if a loop leaves the plane along an older hole.
- * Returns HE_REPEATED_CORNER with `cap` if a loop passes a vertex twice.
+ * Returns HE_OPEN_LOOP with `cap`, naming a vertex, if a loop of the cut does not stay in the plane
+ * because it runs along an older hole. Returns HE_REPEATED_CORNER with `cap` if a loop passes a
+ * vertex twice.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_plane_cut(he_mesh *m, const he_plane *plane, he_cut_side keep, bool cap,

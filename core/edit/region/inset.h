@@ -4,15 +4,16 @@
 
 #include "edit/region/region.h"
 
-/* The most work for finding how far an inset can go before corners or sides of a face meet. Testing
- * one corner against one side counts as one step. */
+/* The limit of steps for finding how far an inset can go before corners or sides of a face meet.
+ * Testing one corner against one side counts as one step. */
 enum { HE_INSET_STEPS = 1 << 22 };
 
 /* How far an inset goes, one of two ways. With a `factor` above 0 and below 1, each corner on the
- * rim goes this part of the way to the mean of its face's corners; in a region, to the mean of
- * those means for the region's faces at the corner. With factor 0 the sides of the rim move in
- * parallel by `distance`, within the planes of their faces; a corner so sharp that it would move
- * more than four times that distance moves less. */
+ * rim goes this fraction of the way to the mean of its face's corners. In a region, the mean is
+ * computed for each of its faces at the corner, and the corner goes towards the mean of these
+ * points. With factor 0 the sides of the rim move in parallel by `distance`, within the planes of
+ * their faces; a corner so sharp that it would have to move farther than four times `distance`
+ * moves less far than that. */
 typedef struct he_inset_width {
     double factor, distance;
 } he_inset_width;
@@ -33,13 +34,13 @@ typedef struct he_inset_width {
  * stay where they are.
  *
  * New vertices copy the values of the vertices they descend from. Interpolated attributes get the
- * values that the region has at the new position. For this each face is divided into triangles of
- * the mean of its corners and two neighbouring corners; of the triangles at the old corner, the one
- * nearest to the new position is used.
+ * values that the region has at the new position. To find these, each face is divided into
+ * triangles, each of two neighbouring corners and the mean of all corners; values are interpolated
+ * in that triangle at the old corner which is nearest to the new position.
  *
- * The motion of all corners is scaled down together if necessary: they go at most 99 % of
- * the way to the first point at which, within one face of the region, a side would have no length,
- * a corner would flip, or a reflex corner would hit another side. A face that is not planar is
+ * The motion of all corners is scaled down by one factor if necessary: they go at most 99 % of the
+ * way to the first point at which, within one face of the region, a side would have no length, a
+ * corner would flip, or a reflex corner would hit another side. A face that is not planar is
  * projected along its normal.
  *
  * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees

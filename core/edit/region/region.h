@@ -15,10 +15,10 @@
  *                                        o-------o-------o
  *                                        |               |
  *
- * V + r, E + 2r, F + r for a rim of r half-edges, of one loop or of several. The faces keep their
- * ids, the edges between them too; the surroundings keep the old vertices and edges. For rim
- * half-edge i, from a to b, in the order of the region's faces and of each face's corners from its
- * stored half-edge on:
+ * V + r, E + 2r, F + r for a rim of r half-edges, of one loop or of several. The faces of the
+ * region and the edges between them keep their ids; the surroundings keep the old vertices and
+ * edges. For rim half-edge i, from a to b, in the order of the region's faces and of each face's
+ * corners from its stored half-edge on:
  *
  *     new vertex i      above a; descends from a and has its values by rule
  *     new edge 2i       its half-edge 2e runs above the rim half-edge, inside the region; descends
@@ -44,8 +44,9 @@
 #include "query/idmap.h"
 
 typedef struct he_region {
-    he_idmap faces; /* the region's faces, breadth-first from the one that is listed first */
-    /* Vertices of the rim; each has the index of the rim half-edge that leaves it. */
+    /* the region's faces in breadth-first order, from the face that the caller listed first */
+    he_idmap faces;
+    /* Maps each vertex of the rim to the index in `rim` of the rim half-edge that leaves it. */
     he_idmap corners;
     he_ids rim;
     /* `inner`: half-edges inside the region, other than those of the rim, that leave a rim vertex;
@@ -53,10 +54,10 @@ typedef struct he_region {
     he_ids inner, inner_at;
 } he_region;
 
-/* How the interpolated values of a new vertex are computed, as a weighted mean. `mean` is the
- * weight of the mean of the corners of the face of `in`, a half-edge that leaves the old vertex
- * below the new one; `side` is the weight of vertex `beside`; the rest is the weight of the old
- * vertex. */
+/* How the interpolated values of a new vertex are computed, as a weighted mean. Half-edge `in`
+ * leaves the old vertex from which the new one descends; `mean` is the weight of the mean of the
+ * corners of the face of `in`. `side` is the weight of vertex `beside`. The old vertex has weight 1
+ * - mean - side. */
 typedef struct he_region_mix {
     he_halfedge in;
     he_vertex beside;
@@ -65,9 +66,9 @@ typedef struct he_region_mix {
 
 /* Callbacks of he_region_draw. `place` computes where the new vertices are: it fills `to` with one
  * position for each corner of the rim. If it sets *shifts, the vertices inside the region move by
- * the vector *shift. It may refuse the edit. `mix`, if not NULL, is called after `to` is filled and
- * says how the values of each new vertex are computed; without `mix` each new vertex has the values
- * of the old vertex below it. */
+ * the vector *shift. If it fails, the edit is refused. `mix`, if not NULL, is called after `to` is
+ * filled and says how the values of each new vertex are computed; if it is NULL, each new vertex
+ * has the values of the old vertex from which it descends. */
 typedef struct he_region_place {
     he_status (*place)(const he_mesh *m, const he_region *region, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err);

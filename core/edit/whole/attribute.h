@@ -12,8 +12,8 @@
 #include "mesh/column.h"
 
 /* Adds a column to the mesh, replacing one of the same domain and name. On success the mesh owns
- * `takes`. Rows that the column lacks get its default. Rows of deleted elements must hold the
- * default already: see he_attribute_settle. */
+ * `takes`. If the column has fewer rows than the mesh has elements, the missing rows get its
+ * default. Rows of deleted elements must hold the default already: see he_attribute_settle. */
 HE_NODISCARD he_status he_attribute_put(he_mesh *m, he_column *takes, he_error *err);
 /* Removes an attribute column from the mesh. */
 HE_NODISCARD he_status he_attribute_drop(he_mesh *m, const he_column *column, he_error *err);

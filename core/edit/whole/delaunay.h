@@ -9,8 +9,9 @@
  * forth. */
 #define HE_DELAUNAY_EPSILON 1e-9
 
-/* The most work for each live edge before the request is refused. Testing an edge counts as one,
- * and so does each step around a vertex in search of an edge. */
+/* The edit is refused if it takes more than this number of steps, times the number of live edges.
+ * Testing an edge is one step, and so is visiting one half-edge around a vertex in search of an
+ * edge. */
 enum { HE_DELAUNAY_STEPS = 512 };
 
 /* delaunay flips edges until the triangles are as round as possible; no element is made or deleted.

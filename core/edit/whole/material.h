@@ -1,8 +1,8 @@
 /* material.h - makes, changes and deletes materials, and assigns them to faces.
  *
- * These edits are recorded and undone bit for bit: each changed row of the table of materials makes
- * one record. If the face attribute `material` has no label for a name yet, its column is replaced
- * by one that has the label. */
+ * These edits are recorded and undone bit for bit: each changed entry of the table of materials
+ * makes one record. If the face attribute `material` has no label for a name yet, its column is
+ * replaced by one that has the label. */
 #ifndef HE_EDIT_WHOLE_MATERIAL_H
 #define HE_EDIT_WHOLE_MATERIAL_H
 
@@ -12,9 +12,11 @@
  * the value of he_plain_look. */
 typedef struct he_material_change {
     const char *rename;
-    bool replace; /* true: values that are not given become those of he_plain_look */
+    /* true: members that are NULL set the values of he_plain_look, as in a new material */
+    bool replace;
     const double *base_color;
-    /* True if base_color has a fourth number, the opacity; otherwise the opacity stays. */
+    /* True if `base_color` has four numbers, of which the fourth is the opacity; false if it has
+     * three and the opacity stays as it is. */
     bool opaque_too;
     const double *metallic, *roughness;
     const double *emission;
@@ -40,9 +42,9 @@ typedef struct he_material_change {
 HE_NODISCARD he_status he_material_set(he_mesh *m, const char *name,
                                        const he_material_change *change, he_error *err);
 
-/* material_delete: V, E and F stay. Deletes the material of this name: its row of the table, and
- * its name from the labels of the faces' attribute. Faces that had the material get the material
- * `to`, or none if `to` is NULL.
+/* material_delete: V, E and F stay. Deletes the material called `name` from the table of materials,
+ * and its name from the labels of the face attribute `material`. Faces that had the material get
+ * the material `to`, or none if `to` is NULL.
  *
  * Returns HE_BAD_VALUE if there is no material of this name, or none called `to`, or if both names
  * are equal.

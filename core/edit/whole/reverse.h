@@ -6,7 +6,8 @@
 
 /* reverse reverses the orientation of faces: V, E, F + 0. Every listed face, or every face if
  * `faces` is NULL, runs the other way round. No element is made or deleted and edges keep their
- * ends, so half-edge 2e starts where it did: the two half-edges of an edge exchange their faces.
+ * ends, so the origin of half-edge 2e stays the same: the two half-edges of an edge exchange their
+ * faces.
  *
  *         c                        c
  *         o                        o
@@ -24,8 +25,8 @@
  * Only whole components can be reversed. Otherwise two faces would run along their common edge in
  * the same direction, or two fans of a bow-tie would have different orientations.
  *
- * If the edit is refused, nothing changes. Locks do not matter, because locked elements keep their
- * corners and ends.
+ * If the edit is refused, nothing changes. Locked elements (marks.h) do not hinder it, because they
+ * keep their corners and ends.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_ORIENTATION naming an edge, if its other face is not listed.
