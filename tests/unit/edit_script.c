@@ -155,8 +155,8 @@ static size_t parse_numbers(const char *text, double *numbers)
     return count;
 }
 
-/* Makes a mesh from a list of faces such as "012,023", in which each digit is a vertex. The
- * function does not use the code under test. */
+/* Makes a mesh from a list of faces such as "012,023", in which each digit or letter is a vertex.
+ * The function does not use the code under test. */
 static he_mesh *other_mesh(const char *text)
 {
     char faces[MAX_TEXT];

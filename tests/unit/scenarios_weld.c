@@ -5,7 +5,8 @@
 #define PILLOW  "012,021"
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
-/* Faces of two separate strips: a strip of two quadrilaterals, and a single quadrilateral. */
+/* Faces of a mesh of three quadrilaterals: the first two share an edge, and the third does not
+ * touch them. */
 #define APART "0154,1265,378b"
 
 /* Operation on the mesh APART: moves vertex 3 to the position of vertex 2, and vertex 11 to the
