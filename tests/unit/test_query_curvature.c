@@ -55,8 +55,8 @@ static void corner_normals_of_a_cube_follow_the_crease(void **state)
     he_mesh_free(m);
 }
 
-/* At a vertex, a crease between two faces must separate the corner normals of these faces, and not
- * those of the other faces. */
+/* If two faces at a vertex are separated by a crease, their corner normals there must differ. The
+ * corner normals of the other faces at the vertex must not be separated. */
 static void a_crease_parts_only_the_faces_across_it(void **state)
 {
     (void)state;
@@ -291,7 +291,8 @@ static void an_element_alone_has_the_value_it_has_among_all(void **state)
         double *weights = cotangents(m), weight[2];
         uint32_t vertices = he_mesh_vertices(m), edges = he_mesh_edges(m);
         for (uint32_t v = 0; v < vertices; v++) {
-            uint32_t list[3] = {v, vertices - 1, v}; /* a repeated element must be answered twice */
+            uint32_t list[3] = {v, vertices - 1,
+                                v}; /* an element that the list repeats must be answered twice */
             assert_int_equal(he_curvatures(m, list, 3, UINT64_MAX, NULL, one, NULL), HE_OK);
             assert_memory_equal(&one[0], &c[v], sizeof one[0]);
             assert_memory_equal(&one[1], &c[vertices - 1], sizeof one[0]);

@@ -1,4 +1,4 @@
-/* Tests of what happens when the journal loses changes: everything in memory that depends on a lost
+/* Tests of what happens when the journal loses changes. Everything in memory that depends on a lost
  * change must be removed or refused: meshes, long edits, event streams, Idempotency-Keys,
  * answers. */
 #include "tests/slow_journal.h"
@@ -107,12 +107,12 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     assert_int_equal(st_write_claim(mesh, NULL, &w), ST_LOST);
     assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_LOST);
     assert_int_equal(st_listeners(store), 0);
-    /* The change of the mesh "n" was not lost, so the store must still have this mesh. */
+    /* The change of the mesh "n" was not lost, so the store must still have the mesh "n". */
     assert_int_equal(st_find(store, "n", &found), ST_OK);
     st_release(found);
     assert_false(facts(other).lost);
     (void)change(other);
-    /* Another mesh can be created with the id of the lost mesh. */
+    /* A new mesh can be created with the id of the lost mesh. */
     st_mesh *again = create("m");
     assert_true(facts(again).incarnation != facts(mesh).incarnation);
     assert_false(facts(again).lost);
