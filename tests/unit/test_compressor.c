@@ -564,14 +564,14 @@ static void a_dense_body_takes_its_turns(void **state)
     free(plain.data);
 }
 
-/* The frame has less content than its header says. libzstd alone accepts such a frame if it comes
- * in pieces, so the daemon has to check the length. */
+/* The frame contains fewer bytes than its header says. libzstd alone accepts such a frame if it
+ * comes in pieces, so the daemon has to check the length. */
 static void a_frame_has_the_length_it_says(void **state)
 {
     (void)state;
     static const unsigned char frame[] = {
         0x28, 0xB5, 0x2F, 0xFD,           /* magic number */
-        0x20, 5,                          /* frame header: declares five bytes of content */
+        0x20, 5,                          /* frame header: declares five bytes of data */
         0x18, 0,    0,    'a',  'b', 'c', /* an uncompressed block of three bytes */
         0x01, 0,    0,                    /* the last block, which is empty */
     };

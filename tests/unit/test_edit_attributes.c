@@ -19,8 +19,8 @@
 #include "edit/whole/transform.h"
 #include "mesh/write.h"
 
-/* Adds a column of attribute values, one double named "a" per row: row i holds 10 * i, and rows of
- * new elements get -1 by default. */
+/* Adds a column of attribute values, one double named "a" per element: element i has the value 10 *
+ * i, and new elements get -1 by default. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;

@@ -367,7 +367,7 @@ static void bevels_of_tiny_and_huge_edges_have_finite_positions(void **state)
 
 enum { FIRST_VALUE = 10 };
 
-/* Adds a column of attribute values, one double per row; row i holds 10 * i. */
+/* Adds a column of attribute values, one double per element; element i has the value 10 * i. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;

@@ -20,8 +20,8 @@
 static const he_vec3 beside[6] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}};
 #define BESIDE "012,345"
 
-/* Adds a column of attribute values: either one bool per row, which is true, or two doubles per
- * row, which in row i are 10 * i + 1 and 7. */
+/* Adds a column of attribute values: either one bool per element, which is true, or two doubles per
+ * element, which for element i are 10 * i + 1 and 7. */
 static he_column *add_column(he_mesh *m, he_kind domain, const char *name, he_type type,
                              he_rule rule)
 {

@@ -188,7 +188,8 @@ static void a_long_string_is_interrupted(void **state)
 
 typedef struct row_case {
     const char *text;
-    size_t numbers, indices; /* how many values each call reads, one call after the other */
+    size_t numbers, indices; /* expected number of values that one call reads: `numbers` if it reads
+                                numbers, `indices` if it reads indices; 0 if it reads none */
 } row_case;
 
 static const row_case rows[] = {

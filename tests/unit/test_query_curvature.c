@@ -291,8 +291,7 @@ static void an_element_alone_has_the_value_it_has_among_all(void **state)
         double *weights = cotangents(m), weight[2];
         uint32_t vertices = he_mesh_vertices(m), edges = he_mesh_edges(m);
         for (uint32_t v = 0; v < vertices; v++) {
-            uint32_t list[3] = {v, vertices - 1,
-                                v}; /* an element that the list repeats must be answered twice */
+            uint32_t list[3] = {v, vertices - 1, v}; /* a repeated element must be answered twice */
             assert_int_equal(he_curvatures(m, list, 3, UINT64_MAX, NULL, one, NULL), HE_OK);
             assert_memory_equal(&one[0], &c[v], sizeof one[0]);
             assert_memory_equal(&one[1], &c[vertices - 1], sizeof one[0]);

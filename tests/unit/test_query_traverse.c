@@ -337,9 +337,9 @@ static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **st
     }
     he_ids ids = {0};
     bool closed;
-    /* The edges of an edge loop are listed in order: the origin of half-edge 2e of the given edge e
-     * points to the end of the loop at which the list begins. The grid has 5 vertices in each
-     * row. */
+    /* The edges of an edge loop are listed in order, beginning at that end of the loop to which one
+     * comes from the given edge e by leaving it at the origin of half-edge 2e. The grid has 5
+     * vertices in each row. */
     uint32_t e = edge_between(m, 6, 7);
     uint32_t a = edge_between(m, 5, 6), c = edge_between(m, 7, 8), d = edge_between(m, 8, 9);
     assert_int_equal(he_traverse_edge_loop(m, (he_edge){e}, &ids, &closed, NULL), HE_OK);

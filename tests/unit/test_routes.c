@@ -589,7 +589,7 @@ static void documents_of_the_tables_are_json(void **state)
     }
 }
 
-/* Checks that the rows of the route table are complete and consistent. */
+/* Checks that the entries of the route table are complete and consistent. */
 static void rows_are_whole(void **state)
 {
     (void)state;

@@ -152,7 +152,7 @@ static void keys_older_than_a_day_go(void **state)
     taken t = keys_of("a");
     assert_int_equal(t.count, 1);
     assert_string_equal(t.texts[0], "new");
-    /* When the newest key was appended, the two oldest rows were deleted: the key of the creation,
+    /* When the newest key was appended, the two oldest keys were deleted: the key of the creation,
      * and the oldest key of an edit. */
     assert_int_equal(keys_of(NULL).count, 0);
 }

@@ -158,7 +158,8 @@ static void a_damaged_page_costs_what_was_on_it(void **state)
         assert_true(f.faults > 0 || f.whole == MESHES);
         named += f.faults > 0;
         if (f.listed < MESHES / 2) {
-            lists++; /* all rows of the list of meshes are reached through the overwritten page */
+            lists++; /* all entries of the list of meshes are reached through the overwritten page
+                      */
         } else if (f.whole + f.part >= MESHES / 2) {
             least = f.whole < least ? f.whole : least;
         } else {
