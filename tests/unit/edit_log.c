@@ -83,7 +83,8 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     }
 }
 
-/* Makes one random change to a mesh; the mesh is recording, so the change is added to a delta. */
+/* Makes one random change to a mesh. The mesh is recording its changes, so this change is added to
+ * its delta. */
 static void change(he_mesh *m, md_random *random, unsigned serial)
 {
     char text[96];

@@ -84,7 +84,8 @@ void script_add_columns(he_mesh *m)
     for (unsigned i = 0; i < 12; i++) {
         char name[16];
         snprintf(name, sizeof name, "c%u", i);
-        if (i == 5 || i == 11) { /* column 5 belongs to half-edges, column 11 to faces */
+        if (i == 5 || i == 11) { /* column 5 holds attributes of half-edges, column 11 holds
+                                    attributes of faces */
             snprintf(name, sizeof name, "normal");
         }
         he_column *column = NULL;
@@ -154,7 +155,8 @@ static size_t parse_numbers(const char *text, double *numbers)
     return count;
 }
 
-/* Makes the mesh described by an argument like "mesh=012,023" without using the code under test. */
+/* Makes a mesh from a list of faces such as "012,023", in which each digit or letter is a vertex.
+ * The function does not use the code under test. */
 static he_mesh *other_mesh(const char *text)
 {
     char faces[MAX_TEXT];
@@ -304,7 +306,8 @@ static void mark(he_mesh *m, const char *text)
     }
 }
 
-/* Adds materials called m0, m1 and so on to the mesh's table of materials until it has `count`. */
+/* Adds materials called m0, m1 and so on to the mesh's table of materials until the table has
+ * `count` materials. */
 static void fill_materials(he_mesh *m, size_t count)
 {
     for (size_t i = he_mesh_materials(m)->count; i < count; i++) {

@@ -83,7 +83,8 @@ void repair_expect_carried(const he_soup *before, const he_soup *after, const he
 
 void repair_expect_failures_survived(const he_soup *soup, unsigned which, long least)
 {
-    /* a repair may succeed although an allocation fails, if it only wanted to shrink a block */
+    /* a repair may succeed although an allocation fails, if that allocation was only meant to
+     * shrink a block */
     failing f = {.may_succeed = true};
     while (failing_next(&f)) {
         failing_pause();

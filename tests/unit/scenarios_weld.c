@@ -5,11 +5,12 @@
 #define PILLOW  "012,021"
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
-/* A strip of two quadrilaterals, and a separate quadrilateral that does not touch the strip. */
+/* Faces of a mesh of three quadrilaterals: the first two share an edge, and the third does not
+ * touch them. */
 #define APART "0154,1265,378b"
 
-/* Operation that moves vertex 3 of APART to the position of vertex 2, and vertex 11 to that of
- * vertex 6. */
+/* Operation on the mesh APART: moves vertex 3 to the position of vertex 2, and vertex 11 to the
+ * position of vertex 6. */
 static const char TOGETHER[] = "vertex_move vertices=3,11,2,6 to=0,0,1,0,1,1,0,0,1,0,1,1";
 
 const scenario weld_scenarios[] = {

@@ -12,8 +12,9 @@
 #include "edit_script.h"
 #include "stored/stored.h"
 
-/* Requires that the encoding is not larger than the bound predicted for its size. Shrinks the block
- * to exactly that size, so that the sanitizers detect reads beyond its end. */
+/* Requires that the size of an encoding is at most `bound`, the size predicted for it. Shrinks the
+ * encoding's memory block to exactly its size, so that the sanitizers detect reads beyond its
+ * end. */
 static stored_bytes cut(unsigned char *bytes, size_t size, size_t bound)
 {
     assert_true(size > 0 && size <= bound);

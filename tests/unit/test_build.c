@@ -60,8 +60,8 @@ static void elements_are_numbered_in_the_order_of_the_faces(void **state)
         assert_int_equal(he_origin(m, (he_halfedge){2 * i}).i, i);
         assert_int_equal(he_face_of(m, (he_halfedge){2 * i}).i, 0);
     }
-    /* Building the first face has made the edge 0-2 with half-edges 4 and 5: the second face begins
-     * with half-edge 5. */
+    /* The first face has made the edge 0-2 with half-edges 4 and 5, and uses half-edge 4. The
+     * second face therefore begins with half-edge 5. */
     assert_int_equal(he_face_halfedge(m, (he_face){1}).i, 5);
     he_mesh_free(m);
 }

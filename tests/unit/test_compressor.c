@@ -34,7 +34,8 @@ static bool take(void *context, const char *data, size_t length)
     return true;
 }
 
-/* Returns a text of numbers like a mesh file, which compresses to about a third of its length. */
+/* Returns a text of numbers that resembles a mesh file; it compresses to about a third of its
+ * length. */
 static bytes text_of(size_t length)
 {
     bytes b = {0};
@@ -49,7 +50,7 @@ static bytes text_of(size_t length)
     return b;
 }
 
-/* A source that gives the compressor the bytes of `of`, at most `step` in each call. */
+/* A source from which the compressor reads the bytes of `of`, at most `step` bytes in each call. */
 typedef struct source {
     const bytes *of;
     size_t at, step;
@@ -67,7 +68,7 @@ static int64_t read_source(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* Reads all that `compressor` gives, at most `size` bytes in each call. */
+/* Reads the whole output of the compressor, at most `size` bytes in each call. */
 static bytes pull(api_compressor *compressor, size_t size)
 {
     bytes out = {0};
@@ -105,8 +106,8 @@ static bytes pack_bytes(api_coding coding, const bytes *plain)
  * API_DECOMPRESS_TURN: a block of zstd, or what zlib has buffered. */
 enum { LEFT = 1 << 17 };
 
-/* Decompresses a body that comes in pieces of `step` bytes; if the body is refused, sets `problem`
- * and returns false. */
+/* Decompresses a body that arrives in pieces of `step` bytes. If the decompressor refuses the body,
+ * sets `problem` and returns false. */
 static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *out,
                    api_problem *problem)
 {
@@ -222,8 +223,8 @@ static int64_t break_off(void *context, char *buffer, size_t size)
 }
 
 typedef struct nothing {
-    /* how many zeros are left to be read, and how many were read in the present call of the
-     * compressor */
+    /* `left`: how many zeros are still to be read; `read`: how many were read during the present
+     * call of the compressor */
     size_t left, read;
 } nothing;
 
@@ -237,8 +238,8 @@ static int64_t read_zeros(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* One call that reads compressed bytes may take only a limited amount of input, however well it
- * compresses, because other requests wait during the call. */
+/* A call that reads compressed bytes may process only a limited amount of input, however well that
+ * input compresses, because other requests wait during the call. */
 static void no_read_codes_more_than_its_turn(void **state)
 {
     (void)state;
@@ -418,7 +419,8 @@ static void a_checksum_that_does_not_hold_is_named(void **state)
     (void)state;
     bytes plain = text_of(3000);
     bytes gzip = pack_bytes(API_GZIP, &plain), zstd = pack_bytes(API_ZSTD, &plain);
-    /* changes the checksum, which stands before the last four bytes */
+    /* changes one bit of the gzip checksum, which is followed only by the length in the last four
+     * bytes */
     gzip.data[gzip.length - 8] ^= 1;
     expect_refused(API_GZIP, &gzip, 100, API_BAD_ENCODING, "incorrect data check");
     gzip.data[gzip.length - 8] ^= 1;
@@ -470,8 +472,8 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
         bytes most = {calloc(1, API_DECOMPRESS_FREE), API_DECOMPRESS_FREE, API_DECOMPRESS_FREE},
               out;
         bytes small = pack_bytes(both[c], &most), bomb = zeros_in(both[c], 200 << 20);
-        /* a body that grows to at most API_DECOMPRESS_FREE bytes is accepted at any compression
-         * ratio */
+        /* a body that grows to at most API_DECOMPRESS_FREE bytes is accepted at any ratio between
+         * decompressed and compressed size */
         expect_unfolded(both[c], &small, 1000, &most);
         for (size_t step = 100; step <= 10000; step *= 10) {
             api_problem problem;
@@ -546,8 +548,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
     }
 }
 
-/* A body that grows to a large size must be decompressed in several calls; unfold() checks how much
- * each call adds. */
+/* A body that becomes large must be decompressed in several calls. unfold() checks that each call
+ * adds only a limited number of bytes. */
 static void a_dense_body_takes_its_turns(void **state)
 {
     (void)state;
@@ -562,14 +564,14 @@ static void a_dense_body_takes_its_turns(void **state)
     free(plain.data);
 }
 
-/* The frame has less content than its header says. libzstd alone accepts such a frame if it comes
- * in pieces, so the daemon has to check the length. */
+/* The frame contains fewer bytes than its header says. libzstd alone accepts such a frame if it
+ * comes in pieces, so the daemon has to check the length. */
 static void a_frame_has_the_length_it_says(void **state)
 {
     (void)state;
     static const unsigned char frame[] = {
         0x28, 0xB5, 0x2F, 0xFD,           /* magic number */
-        0x20, 5,                          /* frame header: declares five bytes of content */
+        0x20, 5,                          /* frame header: declares five bytes of data */
         0x18, 0,    0,    'a',  'b', 'c', /* an uncompressed block of three bytes */
         0x01, 0,    0,                    /* the last block, which is empty */
     };

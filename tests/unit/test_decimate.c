@@ -1,5 +1,5 @@
 /* Decimation: what it preserves exactly, how far the result is from the original surface, and when
- * it stops. */
+ * the decimation stops. */
 #include "tests/unit/dense.h"
 
 #include "algo/decimation.h"
@@ -105,8 +105,8 @@ static void more_faces_less_error(void **state)
         dense_apart there = dense_measure(m, sphere), back = dense_measure(sphere, m);
         double farthest = fmax(there.farthest, back.farthest);
         assert_true(farthest > last && done.error > last_error);
-        /* On a smooth closed surface the largest distance from the original must be of the size of
-         * the error that the decimation estimates. */
+        /* On a smooth closed surface, the largest distance between the decimated and the original
+         * surface must be of the same order as the error that the decimation estimates. */
         assert_true(farthest < 4 * done.error);
         assert_true(there.root_mean_square < 2 * done.error);
         assert_int_equal(there.turned + back.turned, 0);
@@ -228,7 +228,7 @@ static void what_cannot_be_collapsed_is_left(void **state)
     he_mesh *m = dense_torus(12);
     he_decimated done = dense_decimate(m, 0, INFINITY);
     assert_int_equal(done.stop, HE_STOP_EXHAUSTED);
-    /* No torus of triangles has fewer than 7 vertices and 14 faces; how close to this number the
+    /* No torus of triangles has fewer than 7 vertices and 14 faces. How close to these numbers the
      * decimation comes depends on the shape. */
     assert_true(he_mesh_faces(m) >= 14 && he_mesh_faces(m) < 100);
     assert_int_equal(he_mesh_vertices(m) + he_mesh_faces(m), he_mesh_edges(m));
@@ -345,8 +345,8 @@ static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
 }
 
 /* Each collapse at the rim of a star changes faces around the star's hub, and so the errors of the
- * hub's edges. It would take too long to try all 256 edges again after each collapse, but they must
- * have been tried again before the decimation ends. */
+ * hub's edges. It would take too long to try all 256 edges of the hub again after each collapse,
+ * but each of them must be tried again before the decimation ends. */
 static void edges_of_a_star_are_tried_again_but_not_each_time(void **state)
 {
     (void)state;

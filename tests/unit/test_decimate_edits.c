@@ -104,8 +104,9 @@ static void add_columns(he_mesh *m, unsigned count)
     }
 }
 
-/* Decimates a mesh that has `columns` attributes; sets `room` to the number of records for which
- * its delta has memory, and `used` to the number of records in the delta. */
+/* Decimates a mesh that has `columns` attributes, while a delta records the changes. Sets `room` to
+ * the number of records for which the delta has memory, and `used` to the number of records in the
+ * delta. */
 static void record_with(unsigned columns, size_t *room, size_t *used)
 {
     he_mesh *m = dense_torus(20);

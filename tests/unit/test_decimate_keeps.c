@@ -42,8 +42,8 @@ static void boundaries_are_kept(void **state)
     he_mesh_free(m);
 }
 
-/* Returns how far the boundary of a grid has moved from its original outline after a decimation in
- * which the boundary has this weight. */
+/* Returns how far the boundary of a grid moves from its original outline in a decimation with this
+ * boundary weight. */
 static double outline_error(double weight)
 {
     enum { SIDE = 30 };
@@ -156,8 +156,8 @@ static void locked_elements_keep_their_attributes(void **state)
     }
 }
 
-/* A straight row of edges across a flat grid could be removed without any error; marked as a
- * feature, the row must stay and stay straight. */
+/* A straight row of edges across a flat grid could be removed without any error. If its edges are
+ * marked as a feature, the row must stay, and stay straight. */
 static void feature_lines_keep_their_shape(void **state)
 {
     (void)state;

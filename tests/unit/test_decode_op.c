@@ -17,8 +17,8 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"by\":[0,0,1]}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[2,1,0]}", HE_OK, ""},
-    /* The decoder accepts the next two lists of vertices, although the operation itself will refuse
-     * them. */
+    /* The decoder accepts the vertex lists of the next two operations, although face_add refuses
+     * them when it runs. */
     {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[]}", HE_OK, ""},
     {"{\"op\":\"vertex_split\",\"vertex\":0,\"left\":1,\"right\":null,\"to\":[0,0,0]}", HE_OK, ""},
@@ -196,8 +196,8 @@ static void arguments_hold_what_was_given(void **state)
     clear(&p);
 }
 
-/* Decodes a list of operations without running them. An operation may refer to results of earlier
- * ones by the names that these give to their results. */
+/* Decodes a list of operations without running them. An operation may give a name to its results,
+ * and later operations may refer to the results by this name. */
 static bool check_list(const api_in *list, api_result_names *names, api_arena *arena)
 {
     api_in op;
@@ -295,8 +295,8 @@ static void references_take_the_values_of_results(void **state)
 {
     (void)state;
     static const struct {
-        /* an operation that refers to results of an earlier one, and its parameter that is
-         * checked */
+        /* an operation that refers to results of an earlier one, and the name of the parameter that
+         * the test checks */
         const char *op, *name;
         int code;
         size_t count;

@@ -1,6 +1,6 @@
-/* Recording of changes: undo, redo, rollback, sets of changed elements, columns, and compaction.
- * The changes are made directly by the functions of write.h; deltas of whole operations are tested
- * with the operations. */
+/* Recording of changes: undo, redo, rollback, sets of changed elements, attribute columns, and
+ * compaction. The tests change the mesh directly by the functions of write.h; deltas of whole
+ * operations are tested with the operations. */
 #include "fixture.h"
 
 #include "mesh/compact.h"
@@ -15,7 +15,7 @@ static he_mesh *copy_of(const he_mesh *m)
     return copy;
 }
 
-/* Adds a separate triangle with the functions of write.h. */
+/* Adds a separate triangle to the mesh with the functions of write.h. */
 static he_status add_triangle(he_mesh *m, he_error *err)
 {
     he_status status = he_reserve(m, (he_reservation){.vertices = 3, .edges = 3, .faces = 1}, err);
@@ -44,7 +44,7 @@ static he_status add_triangle(he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Removes a separate triangle with the functions of write.h. */
+/* Removes a separate triangle from the mesh with the functions of write.h. */
 static he_status remove_triangle(he_mesh *m, he_face f, he_error *err)
 {
     he_reservation need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
@@ -101,7 +101,7 @@ static void undo_and_redo_restore_the_mesh_but_ids_stay_issued(void **state)
         he_delta_undo(d, m);
         fixture_check(m);
         assert_true(he_mesh_equal_live(m, start));
-        /* undo does not take back the ids that were issued */
+        /* undo does not take back the ids that were issued: their number stays the same */
         assert_false(he_mesh_equal(m, start));
         assert_int_equal(he_mesh_issued(m, HE_FACE), 4);
         he_error err;
@@ -296,8 +296,8 @@ static void put_column(he_mesh *m, const char *name, he_kind domain)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* A column of attributes is removed, and another column takes its slot: a value written to the old
- * column must not be reported as a value of the new one. */
+/* A column of attributes is removed, and a new column takes the index of the removed one: a value
+ * that was written to the removed column must not be reported as a value of the new one. */
 static void changes_of_a_dropped_column_are_not_those_of_its_successor(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Documents in JSON that describe a mesh are read in pieces, and written. */
+/* Mesh documents in JSON are read in pieces, and written. */
 #include "api/document/document_in.h"
 #include "api/document/document_out.h"
 
@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 
-/* What reading a document gave: an error code, or HE_OK, and the JSON pointer to the error. */
+/* The outcome of reading a document: HE_OK or an error code, and the JSON pointer to the error. */
 typedef struct outcome {
     int code;
     char pointer[API_PROBLEM_POINTER];
@@ -369,7 +369,8 @@ static he_mesh *read_back(const char *text, size_t length)
     return mesh;
 }
 
-/* Writes a document in pieces of several sizes; reading it back must always give an equal mesh. */
+/* Writes a mesh as a document, in pieces of several sizes in turn. Reading the document back must
+ * always give an equal mesh. */
 static void expect_comes_back(const he_mesh *mesh, const char *name)
 {
     size_t length;

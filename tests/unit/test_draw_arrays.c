@@ -56,8 +56,8 @@ static he_vec3 area_vector(const he_mesh *m, const row *r)
     return he_vec3_scale(he_vec3_cross(he_vec3_sub(b, a), he_vec3_sub(c, a)), 0.5);
 }
 
-/* Returns whether the face has a side from vertex `from` to vertex `to`, by walking around the
- * face. */
+/* Returns whether the face has a side from vertex `from` to vertex `to`. The function walks around
+ * the face to find the side. */
 static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
 {
     uint32_t first = m->c.face_halfedge[face], h = first;
@@ -355,8 +355,8 @@ static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
     double whole = he_face_area(m, (he_face){0});
     assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
-    /* The estimated work for a single large face must grow linearly with the number of its corners,
-     * not with the square of this number. */
+    /* The estimated work for one large face must be proportional to the number of its corners, not
+     * to the square of this number. */
     const uint32_t face = 0;
     he_frame frame = he_frame_of(m);
     he_draw_arrays d;
@@ -368,7 +368,7 @@ static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
     he_mesh_free(m);
 }
 
-/* --- deleted elements and elements that do not change --- */
+/* --- meshes with deleted elements, and changes of some elements that leave others unchanged --- */
 
 static void deleted_elements_are_not_drawn(void **state)
 {
@@ -433,8 +433,8 @@ static void a_frame_fits_the_mesh_closely_at_any_scale(void **state)
         assert_true(he_vec3_is_finite(frame.origin));
         he_mesh_free(m);
     }
-    /* The coordinates lose precision if the frame is much larger than the mesh: the mesh must fill
-     * a reasonable part of the frame's width. */
+    /* The drawn coordinates lose precision if the frame is much larger than the mesh: the mesh must
+     * fill a reasonable part of the frame's width. */
     he_mesh *m = query_shape("cube", 3.7, 0, 0, 0);
     he_frame frame = he_frame_of(m);
     assert_true(3.7 * frame.scale >= 0.5);
@@ -461,8 +461,8 @@ static void a_drawing_without_memory_is_refused(void **state)
     he_mesh_free(m);
 }
 
-/* A single face must get the same triangles as in the arrays of all faces. A limit on the work must
- * be checked before the work begins. */
+/* A single face must get the triangles that it has in the arrays of all faces. If the work exceeds
+ * a limit, the function must refuse before the work begins. */
 static void a_face_alone_has_the_triangles_it_has_among_all(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The triangles of all faces have slots in one array, those of one face next to each other, while
- * faces of all sizes are added and removed. */
+/* The triangles of all faces are stored in the slots of one array, and the triangles of one face
+ * fill neighbouring slots. The test adds and removes faces of all sizes. */
 #include "query_specimens.h"
 
 #include "draw/draw_slots.h"
@@ -15,8 +15,8 @@
 
 enum { VERTICES = 3000, FACES = 60 };
 
-/* Vertices on a circle, and faces of different sizes that each use a row of neighbouring
- * vertices. */
+/* The tested mesh with its delta and its slots. Its vertices lie on a circle; its faces have
+ * different sizes, and each face uses a row of neighbouring vertices. */
 typedef struct world {
     he_mesh *m;
     he_delta *delta;
@@ -142,8 +142,9 @@ static uint32_t owner_of(const uint32_t *owner, uint32_t slot)
     return (owner[slot] & HE_DRAW_SLOT_DEAD) != 0 ? HE_NONE : owner[slot];
 }
 
-/* Requires that the list of changes has each slot that belonged to another face in `before`, and
- * that if the list has any slot of a face, it has the first slot of this face, too. */
+/* Requires that the list of changed slots contains each slot that belonged to another face in
+ * `before`. If the list contains any slot of a face, it must also contain the first slot of this
+ * face. */
 static void check_changes(const world *w, const uint32_t *before, uint32_t count)
 {
     he_ids vertices = {0}, slots = {0};
@@ -226,8 +227,8 @@ static void an_advance_over_its_limit_leaves_the_slots_unchanged(void **state)
     close_world(&w);
 }
 
-/* A new vertex at the origin needs no write of its position, because all positions are 0 at first:
- * even so the slots must report that the vertex lies outside the frame of the drawn coordinates. */
+/* All positions are 0 at first, so a new vertex at the origin needs no change of its position. Even
+ * so, the slots must report that the vertex lies outside the frame of the drawn coordinates. */
 static void a_vertex_outside_the_frame_ends_the_layout(void **state)
 {
     (void)state;

@@ -19,8 +19,8 @@
 #include "edit/whole/transform.h"
 #include "mesh/write.h"
 
-/* Adds a column of attribute values, one double named "a" per row: row i holds 10 * i, and rows of
- * new elements get -1 by default. */
+/* Adds a column of attribute values, one double named "a" per element: element i has the value 10 *
+ * i, and new elements get -1 by default. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -64,7 +64,7 @@ static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, doub
     assert_value(m, HE_HALFEDGE, h.i, expected);
 }
 
-/* Returns a mesh with one column of values, on which `script` was run. */
+/* Makes a mesh with one column of attribute values, runs `script` on the mesh, and returns it. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -246,7 +246,7 @@ static void add_normals(he_mesh *m, he_kind domain, he_type type)
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     const double number[3] = {0, 3, 4};
     const float single[3] = {0, 3, 4};
-    for (size_t i = 1; i < rows; i++) { /* row 0 keeps the normal 0, 0, 0 */
+    for (size_t i = 1; i < rows; i++) { /* element 0 keeps the normal 0, 0, 0 */
         memcpy(he_column_row(column, i),
                type == HE_FLOAT ? (const void *)single : (const void *)number, column->row_bytes);
     }
@@ -277,8 +277,8 @@ static void assert_normal(const he_mesh *m, he_kind domain, uint32_t row, double
 static void a_transform_turns_the_normals_of_what_it_moves(void **state)
 {
     (void)state;
-    /* The matrix doubles all heights: the normal 0, 3, 4 of a plane then becomes 0, 3, 2, scaled to
-     * length 1. */
+    /* The matrix doubles all heights: the normal 0, 3, 4 of a plane must then become 0, 3, 2,
+     * scaled to length 1. */
     static const char HIGHER[] = "transform matrix=1,0,0,5,0,1,0,0,0,0,2,0,0,0,0,1";
     static const char MIRROR[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1";
     static const char FLAT[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1";
@@ -402,8 +402,8 @@ static void a_lock_does_not_spread_to_a_vertex_between(void **state)
     }
 }
 
-/* If an element with a mark is divided, both parts must have the mark; elements that are not part
- * of it must not. */
+/* If an element with a mark is divided, both parts must have the mark. New elements that are not
+ * parts of the divided element must not have it. */
 static void both_parts_of_a_divided_element_have_its_mark(void **state)
 {
     (void)state;
@@ -420,7 +420,8 @@ static void both_parts_of_a_divided_element_have_its_mark(void **state)
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         assert_int_equal(marked(m, HE_FACE, "locked", f), f != 1 && f != 3);
     }
-    /* A column that has the name of a mark, but not the type of marks, is an ordinary attribute. */
+    /* A column that has the name of a mark but another type than marks have is an ordinary
+     * attribute. */
     he_mesh_free(m);
     m = script_mesh("012,023", NULL);
     he_column *column = NULL;
@@ -468,7 +469,8 @@ static void bad_numbers_points_and_matrices_are_refused_without_change(void **st
     he_mesh_free(m);
 }
 
-/* An edit near the largest double must not overflow: positions stay finite. */
+/* An edit of positions near the largest double must not overflow: the new positions must be
+ * finite. */
 static void positions_near_the_largest_double_stay_finite(void **state)
 {
     (void)state;
@@ -497,7 +499,7 @@ static void values_follow_their_rule_when_loops_are_joined_or_split(void **state
     (void)state;
     static const char join[] = "loop_join a=2-0 b=4-6";
     static const char split[] = "loop_split a=0-1 b=1-2 c=2-0";
-    /* `join` merges vertex 6 into vertex 2, and the edge 4-6 into the edge 0-2. */
+    /* The script `join` merges vertex 6 into vertex 2, and the edge 4-6 into the edge 0-2. */
     static const he_rule rules[] = {HE_INTERPOLATE, HE_COPY, HE_DEFAULT};
     for (size_t i = 0; i < 3; i++) {
         he_mesh *m = after(CF4, HE_VERTEX, rules[i], join);
@@ -516,8 +518,8 @@ static void values_follow_their_rule_when_loops_are_joined_or_split(void **state
     assert_corner(m, 0, 2, 10.0 * halfedge_between(m, 2, 3).i);
     he_mesh_free(m);
 
-    /* `split` copies the vertices 0, 1 and 2 to the new vertices 5, 6 and 7, and the edge 0 from 0
-     * to 1 to the new edge 9. */
+    /* The script `split` copies the vertices 0, 1 and 2 to the new vertices 5, 6 and 7. It also
+     * copies edge 0, which runs from 0 to 1, to the new edge 9. */
     m = after(BIPYRAMID, HE_VERTEX, HE_COPY, split);
     assert_value(m, HE_VERTEX, 6, 10);
     he_mesh_free(m);

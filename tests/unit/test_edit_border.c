@@ -102,7 +102,8 @@ static void a_cube_cut_along_all_edges_falls_apart(void **state)
 static void a_cut_leaves_other_fans_unchanged(void **state)
 {
     (void)state;
-    /* Vertex 0 is a bow-tie with a fan of two faces and one of three faces; the latter is cut. */
+    /* Vertex 0 is a bow-tie with a fan of two faces and a fan of three faces. The edit cuts the fan
+     * of three faces. */
     he_mesh *m = script_mesh("012,023,045,056,067", NULL);
     uint32_t e = edge_between(m, 0, 5).i;
     script_prepare(m, "edge_cut edge=0-5");
@@ -130,8 +131,8 @@ static void edge_weld_places_the_ends_as_keep_chooses(void **state)
                  {"edge_weld a=0-1 b=3-5 keep=a", 0, 0, 2},
                  {"edge_weld a=0-1 b=3-5 keep=b", 4, 4, 4}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        /* After the weld, the ends of the merged edge must be where `keep` says: at the mean of the
-         * positions, or at one of the welded edges. */
+        /* After the weld, the ends of the merged edge must be where the parameter `keep` says: at
+         * the mean of the old positions, or at the ends of one of the two welded edges. */
         he_mesh *m = script_mesh("012,345", places);
         script_prepare(m, cases[i].weld);
         assert_counts(m, 4, 5, 2);
@@ -146,8 +147,9 @@ static void fans_of_a_bowtie_can_be_welded_in_every_order(void **state)
     (void)state;
     static const char *const welds[] = {"edge_weld a=0-2 b=0-3", "edge_weld a=0-4 b=0-5",
                                         "edge_weld a=0-6 b=0-7", "edge_weld a=0-8 b=0-1"};
-    /* Vertex 0 has four fans of faces, which are welded to each other in every order. The last weld
-     * welds the two ends of the only fan that is left, which becomes closed. */
+    /* Vertex 0 has four fans of faces; each weld joins two of them, and the test tries every order
+     * of the welds. The last weld joins the two ends of the only fan that is left, and so closes
+     * the fan. */
     for (unsigned order = 0; order < 256; order++) {
         unsigned used = 0;
         he_mesh *m = script_mesh("012,034,056,078", NULL);
@@ -205,8 +207,9 @@ static void deleting_the_walls_undoes_edge_extrude(void **state)
             assert_int_equal(he_mesh_vertices(m), he_mesh_vertices(before));
             assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
             if (strcmp(cases[i].mesh, STRANGE) != 0) {
-                /* The walls are gone again, but a bow-tie may store another half-edge than before:
-                 * the test gives it the old half-edge, so that the meshes can be compared. */
+                /* The walls are deleted, but a bow-tie may store another half-edge than before
+                 * edge_extrude: the test gives it the old half-edge, so that the meshes can be
+                 * compared. */
                 store_like(m, before);
                 assert_true(he_mesh_equal_live(m, before));
             }
@@ -302,8 +305,8 @@ static void both_bevels_cut_an_edge_without_length_halfway(void **state)
         script_prepare(m, "vertex_move vertex=3 to=0,0,0");
         script_prepare(m, bevels[i]);
         assert_valid(m);
-        /* The bevel has cut the edge from 0 to 3 by a new vertex: `cut` is the only new neighbour
-         * of vertex 3. */
+        /* The bevel has cut the edge from 0 to 3 by a new vertex: `cut` is this vertex, the only
+         * new neighbour of vertex 3. */
         uint32_t cut = HE_NONE;
         he_halfedge first = he_vertex_halfedge(m, (he_vertex){3}), h = first;
         do {
@@ -364,7 +367,7 @@ static void bevels_of_tiny_and_huge_edges_have_finite_positions(void **state)
 
 enum { FIRST_VALUE = 10 };
 
-/* Adds a column of attribute values, one double per row; row i holds 10 * i. */
+/* Adds a column of attribute values, one double per element; element i has the value 10 * i. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -424,8 +427,8 @@ static void values_of_new_elements_follow_the_rule_of_their_column(void **state)
     he_mesh *m = script_mesh(QCUBE, cube);
     add_column(m, HE_VERTEX, HE_INTERPOLATE);
     add_column(m, HE_HALFEDGE, HE_INTERPOLATE);
-    /* `at_0` and `at_3` are the ids of the half-edges of face 0 that leave vertices 0 and 3: they
-     * are the ids of the face's corners there, too. */
+    /* `at_0` and `at_3` are the half-edges of face 0 that leave vertices 0 and 3; the corners of
+     * face 0 at these vertices have the same ids as the half-edges. */
     uint32_t at_0 = halfedge_between(m, 0, 1).i, at_3 = halfedge_between(m, 3, 0).i;
     double expected = FIRST_VALUE * (0.75 * at_0 + 0.25 * at_3);
     script_prepare(m, "edge_bevel edge=0-1 width=0.25");

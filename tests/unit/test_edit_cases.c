@@ -1,4 +1,4 @@
-/* Cases that the design documents name for each operation, and edits at bow-ties. */
+/* Cases that the design documents list for each operation, and edits at bow-ties. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -89,7 +89,8 @@ static void a_face_joins_two_fans_but_may_not_close_one_beside_others(void **sta
     assert_int_equal(script_run(m, "face_add vertices=3,0,4", NULL, NULL), HE_CLOSED_FAN);
     assert_equal(m, before);
     /* At vertex 0 three fans of faces meet. New faces fill the gaps between the fans one after
-     * another, independent of the order in which the boundary links the fans. */
+     * another; this must work whatever the order in which the links of the boundary connect the
+     * fans. */
     script_prepare(m, "face_add vertices=1,0,4");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
     assert_int_equal(script_run(m, "face_add vertices=3,0,2", NULL, NULL), HE_CLOSED_FAN);
@@ -126,8 +127,8 @@ static void deleted_faces_leave_one_hole_and_hole_fill_closes_it(void **state)
 static void a_checkerboard_has_bowties_and_can_be_rebuilt(void **state)
 {
     (void)state;
-    /* In a grid of three by three squares, deleting every second square leaves five faces that
-     * touch only at corners. */
+    /* The mesh is a grid of three by three squares: if every second square is deleted, five squares
+     * are left, which touch only at corners. */
     he_mesh *m = script_mesh("0154,1265,2376,4598,56a9,67ba,89dc,9aed,abfe", NULL);
     script_prepare(m, "face_delete faces=1,3,5,7");
     assert_counts(m, 16, 20, 5);
@@ -173,8 +174,8 @@ static void collapsing_the_new_edge_undoes_vertex_split_corners(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
-    /* Two faces meet at vertex 3: the new edge divides the corner of each face there, and becomes a
-     * side of both faces. */
+    /* Two faces meet at vertex 3. The new edge divides the corner of each of the two faces at
+     * vertex 3, and becomes a side of both faces. */
     script_prepare(m, "vertex_split_corners a=3-2 b=3-5");
     assert_counts(m, 7, 8, 2);
     script_prepare(m, "edge_collapse halfedge=6-3 t=1");
@@ -224,7 +225,7 @@ static void each_cube_vertex_bevels_to_a_triangle(void **state)
     }
 }
 
-/* Makes a mesh of a primitive shape by its name, with these parameters. */
+/* Makes a mesh of the primitive shape `name` with these parameters. */
 static he_mesh *make(const char *name, const double *given, size_t count)
 {
     double args[HE_SHAPE_PARAMS];
@@ -316,8 +317,8 @@ static void solids_have_their_known_counts_and_euler_number_2(void **state)
     }
 }
 
-/* If an operation is refused, the mesh must be equal to what it was before, bit by bit: with rows
- * of deleted elements, issued ids and all attributes. */
+/* If an operation is refused, the mesh must be equal, bit by bit, to the mesh before the operation:
+ * entries of deleted elements, the number of issued ids and all attributes included. */
 static void a_refusal_leaves_the_mesh_as_it_was(void **state)
 {
     (void)state;

@@ -57,7 +57,8 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
     (void)state;
     he_mesh *m = cone();
     uint32_t base = find_face(m, true), side = find_face(m, false);
-    /* `rim` is a half-edge of the cone's base; `other`, its twin, is in a triangle at the tip */
+    /* `rim` is a half-edge along the cone's base. `other` is the twin of `rim` and belongs to a
+     * triangle at the cone's tip. */
     he_halfedge rim = he_face_halfedge(m, (he_face){base});
     uint32_t corner = he_origin(m, rim).i, edge = he_edge_of(rim).i;
     uint32_t other = he_twin(rim).i;
@@ -79,7 +80,8 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
         {"face_poke", "face", base, true},
         {"face_collapse", "face", side, true},
         {"face_inset", "face", side, true},
-        {"loop_join", "a", other, true}, /* the tip is a corner of this triangle */
+        {"loop_join", "a", other, true}, /* the half-edge `other` belongs to a triangle that has the
+                                            cone's tip as a corner */
         {"loop_join", "b", rim.i, true},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -117,15 +119,16 @@ static void a_list_is_charged_for_the_hubs_it_walks_about(void **state)
     uint32_t ends[2] = {he_origin(m, rim).i, he_target(m, rim).i}, none = HE_MAX_ROWS;
     uint32_t spoke = he_edge_of(he_swing_ccw(m, rim)).i;
     api_hubs hubs = {.slots = {{0}}};
-    /* edge_split and vertex_move change only a few rows, so the estimate must not count the many
-     * edges of the cone's tip. */
+    /* edge_split and vertex_move change only a few elements near their arguments, so the estimate
+     * must not count the many edges of the cone's tip. */
     assert_int_equal(steps_of(m, "edge_split", &spoke, 1, &hubs), 0);
     assert_int_equal(steps_of(m, "vertex_move", ends, 2, &hubs), 0);
-    /* The weld visits, twice for each of the two vertices, all edges of the tip (a neighbour of
-     * both) and all corners of the base. */
+    /* The weld visits all edges of the cone's tip (a neighbour of both vertices) and all corners of
+     * the base. It does so four times: twice for each of the two vertices. */
     uint64_t weld = steps_of(m, "vertex_weld", ends, 2, &hubs);
     assert_true(weld > 4 * LONG && weld < 20 * LONG);
-    /* a second estimate, which finds the degrees of vertices in the cache `hubs`, must be equal */
+    /* A second estimate of the same weld finds the degrees of vertices in the cache `hubs`. It must
+     * be equal to the first estimate. */
     assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld);
     assert_int_equal(steps_of(m, "vertex_weld", &none, 1, &hubs), 0);
     assert_true(steps_of(m, "face_split", &base, 1, &hubs) == LONG);

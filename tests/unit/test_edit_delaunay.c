@@ -23,7 +23,7 @@
 #include "tests/failing.h"
 #include "tests/seed.h"
 
-/* --- properties of edges, computed in another way than the edit does --- */
+/* --- properties of edges, computed by another method than that of the edit --- */
 
 static bool is_inner(const he_mesh *m, uint32_t e)
 {
@@ -127,11 +127,12 @@ static void an_edge_is_kept_where_a_flip_is_impossible(void **state)
     } cases[] = {
         {"012", KITE},          /* edge 0-1, which the edit would flip, is on the boundary */
         {"012,1034", pentagon}, /* edge 0-1 is a side of a quadrilateral */
-        /* a flip would make the edge 2-3 of 012 and 103, but the triangles 213 and 023 have this
-         * edge */
+        /* a flip would make the edge 2-3 of the faces 012 and 103, but the triangles 213 and 023
+         * have this edge already */
         {"012,103,213,023", KITE},
-        {"012,103,234", KITE}, /* face 234 has the edge 2-3 already */
-        {"012,021", KITE},     /* two triangles back to back */
+        {"012,103,234",
+         KITE},            /* a flip would make the edge 2-3, but face 234 has this edge already */
+        {"012,021", KITE}, /* two triangles back to back */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         he_mesh *m = script_mesh(cases[i].mesh, cases[i].at), *before = copy_of(m);
@@ -176,7 +177,7 @@ static void edges_marked_as_features_are_not_flipped(void **state)
     }
 }
 
-/* The kite is made small and far from the origin, huge, and tiny. */
+/* The kite is tested in three forms: small and far from the origin, huge, and tiny. */
 static void a_kite_is_flipped_at_any_scale(void **state)
 {
     (void)state;
@@ -212,8 +213,8 @@ static bool is_inside(const he_mesh *m, uint32_t f, he_vec3 p)
     return true;
 }
 
-/* Makes a square of triangles and inserts random points: each divides the triangle around it into
- * three. */
+/* Makes a square of triangles and inserts random points; each new point divides the triangle around
+ * it into three. */
 static he_mesh *random_points(md_random *r, uint32_t n)
 {
     static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -336,8 +337,7 @@ static void flips_spread_from_the_listed_edges(void **state)
     he_mesh_free(m);
 }
 
-/* The edit must test no other edges than those in the request's list and those next to a flipped
- * edge. */
+/* The edit must test only the edges in the request's list and the edges beside a flipped edge. */
 static void edges_neither_listed_nor_beside_a_flip_are_not_flipped(void **state)
 {
     (void)state;
@@ -391,8 +391,8 @@ static void flips_in_space_end_and_never_enlarge_the_area(void **state)
         double area = area_of(m);
         assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
         assert_valid(m);
-        /* The total area of the triangles must not grow, as the proof in delaunay.h that the edit
-         * terminates assumes. */
+        /* The total area of the triangles must not grow: the proof in delaunay.h that the edit
+         * terminates relies on this. */
         assert_true(area_of(m) <= area * (1 + 1e-9));
         all += flips.count;
         for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
@@ -414,8 +414,10 @@ static void flips_in_space_end_and_never_enlarge_the_area(void **state)
 
 /* --- work --- */
 
-/* Makes two rows of points: all triangles with a side in the lower row share one point of the upper
- * row, and the other way round. The number of necessary flips grows with the square of n. */
+/* Makes two rows of n points. All triangles with a side in the lower row have the first point of
+ * the upper row as their third corner; all triangles with a side in the upper row have the last
+ * point of the lower row as their third corner. The number of necessary flips grows with the square
+ * of n. */
 static he_mesh *two_rows(uint32_t n)
 {
     he_soup soup;

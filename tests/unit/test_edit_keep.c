@@ -1,6 +1,6 @@
-/* A weld with the option `keep` preserves attribute values of vertices: if the values of merged
- * vertices differ, the attribute of vertices becomes an attribute of face corners, and undo makes
- * it an attribute of vertices again. */
+/* A weld with the option `keep` preserves the attribute values of vertices: if the merged vertices
+ * have different values, the attribute becomes an attribute of face corners. Undo makes it an
+ * attribute of vertices again. */
 #include "unit/edit_script.h"
 
 #include "mesh/check.h"
@@ -16,12 +16,12 @@
 
 #include <cmocka.h>
 
-/* Vertices 1 and 5 have equal positions, and vertices 2 and 4 have, too. */
+/* In this mesh vertices 1 and 5 have equal positions, and so have vertices 2 and 4. */
 static const he_vec3 beside[6] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}};
 #define BESIDE "012,345"
 
-/* Adds a column of attribute values: one bool per row that is true, or two doubles per row, which
- * in row i are 10 * i + 1 and 7. */
+/* Adds a column of attribute values: either one bool per element, which is true, or two doubles per
+ * element, which for element i are 10 * i + 1 and 7. */
 static he_column *add_column(he_mesh *m, he_kind domain, const char *name, he_type type,
                              he_rule rule)
 {
@@ -55,8 +55,8 @@ static double first_of(const he_column *column, uint32_t row)
     return value;
 }
 
-/* Requires that the attribute has the values a, b and c at the corners of the face, in this order
- * but starting at any corner. */
+/* Requires that the attribute has the values a, b and c at the three corners of the face, in the
+ * order around the face. The value a may be at any corner. */
 static void expect_corners(const he_mesh *m, const char *name, uint32_t face, double a, double b,
                            double c)
 {

@@ -1,5 +1,6 @@
-/* The search for the first repeated id in a list: it must work if ids are few or many, close
- * together or far apart, and its memory must not depend on the size of the mesh. */
+/* The search for the first repeated id in a list: it must work if the list has few or many ids, and
+ * if the ids are close together or far apart. Its memory must not depend on the size of the
+ * mesh. */
 #include "fixture.h"
 
 #include "edit/piece/list.h"

@@ -21,11 +21,12 @@
 
 #define CF4       "023,321,031,647,675,745"
 #define BIPYRAMID "013,123,203,104,214,024"
-/* Two open cylinders of six sides each, with the vertices 0 to b and c to n (b is 11, n is 23). */
+/* Two open cylinders of six sides each. The vertices are numbered by digits and letters: the first
+ * cylinder has the vertices 0 to b (11), the second c (12) to n (23). */
 #define CYLINDERS "0176,1287,2398,34a9,45ba,506b,cdji,dekj,eflk,fgml,ghnm,hcin"
 
-/* Requires that the links of two meshes are equal; only the half-edge that a vertex stores may
- * differ, if both are valid. */
+/* Requires that the links of two meshes are equal. Only the half-edge that a vertex stores may
+ * differ, if it is a valid choice in both meshes. */
 static void assert_same_links(he_mesh *m, const he_mesh *other)
 {
     for (uint32_t v = 0; v < he_mesh_issued(other, HE_VERTEX); v++) {
@@ -58,8 +59,8 @@ static void a_bridge_and_a_join_make_a_torus_of_two_cylinders(void **state)
     m = script_mesh(CYLINDERS, NULL);
     assert_counts(m, 24, 36, 12);
     assert_loops(m, "6666");
-    /* A bridge connects one end of the first cylinder to one of the second; then the two open ends
-     * that are left are joined, which makes a torus. */
+    /* A bridge connects one end of the first cylinder to one end of the second cylinder; then a
+     * join connects the two remaining open ends, which makes a torus. */
     script_prepare(m, "loop_bridge a=6-7 b=13-12");
     assert_valid(m);
     assert_counts(m, 24, 42, 18);
@@ -86,8 +87,8 @@ static void the_first_loop_survives_loop_join(void **state)
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
     /* The edit loop_join has the half-edges a and b as arguments. It merges the target of b into
-     * the origin of a, and then the vertices that follow along both loops. The list has pairs: the
-     * first vertex of a pair is merged into the second. */
+     * the origin of a, and then, one by one, the vertices that follow along the two loops. The list
+     * `merged` consists of pairs: the first vertex of a pair is merged into the second. */
     static const uint32_t merged[] = {6, 2, 4, 0, 5, 1};
     assert_int_equal(changes.merged[HE_VERTEX].count, 6);
     for (unsigned i = 0; i < 6; i++) {
@@ -115,9 +116,9 @@ static void loop_split_reports_the_new_vertices_edges_and_faces(void **state)
     assert_int_equal(he_loop_split(m, a, c, b, &parts, NULL), HE_OK);
     assert_valid(m);
     assert_int_equal(euler_of(m), 4);
-    /* Half-edge 2a of edge `a` runs from 0 to 1 in face 0. The mesh is cut open along the loop
-     * 0-1-2: faces 3 to 5 get copies 5, 6 and 7 of the loop's vertices, and both holes are closed
-     * by a face. */
+    /* Half-edge 2a of edge `a` runs from 0 to 1 in face 0. The edit cuts the mesh open along the
+     * loop 0-1-2: faces 3 to 5 get the copies 5, 6 and 7 of the loop's vertices, and a new face
+     * closes each of the two holes. */
     static const char *const faces[] = {"013", "123", "203", "654", "764", "574", "102", "567"};
     for (uint32_t f = 0; f < 8; f++) {
         assert_face(m, f, faces[f]);
@@ -173,8 +174,8 @@ static void loop_join_undoes_loop_split(void **state)
         assert_int_equal(he_face_of(m, other).i, parts.faces[1].i);
         assert_int_equal(he_loop_join(m, there, other, NULL, NULL), HE_OK);
         assert_valid(m);
-        /* A face may store any of its half-edges: each gets the one that it had before, so that the
-         * meshes can be compared. */
+        /* A face may store any of its half-edges. The test gives each face the half-edge that it
+         * stored before, so that the meshes can be compared. */
         for (uint32_t f = 0; f < he_mesh_issued(before, HE_FACE); f++) {
             he_set_face_halfedge(m, (he_face){f}, he_face_halfedge(before, (he_face){f}));
         }
@@ -225,8 +226,8 @@ static void deleting_the_new_faces_undoes_loop_bridge(void **state)
 
 static const double TURN = 6.283185307179586;
 
-/* Makes a disk with n corners and, parallel above it, one with k corners that is rotated by the
- * angle `turn`; the two faces look at each other. All positions are multiplied by `scale`. */
+/* Makes two parallel disks that face each other: one with n corners and, above it, one with k
+ * corners, rotated by the angle `turn`. All positions are multiplied by `scale`. */
 static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
 {
     he_soup soup;
@@ -337,8 +338,8 @@ static void a_small_loop_at_one_corner_of_a_large_one_is_bridged(void **state)
     }
 }
 
-/* One loop passes the bow-tie 0 twice. The bridge fills both gaps between the two fans there, so
- * the fans become one. */
+/* The loop of half-edge 1-0 passes the bow-tie 0 twice. The bridge fills both gaps between the two
+ * fans at vertex 0, so the fans become one. */
 static void a_bridge_joins_the_fans_of_a_bowtie_and_loop_join_does_not(void **state)
 {
     (void)state;
@@ -351,7 +352,8 @@ static void a_bridge_joins_the_fans_of_a_bowtie_and_loop_join_does_not(void **st
     assert_false(he_is_boundary_vertex(m, (he_vertex){0}));
     he_mesh_free(m);
 
-    /* A join with a hole closes only one gap at the bow-tie 0, so its two fans stay separate. */
+    /* loop_join deletes face 012 and puts the triangle 567 in its place. The gaps between the two
+     * fans at vertex 0 stay open, so vertex 0 still has two fans. */
     m = script_mesh("012,034,567", NULL);
     script_prepare(m, "loop_join a=0-1 b=6-5");
     assert_valid(m);

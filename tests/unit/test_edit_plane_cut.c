@@ -21,7 +21,7 @@
 
 static const he_vec3 ORIGIN = {0, 0, 0}, UP = {0, 0, 1};
 
-/* A stair with two steps: 2 wide, 2 high at the back and 1 high in front. */
+/* A stair with two steps. It is 2 wide, 2 high at the back and 1 high in front. */
 #define STAIRS "0176,1287,2398,34a9,45ba,506b,543210,6789ab"
 static const he_vec3 STAIRS_LIE[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2},
                                      {2, 0, 2}, {2, 0, 0}, {0, 1, 0}, {0, 1, 1},
@@ -168,7 +168,7 @@ static void a_face_in_the_plane_goes_to_the_part_it_bounds(void **state)
 static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **state)
 {
     (void)state;
-    /* A hole of the mesh that the plane does not meet must stay a hole. */
+    /* A plane cuts the mesh, but does not meet its hole: the hole must stay. */
     he_mesh *m = shape("icosphere");
     script_prepare(m, "face_delete face=0");
     he_vec3 hole = {0, 0, 0};
@@ -231,8 +231,8 @@ static void corners_within_the_tolerance_lie_in_the_plane(void **state)
     const he_vec3 at = {0, 0, 0.05};
     he_cut_parts parts;
     he_mesh *m = script_mesh(STAIRS, STAIRS_LIE), *before = copy_of(m);
-    /* The bottom of the stair lies in the plane, within the tolerance, and looks down: the part
-     * above the plane must keep this face. */
+    /* The bottom of the stair lies in the cutting plane, within the tolerance, and faces down: the
+     * part of the mesh above the plane must keep this face. */
     assert_int_equal(he_plane_cut(m, &(he_plane){at, UP, &near}, HE_CUT_ABOVE, true, &parts, NULL),
                      HE_OK);
     assert_int_equal(parts.edges_split, 0);

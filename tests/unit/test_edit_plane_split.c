@@ -40,8 +40,8 @@ static he_mesh *shape(const char *name, double first, double second)
     return m;
 }
 
-/* Returns whether a vertex lies above the plane (1), below it (-1) or in it (0), with a tolerance
- * for rounding only. */
+/* Returns 1 if a vertex lies above the plane, -1 if it lies below the plane, and 0 if it lies in
+ * the plane; the tolerance only allows for rounding errors. */
 static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
 {
     he_vec3 p = he_position(m, v);
@@ -49,8 +49,8 @@ static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
     return fabs(d) < 1e-7 ? 0 : d > 0 ? 1 : -1;
 }
 
-/* How a face lies relative to a plane: whether it has corners above and below, how many corners lie
- * in the plane, and how many sides cross it. */
+/* How a face lies relative to a plane: whether the face has corners above and below the plane, how
+ * many corners lie in the plane, and how many sides cross the plane. */
 typedef struct look {
     bool above, below;
     uint32_t in_plane, crossings;
@@ -97,8 +97,8 @@ static void assert_same_topology(const he_mesh *m, const he_mesh *before)
     he_topology_clear(&b);
 }
 
-/* Checks the numbers of new vertices, edges and faces, which can be predicted from the old mesh;
- * for faces with corners in the plane the prediction is exact only if they are convex. */
+/* Checks the numbers of new vertices, edges and faces, which can be predicted from the old mesh.
+ * For faces with corners in the plane the prediction is exact only if the faces are convex. */
 static void assert_predicted(const he_mesh *before, const he_plane_parts *parts, he_vec3 point,
                              he_vec3 normal, bool convex)
 {
@@ -211,8 +211,8 @@ static void a_square_is_cut_only_if_corners_lie_on_both_sides(void **state)
     }
 }
 
-/* If a face is split, the part that has the origin of the face's stored half-edge must keep the
- * face's id. */
+/* If a face is split, one of the parts has the origin of the half-edge that the face stores: this
+ * part must keep the face's id. */
 static void the_part_of_the_first_side_keeps_the_id_of_the_face(void **state)
 {
     (void)state;
@@ -247,8 +247,8 @@ static void the_part_of_the_first_side_keeps_the_id_of_the_face(void **state)
     he_mesh_free(m);
 }
 
-/* Only the faces in the request's list are split. The neighbour of a split face gets the new vertex
- * on their common edge as a corner, but stays whole if it is not in the list. */
+/* Only the faces in the request's list are split. A neighbour of a split face gets the new vertex
+ * on their common edge as a corner, but is not split unless it is in the list itself. */
 static void only_listed_faces_are_cut_and_neighbours_get_the_corner(void **state)
 {
     (void)state;
@@ -260,8 +260,8 @@ static void only_listed_faces_are_cut_and_neighbours_get_the_corner(void **state
     assert_int_equal(he_face_degree(m, (he_face){0}), 4);
     assert_int_equal(he_face_degree(m, (he_face){1}), 5);
     assert_int_equal(he_face_degree(m, (he_face){2}), 4);
-    /* The neighbours already have a corner on the plane: a second split must use this corner
-     * instead of making another one. */
+    /* The first split gave the neighbours a corner in the plane: a second split, of all faces, must
+     * use this corner instead of making another one. */
     script_prepare(m, "plane_split point=0,0.5,0 normal=0,1,0 faces=2,1,0,3");
     assert_counts(m, 12, 17, 6);
     he_mesh_free(m);
@@ -287,9 +287,9 @@ static void values_are_copied_to_parts_and_interpolated_at_the_cut(void **state)
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     }
     script_prepare(m, "plane_split point=0.25,0,0 normal=1,0,0");
-    /* The split makes vertex 4 between 0 and 1, edge 4 from edge 0, and face 1 from face 0. Corner
-     * values at vertex 4 in face 0 lie between those of half-edges 0 and 2, the corners at 0 and
-     * 1. */
+    /* The split makes vertex 4 between 0 and 1, edge 4 from edge 0, and face 1 from face 0. The
+     * value of the corner at vertex 4 in face 0 must lie between the values of half-edges 0 and 2,
+     * which are the corners at vertices 0 and 1. */
     const struct {
         he_kind domain;
         uint32_t row;
@@ -343,8 +343,8 @@ static void what_cannot_be_cut_is_refused_and_changes_nothing(void **state)
         assert_int_equal(parts.faces_split, 77);
         assert_equal(m, before);
     }
-    /* The plane meets two sheets of faces: splitting both is refused, but one sheet can be split
-     * alone. */
+    /* The plane meets two sheets of faces: splitting both sheets is refused, but the faces of one
+     * sheet can be split. */
     script_prepare(m, "plane_split point=0.5,0,0 normal=1,0,0 faces=1");
     assert_counts(m, 6, 7, 3);
     he_mesh_free(before);
@@ -382,8 +382,8 @@ static point back(he_vec3 p, double scale)
     return (point){0.6 * q.x + 0.8 * q.z, q.y / 0.8};
 }
 
-/* Splits a polygon at the line y = height: there must be `parts` parts, none of them turned over,
- * and their areas must add up to that of the polygon. */
+/* Splits a polygon at the line y = height. There must be `parts` parts, none of them may be turned
+ * over, and the areas of the parts must add up to the area of the polygon. */
 static void check_cut(const point *points, uint32_t n, double height, uint32_t parts, double scale)
 {
     he_soup soup;
@@ -399,8 +399,8 @@ static void check_cut(const point *points, uint32_t n, double height, uint32_t p
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    /* The normal lies in the tilted plane of the polygon and has the direction of the y axis of the
-     * polygon's points. */
+    /* The normal of the cutting plane lies in the tilted plane of the polygon. It is the image of
+     * the y axis of the coordinates in which the polygon's points are given. */
     he_vec3 normal = {-0.48, 0.8, 0.36};
     assert_int_equal(he_plane_split(m, &(he_plane){lay((point){5, height}, scale), normal, NULL},
                                     NULL, 0, NULL, NULL),
@@ -478,8 +478,9 @@ static void a_comb_of_3000_teeth_is_cut_into_teeth_and_back(void **state)
     free(points);
 }
 
-/* Polygons with corners at integer heights are split at integer heights, so that corners and sides
- * lie in the cutting plane or touch it from above or below, also at the ends of the polygon. */
+/* Polygons with corners at integer heights are split at integer heights. Some corners and sides
+ * therefore lie in the cutting plane or touch it from above or below, also at the polygon's left
+ * and right ends. */
 static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **state)
 {
     (void)state;
@@ -499,13 +500,13 @@ static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **sta
         for (uint32_t i = n + 1; i-- > 0;) {
             points[count++] = (point){i, h[i]};
         }
-        /* A side of the polygon with an end above the cutting line begins a new part, unless the
-         * side before it ends above this line. */
+        /* Counts the parts of the polygon above the cutting line: a side with an end above the line
+         * begins a new part, unless the side before it ends above the line. */
         for (uint32_t i = 0; i < n; i++) {
             above += h[i] > cut || h[i + 1] > cut;
             above -= i > 0 && h[i] > cut;
         }
-        /* The polygon begins at a random corner. */
+        /* `turned` has the points of the polygon, but begins at a random one. */
         point turned[16];
         uint32_t start = md_below(&r, count);
         for (uint32_t i = 0; i < count; i++) {
@@ -551,7 +552,7 @@ static void cut_shapes_keep_topology_and_area_with_faces_on_one_side(void **stat
     }
 }
 
-/* memory of the random shapes, allocated once because its tables are large */
+/* memory for the random shapes, allocated once because their tables are large */
 static or_mesh *shapes;
 
 static he_mesh *random_mesh(md_random *r)

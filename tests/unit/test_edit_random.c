@@ -47,8 +47,9 @@ static uint32_t random_id(const he_mesh *m, he_kind kind)
     return random_below(issued + 2);
 }
 
-/* Returns a random neighbour of a vertex or a random corner of a face. Operations with two
- * arguments succeed more often if their second argument is such a vertex. */
+/* Returns a random neighbour of the vertex `id` or a random corner of the face `id`, and sometimes
+ * any vertex. Operations with two arguments succeed more often if the second argument is near the
+ * first. */
 static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
 {
     bool face = kind == HE_FACE;
@@ -64,8 +65,8 @@ static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
     return he_target(m, h).i;
 }
 
-/* Chooses random corners for a new face; they often follow the boundary of a hole, where a face can
- * be added. */
+/* Chooses random vertices as corners of a new face. The vertices often follow the boundary of a
+ * hole, where a face can be added. */
 static size_t random_cycle(const he_mesh *m, uint32_t *ids)
 {
     size_t n = 2 + random_below(4);
@@ -115,8 +116,8 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
     case HE_PARAM_NUMBER:
         arg->number = param->min + random_unit() * (param->max - param->min);
         if (param->flags &
-            /* whole numbers are kept small: an edit of many steps could make the mesh very large or
-             * remove all of it */
+            /* Whole numbers may be numbers of steps, and an edit of many steps could make the mesh
+             * very large or remove all of it: the test keeps them small. */
             HE_WHOLE) {
             arg->number = param->max < 1e6 ? param->min : random_below(100);
         }
@@ -159,8 +160,8 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         if (param->group != 0) {
-            /* This parameter and the one before it are alternatives: the loop chose one of the two
-             * when it came to the first. */
+            /* This parameter and the one before it are alternatives. The loop chose between the two
+             * when it came to the first of them. */
             if (i > 0 && op->params[i - 1].group == param->group) {
                 continue;
             }
@@ -172,8 +173,8 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     }
 }
 
-/* Requires that the reported sets of changed elements are empty if both meshes are equal, and only
- * then. */
+/* Requires that the sets of changed elements that an edit reports are empty exactly if the meshes
+ * before and after the edit are equal. */
 static void require_honest_changes(const he_mesh *before, const he_mesh *m, const he_delta *delta)
 {
     he_changes changes;
@@ -257,8 +258,8 @@ static void random_edits_keep_every_promise_of_their_row(void **state)
         all += done[i];
     }
     he_mesh_free(other);
-    /* A test in which nearly all operations are refused would show little: at least ten per round
-     * must succeed. */
+    /* A test in which nearly all operations are refused would prove little: at least ten operations
+     * per round must succeed. */
     assert_true(all > 10 * rounds);
 }
 

@@ -1,5 +1,5 @@
 /* Edits that extrude and inset regions of faces, collapse and reverse faces, make the dual of a
- * mesh, and append a mesh: which ids survive, positions, and attribute values. */
+ * mesh, and append a mesh. The tests check which ids survive, positions, and attribute values. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -22,7 +22,8 @@
 
 #define QCUBE "0123,7654,1045,2156,3267,0374"
 
-/* Positions of the corners of a unit square in the plane z = 0 and of a triangle beside it. */
+/* Positions of the corners of a unit square in the plane z = 0 and of a triangle beside the
+ * square. */
 static const he_vec3 flat[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0.5, 0}};
 
 static const he_vec3 cube[] = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0},
@@ -104,8 +105,8 @@ static void a_region_moves_as_one_with_what_is_inside(void **state)
     assert_counts(m, 25 + 8, 40 + 16, 16 + 8);
     assert_at(m, 12, 2, 2, 3);
     assert_at(m, 6, 1, 1, 0);
-    /* The inner edge 12-13 belongs to the extruded region: its end 13, at the rim of the region,
-     * must have become a new vertex. */
+    /* The inner edge 12-13 belongs to the extruded region. Its end 13 lies at the rim of the
+     * region, so a new vertex must have replaced 13 as an end of this edge. */
     he_halfedge h = he_edge_halfedge(inner, 0);
     h = he_origin(m, h).i == 12 ? h : he_twin(h);
     assert_int_equal(he_origin(m, h).i, 12);
@@ -255,7 +256,8 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     assert_at(m, 25, 1.25, 1.25, 0);
     assert_counts(m, 33, 56, 24);
     he_mesh_free(m);
-    /* The rim of the region moves towards the vertex in its middle, but must never reach it. */
+    /* The rim of the region moves towards the vertex in the middle of the region, but must never
+     * reach this vertex. */
     m = grid(4);
     run(m, "face_inset faces=5,6,9,10 distance=9 region=1");
     assert_at(m, 12, 2, 2, 0);
@@ -263,8 +265,8 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     he_mesh_free(m);
 }
 
-/* If the values at a face's corners are a linear function of their positions, the values at the new
- * vertices of an inset must be the values of this function at their positions. */
+/* If the values at a face's corners are a linear function of position, the value at each new vertex
+ * of an inset must be the value of this function at the position of the vertex. */
 static void values_of_an_inset_are_those_at_its_place(void **state)
 {
     (void)state;
@@ -313,8 +315,8 @@ static void values_of_an_inset_are_those_at_its_place(void **state)
     }
 }
 
-/* Even if the values at a face's corners are no linear function of their positions, the values at
- * new vertices must lie between them. */
+/* Even if the values at a face's corners are no linear function of position, the values at the new
+ * vertices of an inset must lie between the values at the corners. */
 static void values_of_an_inset_lie_between_those_of_its_corners(void **state)
 {
     (void)state;
@@ -470,8 +472,8 @@ static void the_dual_of_a_cube_is_an_octahedron(void **state)
     he_mesh_free(m);
 }
 
-/* Returns how many vertices with smaller ids than v are live. By these numbers, vertices of two
- * meshes can be compared although their ids differ. */
+/* Returns the number of live vertices with smaller ids than v. Vertices with equal ranks in two
+ * meshes correspond to each other although their ids differ. */
 static uint32_t rank_of(const he_mesh *m, uint32_t v)
 {
     uint32_t rank = 0;
@@ -493,8 +495,8 @@ static void the_dual_of_the_dual_has_the_links_of_the_mesh(void **state)
         assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
         uint32_t first = he_mesh_issued(m, HE_EDGE) - he_mesh_edges(m);
         for (uint32_t h = 0; h < 2 * he_mesh_edges(m); h++) {
-            /* The dual of a mesh turns each edge by a right angle, so the dual of the dual has each
-             * half-edge in the opposite direction. */
+            /* The dual of a mesh turns each edge by a right angle, so in the dual of the dual each
+             * half-edge has the opposite direction. */
             he_halfedge old = {h}, new = {2 * first + (h ^ 1)};
             assert_int_equal(he_next(m, new).i, 2 * first + (he_next(before, old).i ^ 1));
             assert_int_equal(rank_of(m, he_origin(m, new).i), he_origin(before, old).i);

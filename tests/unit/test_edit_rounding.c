@@ -20,7 +20,7 @@
 #define TARGET 0.87518049095669803
 #define ORIGIN 0.87518049095669814
 
-/* Makes a mesh with vertex 0 at `x` and vertex 1 at TARGET; the script `mark` marks elements so
+/* Makes a mesh with vertex 0 at `x` and vertex 1 at TARGET. The script `mark` marks elements, so
  * that vertex 1 must not move. */
 static he_mesh *kept(double x, const char *mark)
 {
@@ -79,8 +79,8 @@ test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves(void
 }
 
 /* In the oracle (the tests' own model of edits), face_collapse merges the corners of a face one
- * after another; if the real edit refuses a merge, the oracle must go back to its state before the
- * first. */
+ * after another. If the real edit refuses one of these merges, the oracle must go back to its state
+ * before the first merge. */
 static void the_oracle_goes_back_before_all_steps_of_a_face(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Which of the old elements keep their ids in an edit, and which parents and merges the edit
- * reports. */
+/* The tests check which of the old elements keep their ids in an edit, and which parents and merged
+ * elements the edit reports. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -49,8 +49,8 @@ static void edge_bisect_keeps_the_id_for_the_part_at_the_origin(void **state)
 {
     (void)state;
     edit e = edit_begin("0123");
-    /* Edge 0 runs from vertex 0 to vertex 1; the bisection must keep its id for the part at vertex
-     * 0. */
+    /* Edge 0 runs from vertex 0 to vertex 1. When it is bisected, the part at vertex 0 must keep
+     * the id of the edge. */
     edit_run(&e, "edge_bisect edge=#0 t=0.25");
     assert_int_equal(he_target(e.m, (he_halfedge){0}).i, 4);
     assert_int_equal(he_origin(e.m, (he_halfedge){8}).i, 4);
@@ -83,8 +83,8 @@ static void edge_split_keeps_the_ids_of_the_edge_and_both_faces(void **state)
     (void)state;
     edit e = edit_begin("012,103");
     edit_run(&e, "edge_split edge=#0");
-    /* The split makes vertex 4. The new edges 5, 6 and 7 are the second half of the split edge, the
-     * edge from 4 to vertex 2, and that from 4 to vertex 3. */
+    /* The split makes vertex 4. New edge 5 is the second half of the split edge, new edge 6
+     * connects vertices 4 and 2, and new edge 7 connects vertices 4 and 3. */
     assert_ids(&e.changes.created[HE_EDGE], "5 6 7");
     assert_ids(&e.changes.created[HE_FACE], "2 3");
     assert_ids(&e.changes.parents[HE_EDGE], "5 0");
@@ -123,8 +123,8 @@ static void edge_collapse_keeps_the_target_and_the_edges_at_it(void **state)
     assert_ids(&e.changes.merged[HE_FACE], "");
     edit_end(&e);
 
-    /* If the request names an edge e and no half-edge, the operation takes half-edge 2e: the origin
-     * of this half-edge is deleted. */
+    /* If the request names an edge e instead of a half-edge, the operation collapses half-edge 2e:
+     * the origin of this half-edge is deleted. */
     e = edit_begin("0123");
     edit_run(&e, "edge_collapse edge=#1 t=0");
     assert_face(e.m, 0, "023");

@@ -1,5 +1,5 @@
-/* Triangulation of faces that are concave, long, tilted or degenerate, of faces whose diagonals
- * exist as edges already, and of holes. */
+/* Triangulation of concave, long, tilted and degenerate faces, of faces whose diagonals exist as
+ * edges already, and of the faces that fill holes. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -115,7 +115,7 @@ static void stars_combs_and_spirals_of_600_corners_are_triangulated(void **state
     (void)state;
     enum { N = 600 };
     static point points[N];
-    /* The points are first a star, then a comb, then a spiral. */
+    /* The points form first a star, then a comb, then a spiral. */
     for (uint32_t i = 0; i < N; i++) {
         double angle = 6.283185307179586 * i / N, radius = i % 2 ? 100 : 30;
         points[i] = (point){radius * cos(angle), radius * sin(angle)};
@@ -149,8 +149,8 @@ static void a_convex_face_of_20000_corners_takes_no_quadratic_time(void **state)
     free(points);
 }
 
-/* Faces without area and faces whose sides cross must be triangulated, too, and be reported as
- * degenerate. */
+/* Faces without area and faces with sides that cross each other must be triangulated, too, and be
+ * reported as degenerate. */
 static void degenerate_faces_are_triangulated_and_reported(void **state)
 {
     (void)state;
@@ -193,8 +193,9 @@ static he_mesh *flat_mesh(const char *faces, const point *points, uint32_t n)
     return script_mesh(faces, positions);
 }
 
-/* If one diagonal of a quadrilateral exists as an edge elsewhere, the triangulation must take the
- * other one; if that lies outside of the face, the edit must be refused. */
+/* If one diagonal of a quadrilateral exists as an edge of another face, the triangulation must use
+ * the other diagonal. If the other diagonal lies outside the quadrilateral, the edit must be
+ * refused. */
 static void diagonals_avoid_existing_edges_or_the_edit_is_refused(void **state)
 {
     (void)state;
@@ -222,8 +223,8 @@ static void diagonals_avoid_existing_edges_or_the_edit_is_refused(void **state)
 }
 
 /* Makes a face of 66 corners: a star, or a convex polygon if `inner` is 1. At `blocked` of its
- * points no triangle can be cut off, because the diagonal for it exists as an edge of another
- * face. */
+ * corners no triangle can be cut off, because the diagonal that would cut it off exists as an edge
+ * of another face. */
 static he_mesh *blocked_star(double inner, uint32_t blocked)
 {
     enum { N = 66 };
@@ -263,9 +264,9 @@ static void blocked_ears_are_passed_over_or_the_edit_is_refused(void **state)
     he_mesh_free(m);
 }
 
-/* Many faces share two corners of very high degree, and the last face has its best diagonal between
- * these two. The triangulation must find in few steps that this edge exists already, even if the
- * same edit made it as a diagonal of an earlier face. */
+/* Many faces share two corners of very high degree, and the best diagonal of the last face connects
+ * these two corners. The triangulation must find in few steps that this edge exists already, even
+ * if the same edit made it as a diagonal of an earlier face. */
 static void faces_that_share_two_hubs_take_no_quadratic_time(void **state)
 {
     (void)state;
@@ -294,8 +295,8 @@ static void faces_that_share_two_hubs_take_no_quadratic_time(void **state)
     he_mesh_free(m);
 }
 
-/* Two faces have equal corners: only one of them may get the diagonal 0-2, the other must get
- * 1-3. */
+/* Two faces have equal corners: only one of them may get the diagonal 0-2, and the other face must
+ * get the diagonal 1-3. */
 static void two_faces_of_a_list_do_not_get_the_same_diagonal(void **state)
 {
     (void)state;
@@ -348,8 +349,9 @@ static he_triangulation triangulation_of(const he_mesh *m, uint32_t face, unsign
     return t;
 }
 
-/* With the option HE_ANY_DIAGONALS a star is triangulated in fewer steps than with the best
- * diagonals; a polygon whose sides cross gets the same triangles with and without the option. */
+/* With the option HE_ANY_DIAGONALS, the triangulation of a star takes fewer steps than without it,
+ * because it does not look for the best diagonals. A polygon whose sides cross gets the same
+ * triangles with and without the option. */
 static void any_diagonals_take_fewer_steps_than_the_best_ones(void **state)
 {
     (void)state;

@@ -23,8 +23,8 @@
 
 /* --- inverses --- */
 
-/* Requires that two meshes are equal except for the half-edge that each vertex stores, which is set
- * to the one in `before`. */
+/* Requires that two meshes are equal, except that a vertex may store another half-edge: the
+ * function first lets each vertex of `m` store the half-edge that the vertex stores in `before`. */
 static void assert_same_rings(he_mesh *m, const he_mesh *before)
 {
     for (uint32_t v = 0; v < he_mesh_issued(before, HE_VERTEX); v++) {
@@ -174,8 +174,8 @@ static void a_cube_vertex_bevels_to_a_triangle_of_limited_width(void **state)
     assert_int_equal(results.id[2], 6);
     assert_int_equal(he_face_degree(m, (he_face){6}), 3);
     assert_int_equal(he_origin(m, he_face_halfedge(m, (he_face){6})).i, 0);
-    /* The old edge from 0 to 1 must keep its id; the bevel has replaced its end at 0 by one of the
-     * three new vertices. */
+    /* The old edge from 0 to 1 must keep its id. The bevel has replaced the end 0 of this edge by
+     * one of the three new vertices. */
     he_halfedge h = he_edge_halfedge(kept, 0);
     he_vertex end = he_origin(m, h).i == 1 ? he_target(m, h) : he_origin(m, h);
     he_vec3 p = he_position(m, end);
@@ -189,9 +189,9 @@ static void a_cube_vertex_bevels_to_a_triangle_of_limited_width(void **state)
     he_mesh_free(m);
 }
 
-/* A weld merges each vertex into the vertex with the lowest id within the tolerance that is not
- * merged itself. Vertex 1 is near both 0 and 2, but 2 is not near 0 and must not be merged into
- * it. */
+/* A vertex is merged into the vertex with the lowest id within the tolerance, but never into a
+ * vertex that is itself merged into another one. Vertex 1 is near 0 and near 2, but 2 is not near 0
+ * and must not be merged into it. */
 static void a_weld_does_not_merge_along_a_chain(void **state)
 {
     (void)state;
@@ -209,9 +209,9 @@ static void a_weld_does_not_merge_along_a_chain(void **state)
     he_mesh_free(m);
 }
 
-/* The weld searches near vertices by cells of a grid, but only the distance may decide what is
- * merged: also at negative coordinates, at borders of cells, and where cells are smaller than the
- * gap between neighbouring doubles. */
+/* The weld looks up near vertices in the cells of a grid, but only distances may decide which
+ * vertices are merged: also at negative coordinates, at the borders of cells, and where cells are
+ * smaller than the gap between neighbouring doubles. */
 static void only_distance_decides_what_a_weld_merges_at_any_scale(void **state)
 {
     (void)state;
@@ -243,8 +243,8 @@ static void only_distance_decides_what_a_weld_merges_at_any_scale(void **state)
     }
 }
 
-/* The weld searches near vertices by cells of a grid. Neither if all vertices are in one cell nor
- * if each has its own cell may the weld take quadratic time. */
+/* The weld looks up near vertices in the cells of a grid. It must not take quadratic time, neither
+ * if all vertices lie in one cell nor if each vertex has a cell of its own. */
 static void a_weld_of_100000_vertices_takes_no_quadratic_time(void **state)
 {
     (void)state;
@@ -342,7 +342,7 @@ static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
     assert_int_equal(he_face_of(e.m, (he_halfedge){3}).i, 1);
     edit_end(&e);
 
-    /* The weld makes the two faces equal, so they must be merged, too. */
+    /* The weld gives the two faces equal corners, so the faces must be merged, too. */
     e = edit_run("012,345",
                  "vertex_move vertices=0,4 to=0,0,0;vertex_move vertices=1,5 to=5,1,0;"
                  "vertex_move vertices=2,3 to=0,5,0",
@@ -379,8 +379,8 @@ static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
 
 /* --- values --- */
 
-/* Makes a mesh with one double named "a" for each element of a kind, and runs a script on it. The
- * value of element i is 10 * i before the script; the default is -1. */
+/* Makes a mesh with an attribute "a" of one double for each element of a kind, and runs a script on
+ * the mesh. Element i has the value 10 * i before the script; new elements get -1 by default. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -444,8 +444,8 @@ static void vertex_values_follow_the_rule_of_their_column(void **state)
         assert_value(m, HE_VERTEX, cases[i].vertex, cases[i].value);
         he_mesh_free(m);
     }
-    /* The bevel cuts each edge at 99 hundredths of its length, so interpolated values must be
-     * nearly those at the far ends. */
+    /* The bevel cuts each edge at 99 hundredths of its length, so the interpolated values must be
+     * nearly equal to the values at the far ends of the edges. */
     he_mesh *m =
         after("021,013,032,123", HE_VERTEX, HE_INTERPOLATE, "vertex_bevel vertex=3 width=1e9");
     const uint32_t made[3] = {3, 4, 5};
@@ -526,8 +526,8 @@ static void corners_keep_values_and_a_bevel_interpolates_new_ones(void **state)
     he_mesh_free(before);
     he_mesh_free(m);
 
-    /* The half-edges of face 021 are 0 (from 0 to 2), 2 (2 to 1) and 4 (1 to 0). The bevel cuts
-     * vertex 0 off at 99 hundredths of its edges. */
+    /* The half-edges of face 021 are 0 (from 0 to 2), 2 (2 to 1) and 4 (1 to 0). The bevel cuts off
+     * the corner at vertex 0; it cuts the edges there at 99 hundredths of their length. */
     m = after("021,013,032,123", HE_HALFEDGE, HE_INTERPOLATE, "vertex_bevel vertex=0 width=1e9");
     he_halfedge out = {0};
     assert_value(m, HE_HALFEDGE, out.i, 0.01 * 0 + 0.99 * 20);

@@ -5,10 +5,10 @@
 #include "format/io/export_triangles.h"
 #include "tests/failing.h"
 
-/* Makes quadrilaterals with the corners 0, a, 1, b; each quadrilateral has an a and a b of its own.
- * Both diagonals of a quadrilateral exist as edges: 0-1 in one triangle in the middle, and a-b in a
- * triangle beside the quadrilateral. Vertex 2 is connected to every second a, so vertices 0, 1 and
- * 2 have a high degree. */
+/* Makes quadrilaterals with the corners 0, a, 1, b; each quadrilateral has its own vertices a and
+ * b. Both diagonals of a quadrilateral exist as edges already: 0-1 belongs to the triangle 0-1-2,
+ * and a-b to a triangle beside the quadrilateral. Vertex 2 is connected to the vertex a of every
+ * second quadrilateral, so vertices 0, 1 and 2 have a high degree. */
 static he_mesh *two_hubs(uint32_t quads)
 {
     he_soup soup;
@@ -116,8 +116,8 @@ static void what_is_noted_is_joined(void **state)
     he_mesh_free(m);
 }
 
-/* If the triangulation of each face visited all edges of the two vertices that all faces share, it
- * would take quadratic time. */
+/* All faces share two vertices. If the triangulation of each face visited all edges of these two
+ * vertices, it would take quadratic time. */
 static void faces_about_two_vertices_are_cut_in_linear_time(void **state)
 {
     (void)state;

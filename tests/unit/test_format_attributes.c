@@ -1,6 +1,6 @@
-/* Attributes of an edited mesh are written to files of all formats that can hold them. They must be
- * read back bit by bit, without the values of deleted elements, and each value at its own
- * element. */
+/* Attributes of an edited mesh are written to files of all formats that can store them. Reading the
+ * file must give the same values, bit by bit, each at its own element, and no values of deleted
+ * elements. */
 #include "unit/format_fixture.h"
 
 #include "edit/local/erase.h"
@@ -20,7 +20,8 @@ typedef struct attribute {
     he_kind domain;
     he_type type;
     uint32_t components;
-    /* whole numbers are less than this value, or any if it is 0; fractions are k / (below - 1) */
+    /* random whole numbers are less than `below`, or may be any numbers if it is 0; random
+     * fractions are k / (below - 1) with a whole number k */
     uint32_t below;
 } attribute;
 
@@ -112,9 +113,9 @@ static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t
     return m;
 }
 
-/* Requires that a file that was read has the attribute `a` with the values that it has in the mesh.
- * Values of corners come face by face; all others come in the order of ids, which have no gaps
- * here. */
+/* Requires that the mesh data read from a file has the attribute `a` with the values of the mesh.
+ * The values of corners come face by face; other values come in the order of the elements' ids,
+ * which have no gaps in this test. */
 static void expect_column(const he_mesh *m, const he_import *import, const attribute *a)
 {
     const he_column *wanted = he_mesh_find_column(m, a->domain, a->name);

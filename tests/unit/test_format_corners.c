@@ -6,9 +6,9 @@
 #include "mesh/write.h"
 #include "tests/failing.h"
 
-/* A quadrilateral and a triangle that share the edge between the second and the third vertex. Their
- * corners at the second vertex have different texture coordinates and normals, those at the third
- * vertex only different texture coordinates. */
+/* A quadrilateral and a triangle that share the edge between the second and the third vertex. At
+ * the second vertex, the corners of the two faces differ in texture coordinates and normals; at the
+ * third vertex, they differ only in texture coordinates. */
 static const char seam[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 9 9 9\n"
                            "vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nvt 0.75 0\nvt 1 0.25\nvt 0.75 1\n"
                            "vn 0 0 1\nvn 0 1 0\n"
@@ -30,8 +30,8 @@ static void replace_all(char *bytes, size_t length, const char *word, const char
     }
 }
 
-/* Renames the data in a file that only hedge reads, so that hedge reads the file like other
- * programs. */
+/* Renames the data that only hedge reads in a file: hedge then ignores this data and reads the file
+ * as other programs do. */
 static void hide_marks(char *bytes, size_t length)
 {
     replace_all(bytes, length, "\"hedge\":{", "\"Hedge\":{");
@@ -78,8 +78,8 @@ static void the_mesh_comes_back(void **state)
     }
 }
 
-/* In the file, as other programs read it, each corner must get the corner's value of the mesh from
- * its vertex. */
+/* Other programs read attribute values of vertices only. Through the vertices in the file, each
+ * corner must get the value that it has in the mesh. */
 static void others_get_the_same_values_at_the_same_corners(void **state)
 {
     (void)state;
@@ -173,8 +173,9 @@ static void texcoord_lists_are_written(void **state)
     he_mesh_free(mesh);
 }
 
-/* Another program has moved one of the vertices that hedge had split, but kept hedge's notes about
- * which vertices belong together: hedge must not join vertices at different positions. */
+/* Hedge has written several copies of a vertex, with notes that the copies belong together. Another
+ * program has moved one of the copies, but kept the notes: hedge must not join vertices at
+ * different positions. */
 static void marks_that_do_not_fit_are_not_believed(void **state)
 {
     (void)state;
@@ -206,8 +207,8 @@ static void marks_that_do_not_fit_are_not_believed(void **state)
     he_mesh_free(mesh);
 }
 
-/* Vertices and corners have attributes with the same name: in the file, other programs must see the
- * attribute of corners, and hedge must read both attributes. */
+/* A vertex attribute and a corner attribute have the same name: in the file, other programs must
+ * see the attribute of corners, and hedge must read both attributes. */
 static void corners_come_before_vertices(void **state)
 {
     (void)state;

@@ -9,7 +9,7 @@
 
 static const char *corpus;
 
-/* Copies the k-th field of a line of tab-separated text. */
+/* Copies the field number k, counted from 0, of a line of tab-separated text. */
 static void cell(const char *line, size_t k, char *text, size_t size)
 {
     for (; k > 0; k--) {
@@ -90,7 +90,7 @@ static void check_defects(const char *line, const he_mesh *mesh)
     assert_int_equal(inside_out, found.of[HE_DEFECT_INSIDE_OUT].total > 0);
 }
 
-/* Requires equal faces, but each may begin with any of its corners, because the compression of
+/* Requires equal faces. Each face may begin with any of its corners, because the compression of
  * indices does not preserve the first corner of a triangle. */
 static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
 {
@@ -108,8 +108,8 @@ static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
     }
 }
 
-/* Exports the mesh and reads the file back: it must have equal polygons or, in STL, the number of
- * triangles into which the polygons are cut. */
+/* Exports the mesh and reads the file back: the result must have equal polygons or, if the format
+ * is STL, the number of triangles into which the polygons are cut. */
 static void check_export(const he_format *format, const char *encoding, const he_mesh *mesh,
                          const he_soup *wanted)
 {

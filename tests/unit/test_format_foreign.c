@@ -40,7 +40,7 @@ static void what_is_no_mesh_is_called_by_its_name(void **state)
             fail_msg("%s: %s", rows[i].name, name == NULL ? "not known" : name);
         }
         assert_null(he_format_sniff(rows[i].bytes, rows[i].length));
-        /* one byte must not be enough to recognize the kind of file */
+        /* the first byte alone must not be enough to recognize the kind of file */
         assert_null(he_foreign_find(rows[i].bytes, 1));
     }
     char tar[512] = "part.obj";

@@ -50,7 +50,7 @@ static void every_mode_and_every_type_of_index(void **state)
         expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
         he_import_clear(&import);
     }
-    /* if a primitive has no indices, its vertices in their order are the corners of triangles */
+    /* if a primitive has no indices, each three vertices in a row are the corners of a triangle */
     he_import import = glb_square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
         "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
@@ -87,7 +87,8 @@ static void nodes_move_what_they_place(void **state)
     (void)state;
     static const struct {
         const char *nodes;
-        double at[3]; /* position of vertex 2 in the scene; in the mesh it is at 1 1 0 */
+        double at[3]; /* position of vertex 2 in the scene; without its node's transform it would be
+                         1 1 0 */
         bool mirrored;
     } rows[] = {
         {"{'mesh':0}", {1, 1, 0}, false},
@@ -206,9 +207,9 @@ static void the_scene_that_is_named_is_read(void **state)
 static void sparse_accessors(void **state)
 {
     (void)state;
-    /* A sparse accessor stores only the values that replace others. Here two positions, which are
-     * bytes 12 to 35 of the binary data, replace values 1 and 2 of a list of zeros, or corners 0
-     * and 2 of the square. */
+    /* A sparse accessor stores only values that replace values of a base list. Here the two stored
+     * positions are bytes 12 to 35 of the binary data. They replace values 1 and 2 of a list of
+     * zeros, or corners 0 and 2 of the square. */
     static const struct {
         const char *view, *indices;
         double at[4][3];
@@ -261,7 +262,7 @@ static void quantized_positions(void **state)
 static void buffers_in_uris(void **state)
 {
     (void)state;
-    /* The file has only three corners of the square, 36 bytes. */
+    /* The data of the file contains only three corners of the square, 36 bytes. */
     static const char triangle[] =
         "{'asset':{'version':'2.0'},'buffers':[{'byteLength':36,'uri':'data:application/"
         "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA'}],"
@@ -284,7 +285,8 @@ static void buffers_in_uris(void **state)
         }
         expect_counts(&import, 3, 1, 3);
         assert_memory_equal(import.soup.positions, glb_square, 3 * sizeof *glb_square);
-        /* the place of a face in the file is the offset of its primitive in the JSON text */
+        /* the place that hedge names for a face of a glTF file is the offset of the face's
+         * primitive in the JSON text */
         assert_int_equal(he_source_map_find(&import.faces, 0),
                          (i == 0 ? f.json : 0) +
                              (size_t)(strstr(triangle, "{'attributes'") - triangle));
@@ -510,7 +512,7 @@ static void what_has_no_place_is_noted(void **state)
 }
 
 /* If the length of a chunk is no multiple of 4, the next chunk may begin right after it or at the
- * next multiple of 4: both must be read, with a warning. */
+ * next multiple of 4: the reader must accept both files, with a warning. */
 static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* A GLB file shows objects, groups and materials to other programs as separate parts. hedge must
- * read the original mesh back from it: the order of faces, polygons, names and materials. */
+/* A GLB file shows objects, groups and materials to other programs as separate meshes and
+ * primitives. From the same file hedge must read the original mesh back, with the order of its
+ * faces, its polygons, names and materials. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 
@@ -7,7 +8,8 @@
 #include "mesh/write.h"
 #include "tests/failing.h"
 
-/* Six faces of a box and a separate triangle. Faces of one group do not all follow each other. */
+/* Six faces of a box and a separate triangle. The faces of a group are not all in succession: faces
+ * of other groups come between them. */
 static const char box[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 5 0 0\nv 6 0 0\n"
     "v 5 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -67,16 +69,16 @@ static void other_programs_see_meshes_primitives_and_materials(void **state)
     expect_json(bytes, "{\"name\":\"unused\",");
     expect_json(bytes, "{\"name\":\"bare\",\"extras\":{\"hedge\":\"name\"}}]");
     expect_json(bytes, "\"extensionsUsed\":[\"KHR_materials_emissive_strength\"]");
-    /* Group `bottom` has faces of two materials, and so has `top`: each group must be one mesh of
-     * several primitives. */
+    /* The group `bottom` has faces of two materials, and so has the group `top`: in the file each
+     * group must be one mesh with several primitives. */
     expect_json(bytes, "{\"name\":\"bottom\",\"primitives\":[{");
     expect_json(bytes, "{\"name\":\"top\",\"primitives\":[{");
     free(bytes);
     he_mesh_free(mesh);
 }
 
-/* Writes the mesh to a file and reads it back: the two meshes must be equal, except for rows of
- * deleted elements. */
+/* Writes the mesh to a file and reads it back: the two meshes must be equal, except that the new
+ * mesh has no entries of deleted elements. */
 static void expect_back(he_mesh *mesh, const char *encoding)
 {
     size_t length;
@@ -132,8 +134,8 @@ static void one_material_is_one_primitive(void **state)
     expect_back(mesh, "binary");
 }
 
-/* If another program has changed the scene, hedge must ignore its own data in the file and read
- * what that program wrote. */
+/* If another program has changed the scene of a file, hedge must ignore the data that it once added
+ * to the file for itself, and read what the other program wrote. */
 static void a_changed_scene_is_read_as_it_stands(void **state)
 {
     (void)state;
@@ -155,7 +157,7 @@ static void a_changed_scene_is_read_as_it_stands(void **state)
         memcpy(at, rows[i].to, size);
         he_import import = read_glb(bytes, length);
         assert_non_null(find_warning(&import.warnings, "stale_extras", ""));
-        /* without hedge's own data, the faces are triangles */
+        /* hedge ignores its own data in the file, so the faces are triangles */
         assert_int_equal(import.soup.face_count, i == 2 ? 7 : 13);
         assert_string_equal(face_label(&import, "material", 0), "red");
         assert_int_equal(import.soup.materials.count, 3);

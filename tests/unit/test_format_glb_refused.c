@@ -1,5 +1,5 @@
-/* GLB and glTF files that must be refused: each error must name a byte of the file and the path in
- * the JSON. */
+/* GLB and glTF files that must be refused: each error must name a byte of the file and the path of
+ * the mistake in the JSON text. */
 #include "unit/gltf_file.h"
 
 #include <time.h>
@@ -12,7 +12,7 @@ static void containers(void **state)
     glb_square_bin(bin);
     glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = good.bin - 8 - 20, at = good.bin - 8;
-    /* A file that is cut off must be refused, at whatever length it is cut. */
+    /* A truncated file must be refused, whatever its length is. */
     for (size_t length = 0; length < good.length; length++) {
         he_import import = {0};
         he_error err = {0};
@@ -61,7 +61,8 @@ static void containers(void **state)
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length,
                            "4 bytes follow the last chunk and are too few");
-    /* A third chunk is of the binary kind, which only the second chunk may have. */
+    /* A third chunk has the type of a binary chunk, but only the second chunk may have this
+     * type. */
     f = good;
     glb_word(&f, 0);
     glb_word(&f, 0x004E4942);
@@ -150,7 +151,7 @@ static void json_to_the_letter(void **state)
     he_import_clear(&import);
 }
 
-/* A valid file, except that its first accessor is `a`. */
+/* A glTF file that is valid, except that its first accessor `a` may be invalid. */
 #define WITH_ACCESSOR(a)                               \
     "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" a \
     ",{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}"
@@ -164,8 +165,8 @@ static void json_to_the_letter(void **state)
 #define WITH_SPARSE(s) \
     WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
 
-/* The padding "=" may only stand at the end of base64 data. The mistake is at the border of two
- * pieces of the decoder, with and without JSON escapes in the text. */
+/* The padding "=" may only stand at the end of base64 data. The misplaced padding is at the border
+ * between two pieces that the decoder reads, in a text with JSON escapes and in one without. */
 static void base64_that_ends_too_early(void **state)
 {
     (void)state;
@@ -331,8 +332,8 @@ static void references_and_numbers(void **state)
         {"{" DATA "," MESHES
          ",'nodes':[{'mesh':0},{'mesh':0},{'children':[1,3]},{'children':[2]}]}",
          HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
-        /* a value that is no list must not be read like an empty list, because the mesh would be
-         * missing without an error */
+        /* A JSON value that should be a list but is none must be refused. If it were read like an
+         * empty list, the mesh would be missing without an error. */
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0},{'children':'x'}]}", HE_BAD_VALUE,
@@ -481,8 +482,8 @@ static void bombs(void **state)
     (void)state;
     writing w = {0};
     char part[200];
-    /* each of 40 nodes has the next node as a child twice: if this were allowed, there would be
-     * 2^40 instances of the last node */
+    /* each of 40 nodes has the next node as a child twice: if this were allowed, the scene would
+     * show the last node 2^40 times */
     put(&w, "{'asset':{'version':'2.0'},'scenes':[{'nodes':[0]}],'nodes':[");
     for (int i = 0; i < 40; i++) {
         snprintf(part, sizeof part, "{'children':[%d,%d]},", i + 1, i + 1);
@@ -490,14 +491,15 @@ static void bombs(void **state)
     }
     put(&w, "{}]}");
     expect_bomb(&w, HE_BAD_VALUE, "node 40 is reached twice");
-    /* JSON that is nested deeper than in any real file */
+    /* JSON that is nested deeper than in any real file, by lists, objects, or both */
     put(&w, "{'asset':{'version':'2.0'},'extras':");
     for (int i = 0; i < 90000; i++) {
         put(&w, i % 2 ? "{'a':" : "[");
     }
     expect_bomb(&w, HE_SYNTAX, "nesting is deeper than 128 levels");
-    /* an accessor without a buffer view consists of zeros and takes no bytes in the file: a large
-     * one is used once, and smaller ones by many nodes or many primitives */
+    /* An accessor without a buffer view consists of zeros and takes no bytes in the file. The first
+     * file uses one large accessor of this kind; the next files use a smaller one in many nodes or
+     * many primitives. */
     static const char zeros[] = "'accessors':[{'componentType':5126,'count':%d,'type':'VEC3'}]";
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 3000000);
@@ -533,7 +535,7 @@ static void bombs(void **state)
     }
     put(&w, "}}]}]}");
     expect_bomb(&w, HE_LIMIT, "");
-    /* a primitive with many attributes is used by many nodes: the reader has to search all its
+    /* many nodes use one primitive with many attributes: the reader has to search all these
      * attributes for each node */
     put(&w, "{'asset':{'version':'2.0'},'meshes':[{'primitives':[{'attributes':{");
     for (int i = 0; i < 100000; i++) {
@@ -546,8 +548,8 @@ static void bombs(void **state)
     }
     put(&w, "]}");
     expect_bomb(&w, HE_LIMIT, "the scene has more than");
-    /* a long chain of nodes, each the child of the last one, must be read without recursion, and be
-     * refused beyond a maximal depth */
+    /* a long chain of nodes, each a child of the node before it: the reader must not use recursion,
+     * and must refuse chains beyond a maximal depth */
     for (int many = 0; many < 2; many++) {
         int depth = many ? 70000 : 60000;
         put(&w, "{'asset':{'version':'2.0'},'nodes':[");
@@ -558,8 +560,8 @@ static void bombs(void **state)
         put(&w, "{}]}");
         expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "deeper than 65536 levels" : "");
     }
-    /* JSON with more values than the reader allows, then an object and a list with very many
-     * members, which it allows */
+    /* First, a JSON text with more values than the reader allows; then an object and a list with
+     * very many members, but not more than the reader allows. */
     put(&w, "{'asset':{'version':'2.0'},'extras':[0");
     for (int i = 0; i < (1 << 23); i++) {
         put(&w, ",0");
@@ -582,14 +584,14 @@ static void bombs(void **state)
 }
 
 /* The member `extras` of a glTF file contains data that only hedge writes and reads. The reader
- * goes through it for every column of attribute values and every node. */
+ * goes through `extras` for every column of attribute values and every node. */
 static void bombs_in_extras(void **state)
 {
     (void)state;
     static const char column[] = "'rule':'copy','components':1,'accessor':1";
     writing w = {0};
     char part[300];
-    /* many columns of the type bool use one accessor, of which only the last value is no bool */
+    /* many columns of the type bool use one accessor, in which only the last value is no bool */
     for (int many = 0; many < 2; many++) {
         put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':120000,'uri':'data:;base64,");
         for (int i = 0; i < 39999; i++) {

@@ -33,8 +33,8 @@ static he_import read_back(const char *bytes, size_t length)
     return import;
 }
 
-/* Renames the member `hedge` of `extras`, so that hedge reads the file like other programs, which
- * do not know this member. */
+/* Renames the member `hedge` of `extras`: hedge then does not find its own data and reads the file
+ * as other programs do. */
 static void hide_extras(char *bytes, size_t length)
 {
     for (size_t i = 0; i + 7 < length; i++) {
@@ -79,7 +79,7 @@ static void polygons_come_back(void **state)
         assert_int_equal(find_warning(&warnings, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
-        /* without hedge's own data, the file is read as other programs read it */
+        /* hedge does not find its own data, so it reads the file as other programs do */
         hide_extras(bytes, length);
         import = read_back(bytes, length);
         expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);
@@ -169,7 +169,8 @@ static void what_is_not_carried_is_said(void **state)
     assert_int_equal(find_warning(&warnings, "triangulated", "")->count, 1);
     assert_non_null(find_warning(&warnings, "attribute_lost", "edge crease"));
     assert_null(
-        /* other programs can see this attribute, so it is not only in the extras */
+        /* other programs can see this attribute, so the writer must not warn that it is stored in
+         * the extras only */
         find_warning(&warnings, "in_extras", "halfedge uv"));
     assert_null(find_warning(&warnings, "in_extras", "face material"));
     assert_non_null(find_warning(&warnings, "in_extras", "face mark"));
@@ -265,9 +266,10 @@ static void numbered_attributes_have_no_gaps(void **state)
     "],'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,'extras':{'hedge':" \
     "{" hedge "}}}]}],'nodes':[{'mesh':0" node "}]}"
 
-/* hedge's data in the extras, which describes polygons and columns, is replaced by invalid data:
- * hedge must then ignore it and read the triangles. Its numbers are stored in the bytes where the
- * square has its colours (the degree 4) and its fan (the corners 0 1 2 3). */
+/* The extras contain hedge's own data, which describes polygons and columns. The test replaces this
+ * data by invalid data: hedge must then ignore it and read the triangles. The numbers of the data
+ * are stored in two buffer views of the square's file: the degree 4 in the view for colours, and
+ * the corners 0 1 2 3 in the view for a triangle fan. */
 static void extras_are_not_believed(void **state)
 {
     (void)state;
@@ -280,9 +282,10 @@ static void extras_are_not_believed(void **state)
         const char *hedge, *node;
         uint32_t degree;
         uint32_t second;
-        uint32_t corner; /* expected last corner of the last face */
+        uint32_t corner; /* expected last corner of the last face that is read */
         size_t faces;
-        const char *column; /* name of the column that must be read, or NULL if none must be */
+        const char
+            *column; /* name of the column that must be read, or NULL if no column must be read */
         bool fits;
     } rows[] = {
         {"'polygons':{'degrees':5,'corners':6}", "", 4, 0, 3, 1, NULL, true},
@@ -380,8 +383,8 @@ static void names_beside_names_in_extras(void **state)
     static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
                                  "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
     static const struct {
-        /* `name` is a column; `first` has its labels in the second primitive of the file, `second`
-         * those in the third primitive */
+        /* `name` is the name of a column. `first` has labels of this column for the second
+         * primitive of the file, `second` has labels for the third primitive. */
         const char *name, *first, *second;
         const char *names[8];
     } rows[] = {

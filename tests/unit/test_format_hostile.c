@@ -1,6 +1,6 @@
-/* Readers of mesh files under attack: allocations fail, files are changed at random, and files are
- * so large that more than linear time would show. The environment variable SEED repeats the random
- * changes, ROUNDS sets their number. */
+/* Readers of mesh files must withstand three tests: allocations fail, files are changed at random,
+ * and files are so large that a reader that takes more than linear time is noticed. The environment
+ * variable SEED repeats the random changes, ROUNDS sets their number. */
 #include "unit/format_fixture.h"
 
 #include "tests/pace.h"
@@ -81,7 +81,7 @@ static const char container[] =
     "5123,\"count\":3,\"type\":\"SCALAR\"}]}  "
     "\054\000\000\000BIN\0" ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0\1\0\2\0\0\0";
 
-/* A mesh of quadrilaterals, because writers for formats with only triangles must divide them. */
+/* A mesh of quadrilaterals: the writers of formats with only triangles must divide them. */
 static const char cube[] = "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
                            "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
@@ -125,8 +125,8 @@ static void readers_without_memory(void **state)
     }
 }
 
-/* Returns the name of the format in which a mesh from this file is written again; some formats that
- * the reader knows have no writer of their own. */
+/* Returns the format in which a mesh from a file of the format `name` is written again. A .gltf
+ * file is written as GLB, because the format has no writer of its own. */
 static const char *writer_of(const char *name)
 {
     return strcmp(name, "gltf") == 0 ? "glb" : name;
@@ -183,8 +183,8 @@ static uint64_t next_random(void)
     return z ^ z >> 31;
 }
 
-/* Changes, removes, repeats or inserts bytes at random; inserted bytes are such as have a meaning
- * for readers. */
+/* Changes, removes, repeats or inserts bytes at random. The inserted bytes are characters that have
+ * a meaning in mesh files. */
 static size_t mutate(char *text, size_t length, size_t room)
 {
     static const char *const bits[] = {"\n",
@@ -267,8 +267,8 @@ static size_t mutate(char *text, size_t length, size_t room)
 }
 
 /* Reading a file of any bytes must succeed or give an error, and the result must not depend on the
- * pieces in which the file is read. Building a mesh of the result must succeed or be refused; each
- * mesh that was built must be written and read again. */
+ * sizes of the pieces in which the file is read. Building a mesh from the result must succeed or be
+ * refused. Each mesh that was built must be written and read again. */
 static void mutated_files(void **state)
 {
     (void)state;
@@ -302,7 +302,7 @@ static void mutated_files(void **state)
         he_mesh *mesh = NULL;
         if (he_build(&import.soup, 0, &mesh, NULL, &err) == HE_OK) {
             fixture_check(mesh);
-            /* the encoding of the PLY file that is written, if the format is PLY */
+            /* encoding in which the mesh is written, if the format is PLY */
             static const char *const plys[] = {"binary", "ascii", "binary_big_endian"};
             name = writer_of(name);
             const char *encoding = strcmp(name, "ply") == 0   ? plys[i % 3]
@@ -366,8 +366,8 @@ static he_status pour(const flood *f, size_t count, he_import *import)
     return status;
 }
 
-/* Returns the seconds to read the file. If its header declares 500,000 elements, the file has only
- * a tenth of them. */
+/* Returns how many seconds reading the file takes. If the file's header declares 500,000 elements,
+ * the file contains only a tenth of them. */
 static double time_flood(const void *context, size_t count)
 {
     const flood *f = context;

@@ -5,10 +5,10 @@
 #include "model/random.h"
 #include "seed.h"
 
-/* --- STL, which stores positions of corners but no vertices --- */
+/* --- STL, which stores the positions of corners, but no vertices --- */
 
-/* Reads an STL file that was written. Building a mesh of it must fail exactly if the writer has
- * warned of this, and with the number of defects named in the warning. */
+/* Reads an STL file that hedge wrote. Building a mesh from it must fail exactly if the writer
+ * warned that this would happen, and the number of defects must be the number in the warning. */
 static void expect_foretold(const char *bytes, size_t length, const he_warnings *warnings)
 {
     he_import import = {0};
@@ -32,7 +32,7 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     (void)state;
     static const struct {
         const char *text;
-        /* expected number of defects in the writer's warning, for both encodings of STL */
+        /* expected number of defects in the writer's warning, for text and binary STL files */
         uint64_t binary, ascii;
     } rows[] = {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", 0, 0},
@@ -41,10 +41,11 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n", 3, 3},
         /* a face with two corners that differ as doubles but are equal as floats */
         {"v 1 0 0\nv 1.00000000001 0 0\nv 0 1 0\nf 1 2 3\n", 1, 0},
-        /* two faces with a corner at the same position: they become a bow-tie, which a mesh can
-         * represent */
+        /* two faces with one corner at the same position: the corners become a bow-tie vertex,
+         * which a mesh can represent */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n", 0, 0},
-        /* a closed fan of faces around a position, at which another face has a corner, too */
+        /* a closed fan of faces around a position, and another face with one corner at the same
+         * position */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nv 0 0 0\nv 1 0 5\n"
          "v 0 1 5\nf 5 6 7\n",
          1, 1},
@@ -65,8 +66,8 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     }
 }
 
-/* Makes random faces of three to five corners among a few points of a grid; a mesh can represent
- * them. */
+/* Makes random faces of three to five corners among a few points of a grid, but only faces that a
+ * mesh can represent together. */
 static void fill_randomly(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 4 + md_below(random, 8);
@@ -164,7 +165,7 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
     he_mesh_free(mesh);
 }
 
-/* --- OBJ, in which only faces refer to normals --- */
+/* --- OBJ, in which normals can be given only at the corners of faces --- */
 
 static void normals_of_a_point_cloud_are_told(void **state)
 {

@@ -29,8 +29,8 @@ static he_import read_whole(const char *format, const char *bytes, size_t length
     return import;
 }
 
-/* Writes a mesh as a GLB file and reads the texture coordinates as they are stored: the test
- * renames the attribute in the file, so that hedge does not convert its values. */
+/* Writes a mesh as a GLB file, and reads the texture coordinates from it unchanged: the test
+ * renames the attribute in the file, so that the reader does not recognize and convert it. */
 static he_import read_raw(const he_mesh *mesh)
 {
     size_t length;
@@ -76,8 +76,8 @@ static void v_runs_down_in_gltf_alone(void **state)
     }
 }
 
-/* The reader and the writer of glTF both replace v by 1 - v: in the end each float must have the
- * same bits as at first. */
+/* The reader and the writer of glTF both replace the texture coordinate v by 1 - v: a float that
+ * was read and written again must have its original bits. */
 static void no_bit_of_v_is_lost_on_the_way_through(void **state)
 {
     (void)state;
@@ -117,8 +117,8 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     he_soup_clear(&soup);
 }
 
-/* A colour component that was one of the 256 values of a byte must have the same value after it was
- * written to any format and read back. */
+/* A colour component with one of the 256 values that a byte can store must have the same value
+ * after the mesh was written to any format and read back. */
 static void bytes_of_colors_come_back_from_every_format(void **state)
 {
     (void)state;

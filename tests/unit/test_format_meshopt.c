@@ -32,9 +32,8 @@ static packed pack(const he_meshopt_stream *stream, const void *elements)
     return p;
 }
 
-/* Data for a binary chunk: the compressed corners take `corners` bytes from byte 0 on, the
- * compressed indices take `indices` bytes from byte `at` on; `length` is the number of bytes in
- * all. */
+/* Data of a binary chunk: the compressed corners are the first `corners` bytes, the compressed
+ * indices are `indices` bytes from byte `at` on, and `length` is the size of all the data. */
 typedef struct bin {
     unsigned char bytes[2048];
     size_t corners, at, indices, length;
@@ -51,8 +50,8 @@ static bin join(const packed *first, const packed *second)
     return b;
 }
 
-/* Writes the JSON of a glTF file whose binary chunk is a `bin`. `of_corners` and `of_indices` are
- * the contents of the compression extension for the corners and for the indices. */
+/* Writes the JSON of a glTF file whose binary chunk holds a `bin`. `of_corners` and `of_indices`
+ * are the JSON objects of the compression extension for the corners and for the indices. */
 static void describe(char *json, size_t size, const char *of_corners, const char *of_indices)
 {
     int used = snprintf(
@@ -92,7 +91,7 @@ typedef struct packed_view {
 
 enum { EXTENSION = 300 };
 
-/* Writes the content of the compression extension for a buffer view, in JSON. */
+/* Writes the JSON object of the compression extension for a buffer view. */
 static const char *extension(char text[EXTENSION], const packed_view *v)
 {
     snprintf(text, EXTENSION,
@@ -171,8 +170,8 @@ static void exponents_are_undone(void **state)
     he_import_clear(&import);
 }
 
-/* One filter stores directions as points on an octahedron, the other one stores quaternions without
- * their largest component: decoding must restore the full vectors. */
+/* One filter stores directions as points on an octahedron; another filter stores quaternions
+ * without their largest component. Decoding must restore the full vectors. */
 static void directions_and_turns_are_undone(void **state)
 {
     (void)state;
@@ -306,8 +305,8 @@ static void what_the_extension_forbids_is_refused(void **state)
     }
 }
 
-/* The end of compressed data is marked in the data itself, so truncated data must be refused and
- * not give other geometry. */
+/* The end of compressed data is marked in the data itself, so the reader must notice that data is
+ * truncated, and refuse it instead of reading other geometry from it. */
 static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
 {
     (void)state;
@@ -345,8 +344,8 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
                           "TRIANGLES were compressed by version 2");
 }
 
-/* Flips each bit of the compressed data: the file must be read, perhaps as other geometry, or be
- * refused with an error that names a byte. */
+/* Flips each bit of the compressed data in turn: the reader must then either read the file, perhaps
+ * with other geometry, or refuse it with an error that names a byte. */
 static void streams_of_wrong_bytes_end_well(void **state)
 {
     (void)state;
@@ -376,7 +375,7 @@ static void streams_of_wrong_bytes_end_well(void **state)
 }
 
 /* Buffer views full of zeros are compressed to very few bytes: hedge must decompress them up to a
- * limit on their total size and refuse the file beyond it. */
+ * limit on their total size, and refuse a file that exceeds the limit. */
 static void what_unpacks_to_too_much_is_refused(void **state)
 {
     (void)state;
@@ -389,8 +388,8 @@ static void what_unpacks_to_too_much_is_refused(void **state)
     size_t length = he_meshopt_encode(&stream, zeros, room, most);
     free(zeros);
     size_t padded = (length + 3) / 4 * 4;
-    /* each view is decompressed to 16 MiB; a file is allowed 32 MiB, which is two views, and 16
-     * times its own size */
+    /* Each view is decompressed to 16 MiB. A file may decompress to 32 MiB, which is two such
+     * views, plus 16 times its own size. */
     for (size_t views = 1; views <= 6; views++) {
         char json[4096];
         int used = snprintf(json, sizeof json,
@@ -490,8 +489,8 @@ static void without_memory_nothing_is_read(void **state)
 
 /* --- writing --- */
 
-/* `seam` has polygons, groups, and corners with different values at one vertex; the others have
- * triangles only, or no faces. */
+/* Files for the tests of the writer: `seam` has polygons, groups, and corners with different values
+ * at one vertex; the files after it have only triangles, or no faces. */
 static const char seam[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0.5 0.1\nv 9 9 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "vt 0.25 0.125\nvn 0 0 1\ng one\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nusemtl red\n"

@@ -1,5 +1,6 @@
-/* MTL files, which are libraries of materials: reading one gives a mesh its table of materials, the
- * table is written as a library again, and OBJ files keep the names of their libraries. */
+/* MTL files, which are libraries of materials: reading a library gives a mesh its table of
+ * materials, hedge writes the table as a library again, and OBJ files keep the names of their
+ * libraries. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 

@@ -152,8 +152,8 @@ static void corner_forms(void **state)
         he_import_clear(&import);
     }
 
-    /* A third texture coordinate is kept if any corner uses it. Values may also follow the face
-     * that refers to them. */
+    /* If any corner uses a third texture coordinate, the attribute has three components. A face may
+     * stand in the file before the values to which it refers. */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/3 2/2 3/1\n"
                                         "vt 1 2 0\nvt 3 4 5\nvt 6\n");
     expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 3, 3},
@@ -230,8 +230,8 @@ static void names_and_smoothing(void **state)
     expect_warning(&import, "library_missing", "file.mtl", 1, 6);
     he_import_clear(&import);
 
-    /* A group or object that no face belongs to, or a setting that all faces have by default, makes
-     * no attribute. */
+    /* No attribute is made of a group or object without faces, nor of a setting that all faces have
+     * by default. */
     import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng\ns off\nf 1 2 3\no late\ng late\n");
     assert_int_equal(import.soup.column_count, 0);
     he_import_clear(&import);

@@ -19,7 +19,7 @@ static void plain_files(void **state)
         "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         /* each number of the header is on a line of its own */
         "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-        /* each vertex and face takes several lines */
+        /* each vertex and each face is spread over several lines */
         "OFF\n3 1 3\n0 0\n0\n1\n0 0\n0 1\n0\n3\n0 1\n2\n",
         "# a\rOFF\r3 1 3\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r",
         "\xEF\xBB\xBFOFF\n3 1 3\n0 0 0\n1e0 .0 0.\n0 +1 0\n3 0 1 2\n\n\n",
@@ -382,8 +382,8 @@ static void put_floats(body *b, const float *values, size_t count)
     }
 }
 
-/* Makes a binary OFF file of a square of two triangles, of which the first has a colour and the
- * second has one number where a colour would be. */
+/* Makes a binary OFF file of a square of two triangles. The first triangle has a colour; the second
+ * has a single number where its colour would be. */
 static body square_body(const char *header)
 {
     static const float vertices[4][12] = {

@@ -233,8 +233,8 @@ static void groups_have_several_spellings(void **state)
     }
 }
 
-/* The brightest colour component is 1 in a mesh. In a PLY file it is 65535 for ushort, 255 for
- * uchar and other whole numbers, and 1 for float and double. */
+/* The brightest value of a colour component is 1 in a mesh. In a PLY file it is 65535 for the type
+ * ushort, 255 for uchar and other types of whole numbers, and 1 for float and double. */
 static void colors_of_every_type_are_fractions(void **state)
 {
     (void)state;
@@ -387,7 +387,8 @@ static void lines_that_end_in_returns(void **state)
 }
 
 /* Rhinoceros ends the lines of a header by a carriage return alone. The binary data begins right
- * after the last one, even if its first byte looks like the line feed of a line end. */
+ * after the header's last carriage return, even if the first byte of the data looks like the line
+ * feed that would complete a line end. */
 static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
 {
     (void)state;
@@ -447,8 +448,8 @@ static void strips_become_triangles(void **state)
         assert_int_equal(he_source_map_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
         he_import_clear(&import);
     }
-    /* A file with triangle strips in an element of their own, and also with faces that have an
-     * attribute. */
+    /* A file that has triangle strips in an element of their own, and also an element of faces with
+     * an attribute. */
     static const uint32_t both[] = {0, 1, 2, 2, 1, 3, 0, 2, 1}, marks[] = {0, 0, 7};
     he_import import = read_text(
         "ply", ASCII "element vertex 4\n" XYZ

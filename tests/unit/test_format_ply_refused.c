@@ -1,5 +1,5 @@
-/* PLY files that must be refused: the place in the file that the error names, its words, and how
- * much memory is taken before the error. */
+/* PLY files that must be refused: the place in the file that the error names, the words of the
+ * error, and how much memory the reader allocates before the error. */
 #include "unit/ply_file.h"
 
 #include <math.h>
@@ -215,7 +215,7 @@ static void fractions_of_bytes_name_their_place(void **state)
 }
 
 /* Size of the largest block of memory that a reader requests. If the header promises elements that
- * do not follow, the file must be refused without allocating memory for them. */
+ * the file does not contain, the file must be refused without allocating memory for them. */
 typedef struct largest {
     size_t size;
 } largest;
@@ -319,8 +319,8 @@ static void limits_are_kept(void **state)
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
-    /* The file has many values of an attribute and hardly any other data: the attribute must count
-     * for the limit on memory, too. */
+    /* The file contains many values of an attribute and hardly any other data: the memory of the
+     * attribute must count towards the limit on memory, too. */
     ply_file f;
     ply_begin(
         &f, LEAST_FIRST,

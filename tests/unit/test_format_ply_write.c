@@ -126,7 +126,8 @@ static void large_faces_are_counted_in_more_than_a_byte(void **state)
     he_mesh_free(mesh);
 }
 
-/* An attribute with values for `rows` elements; all bytes of the values are 1. */
+/* An attribute that has a value for each of the first `rows` elements; all bytes of these values
+ * are 1. */
 typedef struct attribute {
     const char *name;
     he_kind domain;

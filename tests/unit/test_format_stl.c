@@ -326,8 +326,8 @@ static void limits_are_kept(void **state)
 
 /* --- many vertices --- */
 
-/* A large grid of triangles. Most corners lie at one position with five others: all six must become
- * one vertex. */
+/* A large grid of triangles. At most positions the corners of six triangles meet: these six corners
+ * must become one vertex. */
 static void large_grids_are_welded(void **state)
 {
     (void)state;
@@ -459,8 +459,8 @@ static void polygons_are_cut_into_triangles(void **state)
     he_mesh_free(mesh);
 }
 
-/* Both diagonals of the square exist as edges of other faces. STL has no edges, so the square must
- * be cut into triangles all the same. */
+/* Both diagonals of the square exist as edges of other faces. Since STL has no edges, the square
+ * must be cut into triangles nevertheless. */
 static void diagonals_that_exist(void **state)
 {
     (void)state;

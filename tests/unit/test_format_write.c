@@ -41,8 +41,8 @@ static void text_is_as_expected(void **state)
     he_mesh_free(mesh);
 }
 
-/* A column of attribute values may have fewer rows than there are elements (column.h): for the
- * other elements the default value must be written. */
+/* A column of attribute values may have fewer rows than there are elements (column.h). The writer
+ * must write the default value for the elements without a row. */
 static void rows_that_are_not_stored_are_the_default(void **state)
 {
     (void)state;
@@ -186,7 +186,8 @@ static void dead_rows_are_skipped(void **state)
     he_mesh_free(mesh);
 }
 
-/* An attribute whose value at element 0 is `row`. `labels` are the names of its values, or NULL. */
+/* An attribute with the value `row` for element 0. `labels` are the names of the attribute's
+ * values, or NULL if the values have no names. */
 typedef struct attribute {
     const char *name;
     he_kind domain;

@@ -1,6 +1,6 @@
-/* A store keeps an old content of a mesh and a log of later edits. he_delta_forward applies the
- * recorded changes (delta) of an edit to the old content, to which the edit was never applied.
- * After every entry of the log, the content must equal the mesh that was edited, and undo and redo
+/* A store keeps an old snapshot of a mesh and a log of the later edits. he_delta_forward applies
+ * the recorded changes (delta) of an edit to the snapshot, to which the edit was never applied.
+ * After every entry of the log the result must equal the mesh that was edited, and undo and redo
  * must work from there. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
@@ -24,8 +24,8 @@ static edit_log *undone_log(md_random *random)
     return log;
 }
 
-/* Applies entry i of the log to the mesh, like a store that loads the mesh: an edit is applied by
- * he_delta_forward the first time, and later undone or redone. */
+/* Applies entry i of the log to the mesh, as a store does when it loads the mesh: an edit that
+ * occurs for the first time is applied by he_delta_forward; later entries undo or redo the edit. */
 static he_status apply(const edit_log *log, size_t i, bool *seen, he_mesh *m)
 {
     const edit_log_entry *e = &log->entries[i];
@@ -89,7 +89,7 @@ static void without_memory_the_mesh_stays_as_it_was(void **state)
     }
 }
 
-/* Runs `operation` on the mesh and returns the delta that records it. */
+/* Runs `operation` on the mesh, and returns the delta that records its changes. */
 static he_delta *delta_of(he_mesh *m, const char *operation)
 {
     he_delta *delta = he_delta_new();
@@ -133,7 +133,8 @@ static void another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     uint32_t issued[HE_KIND_COUNT];
     edit_log_marks(m, issued);
     assert_int_equal(he_delta_forward(moved, other, issued, NULL, NULL), HE_OK);
-    /* vertex 1 has its new position already, so the recorded changes do not fit this mesh */
+    /* vertex 1 has the position already that the delta would give it, so the delta does not fit
+     * this mesh */
     expect_refusal(moved, other, m, 0);
     he_delta_free(moved);
     he_mesh_free(m);
@@ -150,7 +151,7 @@ static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
     edit_log_add_column(m, &random, 1);
     he_mesh_record(m, NULL);
     he_delta_undo(delta, m);
-    /* another column takes the slot of attributes that the delta would use */
+    /* another column has the index in the table of columns that the delta would use */
     edit_log_add_column(other, &same, 1);
     expect_refusal(delta, other, m, 0);
     md_random another = {3};
@@ -159,7 +160,8 @@ static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
     edit_log_add_column(other, &another, 2);
     another = (md_random){3};
     edit_log_add_column(other, &another, 1);
-    /* the slot that the delta would use is free, but another column has the name */
+    /* the index that the delta would use is free, but another column has the name of the delta's
+     * column */
     assert_int_equal(he_mesh_drop_column(other, 0, NULL), HE_OK);
     expect_refusal(delta, other, m, 0);
     he_delta_free(delta);

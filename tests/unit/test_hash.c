@@ -11,8 +11,8 @@
 
 static const uint64_t key[2] = {UINT64_C(0x0706050403020100), UINT64_C(0x0f0e0d0c0b0a0908)};
 
-/* The key and the messages are the bytes 0, 1, 2, ... as in the appendix of the SipHash paper; the
- * expected values are those that its authors published for an output of 128 bits. */
+/* The key and the messages are the bytes 0, 1, 2, ... as in the appendix of the SipHash paper. The
+ * expected values are those that the paper's authors published for an output of 128 bits. */
 static void values_are_those_of_its_authors(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Tests of the small grammars in a request: paths, media types, entity tags, cursors. */
+/* Tests of the short texts in a request that have a grammar of their own: paths, media types,
+ * entity tags, cursors. */
 #include "api/header/cursor.h"
 #include "api/header/etag.h"
 #include "api/header/media.h"
@@ -280,8 +281,8 @@ static void one_content_coding_is_taken(void **state)
 
 static const st_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
 
-/* Returns whether `header`, the value of If-None-Match, lists this entity tag for this coding, if
- * the client sends Accept-Encoding: gzip. */
+/* Returns whether `header`, a value of If-None-Match, lists the entity tag `etag` with the content
+ * coding `coding`, for a client that sends Accept-Encoding: gzip. */
 static bool listed(const char *header, const char *etag, api_coding coding)
 {
     const api_codings codings = {.allowed = {[API_GZIP] = true, [API_IDENTITY] = true}};
@@ -301,14 +302,14 @@ static void entity_tags_name_state_and_representation(void **state)
     assert_false(listed("0000000000000abc-2-41-obj", etag, API_IDENTITY));
     assert_false(listed("", etag, API_IDENTITY));
     assert_false(listed("\"", etag, API_IDENTITY));
-    /* An entity tag may end with the name of a coding; it matches only if the client accepts that
-     * coding. */
+    /* An entity tag may end with the name of a content coding; it matches only if the client
+     * accepts this coding. */
     assert_true(listed("\"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_true(listed("\"y\", \"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_false(listed("\"0000000000000abc-2-41-obj-zstd\"", etag, API_ZSTD));
     assert_false(listed("\"0000000000000abc-2-41-obj-identity\"", etag, API_IDENTITY));
-    /* The If-Match of a write may have the entity tag of any representation of the present
-     * state. */
+    /* The header If-Match of a write may contain the entity tag of any representation of the
+     * present state. */
     assert_true(api_etag_is_present("\"0000000000000abc-2-41-stl\"", &facts));
     assert_true(api_etag_is_present("\"a\",\"0000000000000abc-2-41-obj\"", &facts));
     assert_true(api_etag_is_present("*", &facts));
@@ -334,8 +335,8 @@ static void cursors_come_back_or_are_refused(void **state)
         char shorter[API_CURSOR] = "";
         memcpy(shorter, text, cut);
         problem = (api_problem){0};
-        /* If a cursor with position 1000 is truncated so that it ends in 100, it is still a valid
-         * cursor. */
+        /* A truncated cursor may still be a valid cursor, for example if the position 1000 at its
+         * end becomes 100. */
         if (!api_cursor_read(shorter, "vertices", &facts, &position, &problem)) {
             assert_true(problem.code == API_BAD_CURSOR);
         }

@@ -6,7 +6,8 @@
 
 #include <stdint.h>
 
-/* A JSON body, the expected error code, and the expected JSON pointer to the error ("-": any). */
+/* A JSON body, the expected error code, and the expected JSON pointer to the error, where "-"
+ * stands for any pointer. */
 typedef struct body_case {
     const char *body;
     int code;
@@ -129,7 +130,7 @@ static const body_case cases[] = {
     {"\"\xF8\x88\x80\x80\x80\"", API_MALFORMED_JSON, ""},
     {"\"\xFF\"", API_MALFORMED_JSON, ""},
     {"'a'", API_MALFORMED_JSON, ""},
-    /* a member that occurs twice in an object, even if its name is escaped the second time */
+    /* a member that occurs twice in an object, with a name that may be escaped the second time */
     {"{\"a\":1,\"a\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"{\"a\":1,\"\\u0061\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"[{},{\"x\":{\"b\":1,\"c\":2,\"b\":1}}]", API_DUPLICATE_MEMBER, "/1/x/b"},
@@ -145,7 +146,7 @@ typedef struct parsed {
     api_problem problem;
 } parsed;
 
-/* Parses a body, which may have at most `values` JSON values. */
+/* Parses a body; a body with more than `values` JSON values must be refused. */
 static bool parse(const char *body, size_t length, size_t values, parsed *p)
 {
     const api_in_options options = {.values = values};

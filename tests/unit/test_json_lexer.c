@@ -1,5 +1,5 @@
-/* Tests of the JSON lexer: which tokens it finds in a text, and where it reports a mistake. Both
- * must be independent of how the text is cut into pieces. */
+/* Tests of the JSON lexer: which tokens it finds in a text, and where it reports a mistake. Tokens
+ * and mistakes must not depend on how the text is cut into pieces. */
 #include "format/text/json_lexer.h"
 
 #include "fixture.h"
@@ -188,7 +188,8 @@ static void a_long_string_is_interrupted(void **state)
 
 typedef struct row_case {
     const char *text;
-    size_t numbers, indices; /* how many values one call reads */
+    size_t numbers, indices; /* expected number of values that one call reads: `numbers` if it reads
+                                numbers, `indices` if it reads indices; 0 if it reads none */
 } row_case;
 
 static const row_case rows[] = {
@@ -291,7 +292,8 @@ static void put_value(writer *w, int depth)
     ONE_OF(blanks);
 }
 
-/* Changes, removes or inserts one byte; the new byte mostly has a meaning in JSON. */
+/* Changes, removes or inserts one byte of a text. The new byte is mostly a character that has a
+ * meaning in JSON. */
 static void damage(writer *w)
 {
     static const char bytes[] = "{}[]:,\"\\0-+.eEtfnu \n\x01\xC3\xFF";

@@ -1,5 +1,5 @@
-/* A constant answer body must be compressed once for each content coding, by the first thread that
- * needs it, and must decode to the original bytes. */
+/* A constant answer body must be compressed only once for each content coding, by the first thread
+ * that needs it, and must decode to the original bytes. */
 #include "api/header/kept.h"
 
 #include "fixture.h"

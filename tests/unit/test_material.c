@@ -43,7 +43,8 @@ static void a_material_is_made_changed_and_given(void **state)
     script_prepare(m, "material_set name=red base_color=0,1,0 emission=3,0,0 two_sided=1");
     const he_look *look = look_of(m, "red");
     assert_true(look->base_color[0] == 0 && look->base_color[1] == 1);
-    assert_true(look->base_color[3] == 0.5); /* a colour of three numbers keeps the opacity */
+    assert_true(look->base_color[3] ==
+                0.5); /* a colour given by three numbers leaves the opacity unchanged */
     assert_true(look->emission[0] == 3 && look->two_sided);
     script_prepare(m, "material_set name=red rename=green;material_set name=blue faces=1,2");
     assert_string_equal(name_of(m, 0), "green");
@@ -80,13 +81,13 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     assert_string_equal(name_of(m, 0), "");
     assert_string_equal(name_of(m, 2), "b");
     assert_string_equal(name_of(m, 3), "c");
-    assert_int_equal(label_count(m), 3); /* labels: b, c and the empty name */
+    assert_int_equal(label_count(m), 3); /* the three labels are b, c and the empty name */
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
     script_prepare(m, "material_delete name=c to=b");
     assert_string_equal(name_of(m, 3), "b");
     assert_int_equal(label_count(m), 2);
-    /* The faces of a deleted material must get the replacement `d`, even if no face had it before;
-     * the faces that face_poke makes must get the material of the face that was poked. */
+    /* The faces of a deleted material must get the replacement `d`, even if no face had `d` before.
+     * The new faces that face_poke makes must get the material of the poked face. */
     script_prepare(m, "material_set name=d;material_delete name=b to=d;face_poke face=3");
     assert_string_equal(name_of(m, 1), "d");
     assert_string_equal(name_of(m, he_mesh_issued(m, HE_FACE) - 1), "d");
@@ -98,8 +99,8 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     he_mesh_free(m);
 }
 
-/* The default of the attribute may be any material; if that material is deleted, the empty name
- * becomes the default. */
+/* The default value of the material attribute may be any material. If that material is deleted, the
+ * empty name becomes the default value. */
 static void a_default_material_is_deleted_like_any(void **state)
 {
     (void)state;
@@ -146,8 +147,8 @@ static void expect_faces(const he_mesh *m, const he_delta *delta, size_t from, b
 }
 
 /* The edits assign materials to faces. Some of these materials are new to the mesh, and the first
- * edit adds the material attribute itself. Each edit must report exactly the faces whose material
- * changes as modified. */
+ * edit adds the material attribute itself. Each edit must report exactly those faces as modified
+ * whose material changes. */
 static void faces_whose_material_changes_are_modified(void **state)
 {
     (void)state;
@@ -179,8 +180,8 @@ static void faces_whose_material_changes_are_modified(void **state)
     he_mesh_free(m);
 }
 
-/* The delta has changes of attribute columns that `compact` removes, so the whole edit must be
- * reported as a replacement of the content. */
+/* The delta contains changes of attribute columns that `compact` removes. The whole edit must
+ * therefore be reported as a replacement of the mesh data. */
 static void a_material_set_before_a_compact_is_a_replacement(void **state)
 {
     (void)state;
@@ -206,8 +207,8 @@ static void a_material_set_before_a_compact_is_a_replacement(void **state)
     he_mesh_free(m);
 }
 
-/* If material_set sets only values that are there already, it must record nothing, so that no
- * revision is made. */
+/* If material_set sets only values that the material has already, it must record nothing, so that
+ * no revision is made. */
 static void what_changes_nothing_is_no_edit(void **state)
 {
     (void)state;
@@ -219,7 +220,7 @@ static void what_changes_nothing_is_no_edit(void **state)
                       "material_set name= face=3");
     assert_int_equal(delta->count, 0);
     script_prepare(m, "material_set name=red roughness=0.5");
-    assert_int_equal(delta->count, 1); /* a change of one material is one record */
+    assert_int_equal(delta->count, 1); /* the change of one material takes one record */
     he_mesh_record(m, NULL);
     he_delta_free(delta);
     he_mesh_free(m);
@@ -292,14 +293,14 @@ static void append_merges_equal_rows_and_numbers_others(void **state)
     assert_true(look_of(m, "red_2")->base_color[2] == 1);
     assert_true(look_of(m, "red")->base_color[1] == 0);
     he_appended_clear(&appended);
-    /* A second append must find the names with numbers, such as "red_2", that the first one
-     * made. */
+    /* The first append renamed materials by adding numbers, as in "red_2". A second append must
+     * find these names again. */
     assert_int_equal(he_append(m, other, NULL, NULL), HE_OK);
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 4);
     assert_valid(m);
     he_mesh_free(m);
-    /* If no face of the mesh has a material yet, the material names of the appended mesh must be
-     * renamed at once. */
+    /* If no face of the mesh has a material yet, the materials of the appended mesh must
+     * nevertheless get new names at once. */
     m = script_mesh("012", NULL);
     script_prepare(m, "material_set name=red roughness=0.5");
     assert_int_equal(he_append(m, other, &appended, NULL), HE_OK);
@@ -329,8 +330,8 @@ static void the_checker_sees_a_table_that_cannot_be(void **state)
     he_mesh_free(m);
 }
 
-/* The rows of the table of materials must be counted in the memory of the mesh; rows that an edit
- * changes must be counted in the memory of the edit's delta (the record of its changes). */
+/* The memory of a mesh must include its table of materials; the memory of an edit's delta (the
+ * record of its changes) must include the materials that the edit changes. */
 static void memory_of_rows_is_counted(void **state)
 {
     (void)state;

@@ -14,8 +14,8 @@
 
 enum { MOST = 8192 };
 
-/* The parts that were read, as text in the form "[name|type]bytes;", and the problem if the body
- * was refused. */
+/* What a test has read of a body: the parts as text, each in the form "[name|type]bytes;", and the
+ * problem if the body was refused. */
 typedef struct told {
     char text[MOST];
     size_t length;
@@ -85,7 +85,8 @@ static int read_in(const char *type, const char *body, size_t length, size_t pie
     return problem->code;
 }
 
-/* Requires that the result is `wanted` in pieces of any size, from one byte to the whole body. */
+/* Requires that reading the body gives `wanted`, in pieces of any size from one byte to the whole
+ * body. */
 static void expect_of(const char *type, const char *body, size_t length, const char *wanted)
 {
     for (size_t piece = 1; piece <= length; piece += piece < 9 ? 1 : length / 5 + 1) {
@@ -128,7 +129,8 @@ static void parts_come_with_their_names_types_and_bytes(void **state)
     expect("--AbC" LINE "Content-Disposition: form-data; name=\"f\"; filename=\"x.bin\"" LINE
            "Content-Type: application/octet-stream" LINE LINE "123" LAST,
            "[x.bin|application/octet-stream]123;");
-    /* part headers without quotes, in other letter case, with blanks, and with unknown names */
+    /* part headers without quotes, with upper-case and lower-case letters mixed, with blanks, and
+     * with unknown names */
     expect("--AbC" LINE "x-other: 1" LINE "CONTENT-TYPE:text/plain ; charset=utf-8  " LINE
            "content-disposition:Form-Data;NAME=f ;\tFileName=x.bin;" LINE LINE "1" LAST,
            "[x.bin|text/plain ; charset=utf-8]1;");

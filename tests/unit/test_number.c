@@ -1,6 +1,6 @@
 /* Tests of reading and writing numbers as text: the results are compared with the C library (which
  * is exact in the "C" locale) and with big integers. The environment variable SEED sets the random
- * numbers, ROUNDS how many are tried. */
+ * numbers, ROUNDS sets how many of them are tried. */
 #include "format/text/number.h"
 
 #include "format/text/decimal_exact.h"
@@ -44,7 +44,8 @@ static bool is_finite_bits(uint64_t bits)
     return (bits >> 52 & 0x7FF) != 0x7FF;
 }
 
-/* Returns a random double: random bits, or a number of a kind that is frequent in mesh files. */
+/* Returns a random double: either random bits, or a number of a kind that is frequent in mesh
+ * files. */
 static double random_double(void)
 {
     for (;;) {
@@ -57,11 +58,11 @@ static double random_double(void)
         case 1:
             value = (double)(bits >> 11) * 0x1p-53;
             break;
-        case 2: /* exponents near the middle of the range */
+        case 2: /* exponents near the middle of the range of exponents */
             value =
                 from_bits((bits & 0x800FFFFFFFFFFFFF) | (1023 - 60 + next_random() % 120) << 52);
             break;
-        case 3: /* powers of two and their neighbours */
+        case 3: /* powers of two and the doubles next to them */
             value = from_bits(((bits & 0x7FF) << 52) + next_random() % 3 - 1);
             break;
         default:
@@ -157,8 +158,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
     }
 }
 
-/* Prints a double as text. The C library and our reader must both read the text as this double, and
- * no text with fewer digits may have this value. */
+/* Prints a double as text. The C library and hedge's reader must both read the text as this double,
+ * and no text with fewer digits may be read as this double. */
 static void check_print(double value, bool try_all)
 {
     char text[HE_NUMBER_TEXT + 1], other[64];
@@ -255,7 +256,7 @@ static void random_text_parses_like_the_c_library(void **state)
         if (i % 2 == 0) {
             snprintf(text, sizeof text, "%.*e", precision, value);
         } else {
-            /* random digits, mostly not the text that a double is printed as */
+            /* random digits, which are mostly not the text as which a double would be printed */
             snprintf(text, sizeof text, "%llu%s%0*llu%se%d",
                      (unsigned long long)next_random() >> next_random() % 64, i % 3 ? "." : "",
                      precision, (unsigned long long)next_random(), i % 5 ? "" : "00000",
@@ -299,7 +300,8 @@ static void middles_go_to_even(void **state)
         text[length + 1] = '\0';
         expect_bits(text, from_bits(bits + 1));
         text[length] = '\0';
-        for (int k = length - 1; k >= 0; k--) { /* subtracts one from the last digit */
+        for (int k = length - 1; k >= 0;
+             k--) { /* subtracts one from the last digit of the text, with borrowing */
             if (text[k] != '.') {
                 if (text[k] != '0') {
                     text[k]--;
@@ -312,8 +314,8 @@ static void middles_go_to_even(void **state)
     }
 }
 
-/* he_double_parse rarely needs he_decimal_exact_round, so this test calls that function directly,
- * with bad guesses of the result. */
+/* he_double_parse rarely needs he_decimal_exact_round. This test calls he_decimal_exact_round
+ * directly, with bad guesses of the result. */
 static void exact_rounding_from_any_near_guess(void **state)
 {
     (void)state;
@@ -464,7 +466,8 @@ static void parse_edges(void **state)
                                         "+-1", ",", " 1", "--1", "na", "in", "0x", "+e1"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         he_status status = parse(wrong[i], HE_FILE_NUMBER, &value, &used);
-        if (strcmp(wrong[i], "0x") == 0) { /* "0x" is read as 0, without the x */
+        if (strcmp(wrong[i], "0x") ==
+            0) { /* of "0x" the reader must read the 0 only, and leave the x */
             assert_int_equal(status, HE_OK);
             assert_int_equal(used, 1);
             value = 7;
@@ -483,7 +486,7 @@ static void parse_edges(void **state)
     assert_int_equal(parse("-12.5e1]", HE_JSON_NUMBER, &value, &used), HE_OK);
     assert_int_equal(used, 7);
     assert_true(value == -125);
-    /* the reader must not read bytes at `end` and beyond */
+    /* the reader must not read the byte at `end` or any byte after it */
     assert_int_equal(
         he_double_parse("123456789", &"123456789"[0] + 0, HE_FILE_NUMBER, &value, &used),
         HE_SYNTAX);
@@ -510,8 +513,8 @@ static void long_digit_strings(void **state)
     text[800] = '\0';
     text[1] = '.';
     expect_bits(text, strtod(text, NULL));
-    /* the digit that decides the rounding is the 700th, 799th, 800th, ... or the last of a
-     * million */
+    /* The digit that decides the rounding is the 700th, 799th, 800th, and so on; in the last case
+     * it is the last of a million digits. */
     static const size_t places[] = {700, 799, 800, 801, 802, 900, LENGTH - 1};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         memset(text, '0', places[i]);

@@ -1,7 +1,8 @@
-/* Tests of every operation in the table of operations: it must be able to succeed; every declared
- * error must occur, and no other; the numbers of vertices, edges and faces must change as declared;
- * the result must pass the checker; an error or a failed allocation must leave every bit of the
- * mesh unchanged; and its delta must undo and redo it. */
+/* Tests of every operation in the table of operations. The operation must be able to succeed; each
+ * error that it declares must occur, and no other error; the numbers of vertices, edges and faces
+ * must change as declared; the resulting mesh must pass the checker; an error or a failed
+ * allocation must leave every bit of the mesh unchanged; and the operation's delta must undo and
+ * redo it. */
 #include "edit_script.h"
 #include "giants.h"
 #include "scenarios.h"
@@ -26,7 +27,7 @@
 /* The Csaszar torus, in which all seven vertices are neighbours of each other. */
 #define CSASZAR "013,032,124,143,235,254,346,365,450,406,561,510,602,621"
 
-/* A list of so many vertices that they are not compared pair by pair. */
+/* A list of vertices that is too long for comparing them pair by pair. */
 #define MANY \
     "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33"
 #define MANY_MORE "+++++++++++++++++++++++++++++++++"
@@ -414,8 +415,8 @@ static void check_change(const scenario *s, const he_mesh *before, const he_mesh
     }
 }
 
-/* Runs a scenario while changes are recorded: if it succeeds, the delta must undo and redo it; if
- * it is refused, nothing must be recorded. */
+/* Runs a scenario while changes are recorded. If the scenario's operation succeeds, the delta must
+ * undo and redo it; if the operation is refused, nothing must be recorded. */
 static void run_recorded(const scenario *s, bool columns)
 {
     he_mesh *m = start_of(s, columns), *before = copy_of(m);
@@ -456,8 +457,8 @@ static void run_recorded(const scenario *s, bool columns)
     he_mesh_free(m);
 }
 
-/* Runs a scenario again and again with the n-th allocation failing, for every n, with or without
- * recording changes. */
+/* Runs a scenario again and again: in run n, the n-th allocation fails. The changes are recorded or
+ * not, as the caller requests. */
 static void run_short_of_memory(const scenario *s, bool columns, bool record)
 {
     failing f = {.what = s->operation};
@@ -584,7 +585,7 @@ static void results_are_reported_and_a_refusal_leaves_them_empty(void **state)
     assert_int_equal(results.list[1].ids[0], 5);
     assert_int_equal(results.list[2].count, 2);
     assert_int_equal(results.list[2].ids[1], 3);
-    /* An operation that fails must clear the results. */
+    /* An operation that fails must clear the results that were stored before. */
     assert_int_equal(script_run(m, "edge_split edge=#99", &results, NULL), HE_NO_SUCH_ELEMENT);
     assert_false(results.present[0]);
     assert_int_equal(results.list[1].count, 0);

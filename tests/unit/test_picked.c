@@ -1,5 +1,6 @@
-/* A client may choose values that would all collide in a hash table whose hash function is known.
- * The work must nevertheless be linear in their number, because the hashes have a random seed. */
+/* A client may choose values that would all collide in a hash table whose hash function it knows.
+ * The work must nevertheless be proportional to the number of values, because the hash function has
+ * a random seed. */
 #include "unit/fixture.h"
 
 #include "build/build.h"
@@ -62,8 +63,8 @@ static void names_cannot_be_picked_to_collide(void **state)
 
 /* --- values of face corners that would collide when they are numbered for an export --- */
 
-/* Returns whether the number has a hash value in a small range, so that such numbers would collide,
- * if the hash began with the number of bytes and not with a random seed. */
+/* Returns whether the hash of the number, made without a random seed, has a value in a small range:
+ * such numbers would collide in a hash table. */
 static bool number_lies_low(uint64_t word)
 {
     uint64_t h = (sizeof word ^ word) * 0x9E3779B97F4A7C15;
@@ -125,7 +126,7 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
     free(values);
 }
 
-/* --- rows whose records in a delta would collide --- */
+/* --- entries of mesh arrays whose records in a delta would collide --- */
 
 static double fold_rows(const void *context, size_t count)
 {
@@ -164,7 +165,7 @@ static void rows_of_records_cannot_be_picked_to_collide(void **state)
 enum { PAIRS = PICKED / 4 };
 
 /* Makes two triangles for each vertex in `lows`, which coincide along the edge from this vertex to
- * the next one, then welds them all; returns the seconds that the weld took. */
+ * the next one, then welds all these pairs. Returns how many seconds the weld took. */
 static double weld_pairs(const void *context, size_t count)
 {
     const uint32_t *lows = context;

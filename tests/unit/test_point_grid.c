@@ -1,6 +1,6 @@
-/* Tests of the search for near points in a grid of cells: it must find the lowest-numbered point
- * within the tolerance wherever the points lie. The results are compared with checking all
- * points. */
+/* Tests of the search for near points in a grid of cells: it must find the point with the lowest
+ * number within the tolerance, wherever the points lie. The results are compared with a check of
+ * all points. */
 #include "unit/fixture.h"
 
 #include "geometry/point_grid.h"
@@ -23,8 +23,8 @@ static double distance(he_vec3 a, he_vec3 b)
     return hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
 }
 
-/* Compares the search with checking all points. The points are random in a box around `origin`
- * whose size is a few times the tolerance. */
+/* Compares the search with a check of all points. The points are random in a box around `origin`;
+ * the box is a few times as large as the tolerance. */
 static void compare(double origin, double tolerance)
 {
     static he_vec3 points[POINTS];
@@ -77,7 +77,7 @@ static void the_lowest_within_reach_is_found(void **state)
     }
 }
 
-/* With a tolerance of 0, points are near only if they are equal; -0 equals 0. */
+/* With a tolerance of 0, points are near only if they are equal. -0 and 0 are equal. */
 static void without_a_tolerance_only_equal_points_are_near(void **state)
 {
     (void)state;

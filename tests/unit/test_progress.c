@@ -42,7 +42,8 @@ static const he_mem_hook counting = {count_blocks, NULL};
 /* --- a listener that receives progress and can cancel --- */
 
 typedef struct listener {
-    long told, give_up_at; /* number of the call that cancels; 0: none */
+    long told, give_up_at; /* number of the progress report at which the listener cancels the work;
+                              0: it never cancels */
     size_t distinct;
     double last;
     bool fell;
@@ -59,7 +60,8 @@ static bool hear(void *context, const char *phase, double done)
     return l->told != l->give_up_at;
 }
 
-/* so many cells per side of a grid that each phase of work reports progress more than once */
+/* number of cells along each side of a grid, large enough for each phase of work to report progress
+ * more than once */
 enum { SIDE = 130 };
 
 static he_status make(he_progress *progress, he_mesh **out)
@@ -139,7 +141,7 @@ static void making_is_given_up_anywhere_and_leaves_nothing(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* --- file formats that are parsed after the last byte arrived --- */
+/* --- file formats that are parsed only after the last byte has arrived --- */
 
 typedef struct file {
     const char *format;
@@ -169,7 +171,7 @@ static file grid_glb(void)
     return f;
 }
 
-/* Makes a glTF file of triangles with all corners at the origin, with the data in base64. */
+/* Makes a glTF file of triangles whose corners all lie at the origin, with the data in base64. */
 static file zeros_gltf(void)
 {
     enum { VERTICES = 30000, TEXT = VERTICES * 16 };
@@ -233,7 +235,7 @@ static void a_file_that_is_read_at_its_end_is_given_up_anywhere(void **state)
     }
 }
 
-/* --- computing what a request reads: files and queries --- */
+/* --- computations for requests that only read: files and queries --- */
 
 typedef struct finding {
     const char *name;
@@ -287,8 +289,8 @@ static he_status find_vertex_normals(const he_mesh *m, he_progress *progress)
     return status;
 }
 
-/* The mesh has quads with different texture coordinates at each corner. Everything that a request
- * may compute from it must be cancellable at each report of progress. */
+/* The mesh consists of quads whose corners have different texture coordinates. Everything that a
+ * request may compute from the mesh must be cancellable at each report of progress. */
 static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **state)
 {
     (void)state;
@@ -484,7 +486,8 @@ static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
         blocks = 0;
         assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
         size_t before = blocks;
-        /* Cancelled work must leave the mesh unchanged, so the next attempt uses the same mesh. */
+        /* Cancelled work must leave the mesh unchanged, so each further attempt runs on the same
+         * mesh. */
         for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 47) {
             listener l = {.give_up_at = n};
             status = run_recorded(operations[i], copy, &l);
@@ -535,7 +538,7 @@ static void a_cancelled_edit_of_an_expendable_mesh_is_left_half_done(void **stat
 
 enum { WORDS = 5000, WRITES = 400000 };
 
-/* Writes values to scattered places in `words` and returns the delta with a record of each
+/* Writes values to scattered entries of `words`, and returns a delta that has a record of each
  * write. */
 static he_delta *write_words(uint32_t *words)
 {

@@ -113,8 +113,8 @@ static void try_all(const he_mesh *m)
     }
 }
 
-/* Requires that answers are in the defined order: around a vertex by turning from half-edge to
- * half-edge, around a face along its loop. */
+/* Requires that answers are in the defined order: the elements around a vertex in the order of
+ * turning from half-edge to half-edge, the elements around a face in the order of its loop. */
 static void try_order(const he_mesh *m)
 {
     for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
@@ -159,8 +159,8 @@ static void try_order(const he_mesh *m)
     }
 }
 
-/* Requires that the answer about all elements equals the answers about single elements,
- * concatenated. */
+/* Requires that the answer for all elements equals the answers for the single elements, one after
+ * another. */
 static void try_dense(const he_mesh *m)
 {
     for (size_t i = 0; i < he_relation_count(); i++) {
@@ -181,7 +181,7 @@ static void try_dense(const he_mesh *m)
                 if (one.count > 0) {
                     assert_memory_equal(all.ids.ids + from, one.ids, 4 * one.count);
                 }
-                /* A query may name an element twice and must then answer twice. */
+                /* If a query names an element twice, its answer must appear twice. */
                 uint32_t twice[] = {id, id};
                 he_dense two = {0};
                 assert_int_equal(
@@ -271,7 +271,7 @@ static void relations_of_known_meshes_list_each_id_once_in_order(void **state)
     assert_ids(ids_of(m, HE_EDGE, "halfedges", 4, 0), "8 9");
     assert_ids(ids_of(m, HE_EDGE, "faces", 4, 0), "1");
     he_mesh_free(m);
-    /* A neighbouring face must be listed once even if it shares two edges. */
+    /* A neighbouring face must be listed once even if it shares two edges with the face. */
     m = fixture_mesh("0123,2104");
     assert_ids(ids_of(m, HE_FACE, "faces", 0, 0), "1");
     assert_ids(ids_of(m, HE_FACE, "faces", 1, 0), "0");
@@ -283,7 +283,7 @@ static void relations_of_known_meshes_list_each_id_once_in_order(void **state)
     he_mesh_free(m);
 }
 
-/* The face has so many neighbours that duplicates are not found by comparing pairs; it shares two
+/* The face has too many neighbours for finding duplicates by comparing pairs, and it shares two
  * edges with each neighbour. */
 static void neighbours_of_a_large_face_are_listed_once(void **state)
 {
@@ -373,7 +373,9 @@ static void relations_end_on_broken_links(void **state)
     (void)state;
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     uint32_t h = m->c.vertex_halfedge[0], turned = m->c.prev[h] ^ 1u;
-    m->c.prev[turned] = turned ^ 1u; /* turning around the vertex never leaves this half-edge */
+    m->c.prev[turned] =
+        turned ^
+        1u; /* the link leads back to the same half-edge, so turning around the vertex never ends */
     he_ids ids = {0};
     he_error err = {0};
     assert_int_equal(he_relation_append(m, relation_named(HE_VERTEX, "vertices"), 0, 0, &ids, &err),

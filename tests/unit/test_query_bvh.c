@@ -87,7 +87,7 @@ static void check_hit(const he_mesh *m, const he_hit *hit)
 /* --- rays --- */
 
 /* Returns the distance at which a ray hits the triangle, by the method of Moeller and Trumbore
- * (1997). The tree uses another method, which is more careful at edges. */
+ * (1997). The tree of bounding boxes uses another method, which is more exact at edges. */
 static double ray_triangle(he_vec3 o, he_vec3 d, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     he_vec3 u = he_vec3_sub(b, a), v = he_vec3_sub(c, a), p = he_vec3_cross(d, v);
@@ -180,8 +180,8 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
     /* A ray that begins on the surface itself must hit there, at distance 0. */
     he_hit hit = cast(tree, m, (he_vec3){0.25, 0.25, 1}, (he_vec3){0, 0, 1}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 0);
-    /* The ray lies in the plane of the cube's top face, which it must not hit; it must hit the side
-     * face. */
+    /* The ray lies in the plane of the cube's top face. It must hit the side face instead of the
+     * top face. */
     hit = cast(tree, m, (he_vec3){-5, 0.25, 1}, (he_vec3){1, 0, 0}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 4);
     he_bvh_free(tree);
@@ -230,8 +230,8 @@ static void rays_from_far_out_along_an_axis_are_exact(void **state)
 
 /* --- nearest points --- */
 
-/* Returns the distance from p to the nearest of many sample points in the triangle. It is never
- * less than the exact distance, and hardly more. */
+/* Returns the distance from p to the nearest of many sample points in the triangle. This distance
+ * is never less than the exact distance to the triangle, and hardly more. */
 static double sampled(he_vec3 p, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     enum { STEPS = 40 };
@@ -276,8 +276,8 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
     }
 }
 
-/* Requires that the lower bounds from the box and the disc of a node do not exceed the distance
- * from p to any corner of the triangles below the node. */
+/* A node of the tree has a box and a disc around its triangles. Requires that the lower bounds from
+ * the box and from the disc do not exceed the distance from p to any corner of these triangles. */
 static void check_bounds(const he_bvh *tree, const he_mesh *m, uint32_t at, he_vec3 p)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -316,8 +316,9 @@ static void boxes_and_discs_hold_what_is_below_them(void **state)
                 static const double reaches[] = {0.5, 2, 1e3, 1e9};
                 check_bounds(tree, m, at, random_point(&seed, reaches[i]));
             }
-            /* One point is on the normal through the centre of the disc, the other in the plane of
-             * the disc: there the bounds are tight. */
+            /* One tested point is on the normal through the centre of the disc, the other in the
+             * plane of the disc: at such points the lower bounds are nearly equal to the exact
+             * distances. */
             const he_bvh_disc *d = &tree->discs[at];
             he_vec3 c = {d->center[0], d->center[1], d->center[2]},
                     n = {d->normal[0], d->normal[1], d->normal[2]}, x = random_point(&seed, 1);
@@ -370,8 +371,8 @@ static void faces_without_area_are_the_segments_they_look_like(void **state)
     he_mesh_free(m);
 }
 
-/* A vertex without faces cannot be hit. However far away it is, the tree must not take its scale
- * from it. */
+/* A vertex without faces cannot be hit. However far away such a vertex is, it must not influence
+ * the scale that the tree uses. */
 static void a_far_vertex_does_not_hide_faces(void **state)
 {
     (void)state;
@@ -393,8 +394,8 @@ static void a_far_vertex_does_not_hide_faces(void **state)
     }
 }
 
-/* The faces are near and far within the ratio of distances for which bvh.h promises that the near
- * ones are found. */
+/* One face is far away, the others are near. The ratio of their distances is one for which bvh.h
+ * promises that the near faces are found. */
 static void a_far_face_does_not_hide_near_ones(void **state)
 {
     (void)state;
@@ -480,8 +481,8 @@ static void hostile_coordinates_give_finite_hits(void **state)
 static void orientation_is_exact_where_doubles_round(void **state)
 {
     (void)state;
-    /* Three points lie in a plane, and their coordinates are exact doubles; the fourth point is off
-     * the plane by one unit in the last place. */
+    /* Three points lie in a plane, and their coordinates are exact doubles. The fourth point
+     * differs from a point in the plane by one unit in the last place. */
     uint64_t seed = 41;
     for (int i = 0; i < 2000; i++) {
         double base = ldexp(1, (int)(query_random(&seed) % 30));
@@ -513,7 +514,7 @@ static void triangles_meet_where_they_should_not(void **state)
     (void)state;
     static const struct {
         const char *what;
-        he_vec3 b[3]; /* second triangle; the first is (0,0,0) (2,0,0) (0,2,0) */
+        he_vec3 b[3]; /* second triangle; the first triangle is (0,0,0) (2,0,0) (0,2,0) */
         bool meet;
     } rows[] = {
         {"far away", {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}, false},
@@ -684,7 +685,8 @@ static void starved_trees_and_searches_say_so(void **state)
     he_mesh *m = tangle(&seed), *polygon = fixture_mesh("01234567");
     const he_mesh *meshes[] = {m, polygon};
     for (int i = 0; i < 2; i++) {
-        failing f = {.may_succeed = true}; /* a block may stay as it is if shrinking it fails */
+        failing f = {.may_succeed = true}; /* an allocation that shrinks a block may fail without an
+                                              error, since the block may stay as it is */
         while (failing_next(&f)) {
             he_bvh *tree = NULL;
             he_ids pairs = {0};

@@ -55,8 +55,8 @@ static void corner_normals_of_a_cube_follow_the_crease(void **state)
     he_mesh_free(m);
 }
 
-/* At a vertex, a crease between two faces must separate the corner normals of these faces, and not
- * those of the other faces. */
+/* If two faces at a vertex are separated by a crease, their corner normals there must differ. The
+ * corner normals of the other faces at the vertex must not be separated. */
 static void a_crease_parts_only_the_faces_across_it(void **state)
 {
     (void)state;

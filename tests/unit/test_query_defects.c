@@ -1,5 +1,5 @@
-/* Tests of the search for defects in meshes whose links are valid: in small meshes with known
- * defects, and compared with checking all pairs of elements. */
+/* Tests of the search for defects in meshes whose links are valid. The meshes are small with known
+ * defects, or the results are compared with a check of all pairs of elements. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -136,7 +136,8 @@ static void faces_that_are_not_flat_are_named(void **state)
     assert_int_equal(found.of[HE_DEFECT_NONPLANAR].total, 1);
     assert_int_equal(first(HE_DEFECT_NONPLANAR)->id, 0);
     assert_true(fabs(first(HE_DEFECT_NONPLANAR)->value - 0.05) < 1e-12);
-    /* Faces of equal shape must be judged alike, however large or small they are. */
+    /* Faces of equal shape must all be judged flat or all not flat, however large or small they
+     * are. */
     for (int k = -1000; k <= 1000; k += 100) {
         for (uint32_t v = 0; v < 4; v++) {
             m->c.position[v] = (he_vec3){ldexp(at[v].x, k), ldexp(at[v].y, k), ldexp(at[v].z, k)};
@@ -168,8 +169,8 @@ static void small_components_are_named_by_their_lowest_face(void **state)
     he_mesh_free(m);
 }
 
-/* The mesh is two tetrahedra, one inside the other: the faces of the outer one point outward, those
- * of the inner one inward. */
+/* The mesh consists of two tetrahedra, one inside the other: the faces of the outer tetrahedron
+ * point outward, those of the inner one point inward. */
 static const he_vec3 nested[] = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8},
                                  {1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}};
 
@@ -181,14 +182,15 @@ static void closed_components_of_negative_volume_are_inside_out(void **state)
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 0);
     he_mesh_free(m);
     /* The inner tetrahedron is the wall of a cavity, so its faces point the right way. The query
-     * cannot know that and must list it as inside out. */
+     * cannot know this and must list the inner tetrahedron as inside out. */
     m = mesh_at("021,013,032,123,456,475,467,576", nested);
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 1);
     assert_int_equal(first(HE_DEFECT_INSIDE_OUT)->id, 4);
     assert_true(fabs(first(HE_DEFECT_INSIDE_OUT)->value + 1.0 / 6) < 1e-12);
     he_mesh_free(m);
-    /* The outer tetrahedron lacks the face 123, so it is not closed and cannot be inside out. */
+    /* The outer tetrahedron lacks the face 123, so it is not closed and must not be listed as
+     * inside out. */
     m = mesh_at("012,031,023", nested);
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 0);

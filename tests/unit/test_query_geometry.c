@@ -100,8 +100,8 @@ static void normals_of_vertices_depend_on_their_weights(void **state)
     assert_true(he_vertex_normal(m, (he_vertex){6}, HE_WEIGHT_ANGLE, &normal));
     assert_vector(normal, 1 / sqrt(3), 1 / sqrt(3), 1 / sqrt(3));
     he_mesh_free(m);
-    /* Dividing a face into two at the vertex must not change a vertex normal weighted by angle; a
-     * vertex normal with equal weights does change. */
+    /* If a face is divided into two at the vertex, a vertex normal weighted by angle must not
+     * change, but a vertex normal with equal weights must change. */
     m = fixture_mesh("0123,034,045,051");
     place(m, 0, 0, 0, 0);
     place(m, 1, 0, 1, 0);
@@ -132,7 +132,7 @@ static void dihedral_angles_tell_ridges_from_valleys(void **state)
         assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
         assert_near(angle, wanted);
     }
-    place(m, 3, 0, 1, 0); /* face 103 lies on the other face */
+    place(m, 3, 0, 1, 0); /* face 103 is folded onto the other face, so they coincide */
     assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
     assert_near(angle, PI);
     assert_false(he_edge_dihedral(m, (he_edge){edge_between(m, 1, 2)}, &angle));
@@ -169,7 +169,8 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
         he_mesh *m = fixture_mesh(query_specimens[i]);
         assert_dihedrals_agree(m);
         if (m->c.vertices.issued > 2) {
-            m->c.position[1] = m->c.position[2]; /* faces with vertices 1 and 2 become degenerate */
+            m->c.position[1] = m->c.position[2]; /* faces with vertices 1 and 2 become degenerate,
+                                                    because the two positions are now equal */
         }
         assert_dihedrals_agree(m);
         he_mesh_free(m);
@@ -179,8 +180,9 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
     he_mesh_free(m);
 }
 
-/* Each edge on the rim of a cone is beside its base of 200,000 corners. If the base were measured
- * again for each edge, 40 billion steps would be needed, and the run would not end in time. */
+/* Each edge on the rim of a cone belongs to the cone's base, a face of 200,000 corners. If the base
+ * were measured again for each edge, 40 billion steps would be needed, and the test would not end
+ * in time. */
 static void dihedrals_measure_a_face_of_many_corners_once(void **state)
 {
     (void)state;
@@ -205,8 +207,8 @@ static void dihedrals_are_refused_where_memory_is_out(void **state)
     he_mesh_free(m);
 }
 
-/* The theorem of Gauss and Bonnet: the sum over all vertices of 2 pi minus the angles there is 2 pi
- * times the Euler number. */
+/* The theorem of Gauss and Bonnet: if the angles at each vertex are subtracted from 2 pi, the sum
+ * of these differences over all vertices is 2 pi times the Euler number. */
 static void angle_defects_sum_to_two_pi_euler(void **state)
 {
     (void)state;
@@ -380,8 +382,8 @@ static void geometry_of_extreme_coordinates_is_finite(void **state)
     }
 }
 
-/* The functions for the whole mesh must give the same results as those for one element. The area
- * vector is compared with another form of Newell's sum. */
+/* The functions for the whole mesh must give the same results as the functions for one element. The
+ * area vector of a face is compared with another form of Newell's sum. */
 static void geometry_of_a_whole_mesh_agrees_with_single_elements(void **state)
 {
     (void)state;
@@ -438,8 +440,9 @@ static void geometry_of_a_whole_mesh_agrees_with_single_elements(void **state)
     }
 }
 
-/* The volume of a mesh is compared with a sum of tetrahedra, one for each triangle, whose tips are
- * at one point far away. The volume must be negative if the mesh is inside out. */
+/* The volume of a mesh is compared with a sum of tetrahedra, one for each triangle of the mesh; all
+ * these tetrahedra have their tips at one point far away. The volume must be negative if the mesh
+ * is inside out. */
 static void volumes_agree_with_a_sum_of_tetrahedra_and_have_a_sign(void **state)
 {
     (void)state;
@@ -472,7 +475,7 @@ static void volumes_agree_with_a_sum_of_tetrahedra_and_have_a_sign(void **state)
     he_measures measures;
     assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
     assert_true(measures.volume == -8);
-    /* A cube far from the origin must have the volume of a cube. */
+    /* A cube that lies far from the origin must have the volume of a cube of its size. */
     for (uint32_t v = 0; v < 8; v++) {
         m->c.position[v].x = 1e9 - m->c.position[v].x;
     }
@@ -520,8 +523,8 @@ static void a_far_vertex_does_not_change_the_area(void **state)
     }
 }
 
-/* The mesh has a component near the origin and one far away whose vertices coincide. The area and
- * volume of the mesh must be those of the near component. */
+/* The mesh has a component near the origin, and a component far away in which all vertices
+ * coincide. The area and the volume of the mesh must be those of the near component. */
 static void a_far_face_without_size_does_not_change_area_and_volume(void **state)
 {
     (void)state;
@@ -542,7 +545,8 @@ static void a_far_face_without_size_does_not_change_area_and_volume(void **state
     }
 }
 
-/* A right tetrahedron with legs of length `leg` has the volume leg^3 / 6, whatever its size. */
+/* A tetrahedron with three perpendicular edges of length `leg` has the volume leg^3 / 6, whatever
+ * its size. */
 static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state)
 {
     (void)state;
@@ -569,8 +573,8 @@ static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state
     }
 }
 
-/* The distance of a face from the origin must cost no digits of its area, even along an axis in
- * which the face has no extent. */
+/* The area of a face must not lose digits because the face is far from the origin, even along an
+ * axis in which the face has no extent. */
 static void a_small_face_far_from_the_origin_has_its_area(void **state)
 {
     (void)state;

@@ -59,7 +59,7 @@ typedef struct cone {
     double z, turns, radius;
 } cone;
 
-/* Adds a cone of n triangles, which all meet at its hub. */
+/* Adds a cone of n triangles, which all meet at the cone's tip. */
 static void fan(specimen *s, uint32_t n, cone c)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -70,8 +70,8 @@ static void fan(specimen *s, uint32_t n, cone c)
     }
 }
 
-/* Adds n triangles from `hub` to random points of a small grid. The grid is so small that equal
- * directions, folds, equal triangles and triangles without area occur. */
+/* Adds n triangles from `hub` to random points of a small grid. The grid is so small that the
+ * triangles include equal directions, folds, equal triangles and triangles without area. */
 static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_flat)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -84,7 +84,7 @@ static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_
     }
 }
 
-/* Adds n triangles that share an edge at `hub`, like the pages of a book; some of them are
+/* Adds n triangles that share an edge at `hub`, like the pages of a book. Some of the triangles are
  * equal. */
 static void book(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub)
 {
@@ -112,14 +112,14 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     const he_vec3 zero = {0, 0, 0}, up = {0, 0, 1}, aside = {1, 2, -1};
     uint32_t n = 33 + below(seed, 60);
     switch (kind) {
-    case 0: /* a disc, which may go around more than once */
+    case 0: /* a disc, which may go around its centre more than once */
         fan(s, n, (cone){zero, 0, 1 + below(seed, 3), 1});
         break;
     case 1: /* nested cones */
         fan(s, n, (cone){zero, -1, 1, 1});
         fan(s, n, (cone){below(seed, 2) == 0 ? zero : up, -1, 1, 0.7});
         break;
-    case 2: /* a cone closed by a disc, and a second cone that touches its tip */
+    case 2: /* a cone closed by a disc, and a second cone that touches the tip of the first */
         fan(s, n, (cone){up, -1, 1, 1});
         fan(s, n, (cone){zero, 0, 1, 1});
         fan(s, n, (cone){up, 1, 1, 1});
@@ -175,7 +175,7 @@ static he_mesh *mesh_of(const specimen *s)
     return m;
 }
 
-/* --- the pairs found equal those of testing all pairs --- */
+/* --- the search must find the pairs that a test of all pairs finds --- */
 
 static void expect_pairs(const specimen *s, uint64_t seed)
 {
@@ -225,7 +225,7 @@ static void pairs_at_a_hub_are_those_that_trying_all_finds(void **state)
     free(s);
 }
 
-/* --- the steps are proportional to the number of triangles --- */
+/* --- the number of steps must be proportional to the number of triangles --- */
 
 typedef struct searched {
     uint64_t steps;
@@ -250,8 +250,8 @@ static searched search_for(const he_mesh *m, uint64_t most)
     return out;
 }
 
-/* Makes a fan of n triangles around one vertex, which is higher than the rim by z. If `is_closed`,
- * a second fan below closes the mesh. */
+/* Makes a fan of n triangles around one vertex, which is higher than the rim of the fan by z. If
+ * `is_closed`, a second fan below the first closes the mesh. */
 static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
 {
     he_soup soup;
@@ -272,8 +272,8 @@ static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
     return m;
 }
 
-/* If two hubs share a rim, the boxes around the triangles of one fan overlap those of the other.
- * This takes more steps, but still fewer than testing all pairs. */
+/* If two hubs share a rim, the bounding boxes around the triangles of one fan overlap the boxes of
+ * the other fan. The search then takes more steps, but still fewer than a test of all pairs. */
 static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
 {
     (void)state;
@@ -294,8 +294,8 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
                          (unsigned long long)found.steps);
             }
             last = found.steps;
-            /* The search must count its steps exactly: with a limit of this number of steps it
-             * completes, and with one less it does not. */
+            /* The search must count its steps exactly: if the limit is this number of steps, the
+             * search completes; if the limit is one step less, it does not. */
             assert_int_equal(search_for(m, found.steps).steps, found.steps);
             assert_true(search_for(m, found.steps).complete);
             assert_false(search_for(m, found.steps - 1).complete);
@@ -304,8 +304,8 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
     }
 }
 
-/* All triangles of one polygon share the polygon's first corner, so they must not be tested against
- * each other. */
+/* All triangles into which a polygon is cut share the polygon's first corner, so they must not be
+ * tested against each other. */
 static void a_wide_polygon_is_not_tried_with_itself(void **state)
 {
     (void)state;

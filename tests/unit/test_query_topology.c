@@ -22,8 +22,8 @@ static bool has_corner(const he_mesh *m, uint32_t f, uint32_t v)
 
 enum { SMALL = 64 };
 
-/* Gives every face the lowest label among the faces that touch it, and repeats this until no label
- * changes. */
+/* Repeats this until no label changes: gives every face the lowest label among the faces that are
+ * connected to it. */
 static void label_faces(const he_mesh *m, he_connection by, uint32_t *label)
 {
     uint32_t n = he_mesh_issued(m, HE_FACE);
@@ -226,7 +226,8 @@ static void known_meshes_have_the_expected_topology(void **state)
         he_mesh *m = fixture_mesh(rows[i].faces);
         he_topology t;
         assert_int_equal(he_topology_find(m, &t, NULL), HE_OK);
-        /* at a bow-tie, the number of boundary loops depends on the order of the fans */
+        /* at a bow-tie, the number of boundary loops depends on the order of the fans, so it is not
+         * checked */
         if (rows[i].bowties == 0) {
             assert_int_equal(t.boundary_loops, rows[i].loops);
         }

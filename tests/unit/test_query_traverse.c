@@ -1,5 +1,5 @@
-/* Tests of searches and paths from element to element: they are compared with distances by the
- * algorithm of Floyd and Warshall, and with results found by hand. */
+/* Tests of searches and paths from element to element: the results are compared with distances by
+ * the algorithm of Floyd and Warshall, and with results found by hand. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -21,7 +21,8 @@ static void assert_ids(const he_ids *ids, const char *wanted)
 
 enum { SMALL = 100 };
 
-/* The distances between all pairs of vertices, or of faces; INFINITY if they are not connected. */
+/* Distances between all pairs of vertices, or between all pairs of faces; the distance is INFINITY
+ * if the two elements are not connected. */
 typedef struct distances {
     double d[SMALL][SMALL];
     uint32_t n;
@@ -85,8 +86,8 @@ static void try_breadth_first(const he_mesh *m, he_kind kind)
             for (uint32_t i = 0; i < t.n; i++) {
                 assert_int_equal(seen[i], t.d[from][i] <= bound && !isinf(t.d[from][i]));
             }
-            /* With a limit on the number of elements, the answer must be the beginning of the full
-             * answer. */
+            /* If the number of elements in the answer is limited, the answer must be the beginning
+             * of the full answer. */
             for (size_t limit = 1; limit <= ids.count + 1; limit++) {
                 he_ids some = {0}, at = {0};
                 assert_int_equal(
@@ -185,8 +186,8 @@ static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
     he_mesh *m = fixture_mesh("012,023");
     he_ids ids = {0};
     he_halfedge start = {0};
-    /* The half-edges of the first face are 0 (from vertex 0 to 1), 2 (1 to 2) and 4 (2 to 0); those
-     * of the second are 5 (0 to 2), 6 (2 to 3) and 8 (3 to 0). */
+    /* The half-edges of the first face are 0 (from vertex 0 to 1), 2 (1 to 2) and 4 (2 to 0); the
+     * half-edges of the second face are 5 (0 to 2), 6 (2 to 3) and 8 (3 to 0). */
     assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 4, HE_UNTIL_COUNT, 0},
                                       NULL, &ids, NULL),
                      HE_OK);
@@ -221,8 +222,8 @@ static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
                      HE_OK);
     assert_ids(&ids, "0 4 5 8 9");
     ids.count = 0;
-    /* The path never meets the boundary. It must end when it is back at a half-edge from which it
-     * has already begun its list of steps. */
+    /* The path never meets the boundary. It must end when it returns to a half-edge from which it
+     * has already begun its list of steps once. */
     assert_int_equal(he_traverse_path(m, start,
                                       &(he_path_steps){next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0},
                                       NULL, &ids, NULL),
@@ -234,7 +235,8 @@ static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
                                       NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1");
-    /* A path of at most 3 steps is appended to the list, which must keep its earlier ids. */
+    /* A path of at most 3 steps is appended to the list: the ids that the list has already must
+     * stay. */
     assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 3, HE_UNTIL_COUNT, 3},
                                       NULL, &ids, NULL),
                      HE_OK);
@@ -264,8 +266,8 @@ static void a_loop_follows_next_around_a_face_or_a_hole(void **state)
     assert_int_equal(he_traverse_loop(m, (he_halfedge){2}, &ids, NULL), HE_OK);
     assert_ids(&ids, "2 4 0");
     ids.count = 0;
-    /* The loop along a boundary follows the boundary half-edges, against the direction of the faces
-     * beside them. */
+    /* A boundary loop follows the boundary half-edges, against the direction of the faces beside
+     * them. */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){1}, &ids, NULL), HE_OK);
     assert_ids(&ids, "1 9 7 3");
     assert_int_equal(he_traverse_loop(m, (he_halfedge){99}, &ids, NULL), HE_NO_SUCH_ELEMENT);
@@ -324,8 +326,8 @@ static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **st
         expect_chain(m, true, e, tube ? 5 : 4, true);
     }
     he_mesh_free(m);
-    /* On a grid an edge loop goes from one side to the opposite side. An edge ring does, too, and
-     * has one edge more than the quads that it crosses. */
+    /* On a grid an edge loop goes from one side to the opposite side. An edge ring does so, too;
+     * the ring has one edge more than the number of quads that it crosses. */
     m = query_shape("grid", 4, 3, 1, 1);
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
         bool along_x = m->c.origin[2 * e] / 5 == m->c.origin[2 * e + 1] / 5;
@@ -335,8 +337,9 @@ static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **st
     }
     he_ids ids = {0};
     bool closed;
-    /* The edges of a loop are listed in order, beginning at the end of the loop on the side of the
-     * origin of half-edge 2e; the grid has 5 vertices in each row. */
+    /* The edges of an edge loop are listed in order, beginning at that end of the loop to which one
+     * comes from the given edge e by leaving it at the origin of half-edge 2e. The grid has 5
+     * vertices in each row. */
     uint32_t e = edge_between(m, 6, 7);
     uint32_t a = edge_between(m, 5, 6), c = edge_between(m, 7, 8), d = edge_between(m, 8, 9);
     assert_int_equal(he_traverse_edge_loop(m, (he_edge){e}, &ids, &closed, NULL), HE_OK);
@@ -472,7 +475,8 @@ static void every_walk_ends_on_broken_links(void **state)
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     he_ids ids = {0};
     bool closed;
-    m->c.next[m->c.next[0]] = m->c.next[0]; /* makes a loop that never comes back to half-edge 0 */
+    m->c.next[m->c.next[0]] =
+        m->c.next[0]; /* makes a loop of links that never comes back to half-edge 0 */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){0}, &ids, NULL), HE_CORRUPT);
     m->c.next[0] = 1000;
     he_error err = {0};

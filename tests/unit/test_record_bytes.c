@@ -1,22 +1,22 @@
 /* Tests of the store's records as bytes (core/journal/record_bytes.h): reading must restore what
- * was written, every later release must be able to read the bytes below, and damaged records must
- * be refused with the offset of the damage.
- *
- * `test_record_bytes --write FOLDER` writes the records of this test as first inputs of the fuzzer
- * fuzz_record. */
+ * was written, every later release must be able to read the bytes in this file, and damaged records
+ * must be refused with the offset of the damage.
+ *  `test_record_bytes --write FOLDER` writes the records of this test as first inputs of the
+ * fuzzer fuzz_record. */
 #include "journal/record_bytes.h"
 
 #include "journal/crc32c.h"
 #include "unit/fixture.h"
 
-/* The checksum of the record before, from which the checksums of the records of this test
- * continue. */
+/* The checksum of a record continues from the checksum of the record before it. This is the value
+ * from which the checksums in this test continue. */
 #define CHAIN UINT64_C(0x0123456789abcdef)
 
 static const unsigned char body[] = {1, 2, 3, 250};
-static char in_parts; /* a placeholder for parts that the journal has written */
+static char in_parts; /* a placeholder: a record whose `stage` is its address has data that the
+                         journal has written in parts */
 
-/* One record of each kind, and its bytes in version 1 of the format. */
+/* One record of each kind with the bytes that version 1 of the format has for it. */
 static const struct specimen {
     const char *name;
     st_record record;
@@ -231,8 +231,8 @@ static void a_cut_or_a_flipped_bit_is_refused(void **state)
     printf("note: %u damaged records: all refused\n", refused);
 }
 
-/* Changes a byte of a record, corrects the checksum and reads the record. A reader meets such a
- * record if the checksum fails to detect damage. */
+/* Changes a byte of a record, corrects the checksum and reads the record. Damage that a checksum
+ * does not detect gives the reader such a record. */
 static he_status read_resealed(const st_record *record, size_t at, unsigned value, he_error *err)
 {
     unsigned char bytes[ROOM];
@@ -273,14 +273,14 @@ static void the_chain_covers_all_that_came_before(void **state)
     uint64_t next = st_frame_seal(first, size, chain);
     assert_true(next == st_frame_next_chain(first, size));
     assert_true(next != chain);
-    /* Equal records of two meshes must have different checksums, because these continue from
-     * different origins. */
+    /* Two meshes have different origins, from which the checksums of their records continue: equal
+     * records of the two meshes must therefore have different checksums. */
     memcpy(second, first, size);
     assert_true(st_frame_seal(second, size, st_chain_of_origin(origin + 1)) != next);
 }
 
 /* The expected values are those of RFC 3720, B.4. Both implementations of the checksum must give
- * them. */
+ * these values. */
 static void checksums_are_those_of_the_standard(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Tests of each repair by itself; then of failing allocations, of cancelling, and of soups that
- * cannot be repaired. */
+/* Tests of each repair by itself; then tests of failing allocations, of cancelling, and of soups
+ * that cannot be repaired. */
 #include "repair_fixture.h"
 #include "tests/failing.h"
 
@@ -29,17 +29,17 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         {"012,123,032", HE_ORIENTATION, ORIENT, 4, 6, 3},
         {CUBE ",0", HE_TOO_FEW_CORNERS, DEGENERATE, 8, 12, 6},
         {"0321,4567,0154,1562,2376,3047", HE_ORIENTATION, ORIENT, 8, 12, 6},
-        /* a vertex with a closed fan of faces and a second fan, which is closed or open */
+        /* a vertex with a closed fan of faces and a second fan, which is closed in one soup and
+         * open in the other */
         {"021,032,013,123,354,365,346,456", HE_CLOSED_FAN, SPLIT, 8, 12, 8},
         {"021,032,013,123,345", HE_CLOSED_FAN, SPLIT, 7, 9, 5},
-        /* a face that occurs twice, alone and in a closed surface, in equal or opposite
-         * orientation */
+        /* a face that occurs twice, in equal or in opposite orientation; the face is alone or
+         * belongs to a closed surface */
         {"012,012", HE_ORIENTATION, DUPLICATES, 3, 3, 1},
         {"021,032,013,123,231", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
         {"021,032,013,123,132", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
-        /* A duplicate in a soup that also has an edge with three faces; a duplicate of one of three
-         * faces on an edge; and two tetrahedra on either side of a common face, which must not
-         * count as a duplicate. */
+        /* In the first soup a face occurs twice, and another edge has three faces. In the second
+         * soup an edge has three faces, of which one occurs twice. */
         {"021,032,013,123,231,456,547,458", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 11, 14, 7},
         {"012,103,014,012", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 7, 8, 3},
         /* a Moebius band of five triangles */
@@ -124,7 +124,7 @@ static void a_moebius_band_is_not_orientable(void **state)
     assert_int_equal(soup.corner_count, sizeof left / sizeof *left);
     assert_memory_equal(soup.corners, left, sizeof left);
     assert_int_equal(err.kind, HE_FACE);
-    assert_in_range(err.id, 1, 5); /* the face is named by its number in the input */
+    assert_in_range(err.id, 1, 5); /* the error names a face by its number in the input */
     assert_int_equal(he_repair_advise(&soup, plan.which, &which, NULL), HE_OK);
     assert_int_equal(which, DEGENERATE | ORIENT | SPLIT);
     he_repaired_clear(&done);
@@ -146,7 +146,7 @@ static void the_larger_part_keeps_its_direction(void **state)
     assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->count, 1);
     assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->parts, 1);
     assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->pairs[0].a, 0);
-    /* The face was reversed, but its first corner must stay the first. */
+    /* The face was reversed, but its first corner must still be the first. */
     he_halfedge h = he_face_halfedge(mesh, (he_face){0});
     assert_int_equal(he_origin(mesh, h).i, 0);
     assert_int_equal(he_target(mesh, h).i, 3);
@@ -194,8 +194,8 @@ static void small_holes_are_filled(void **state)
     he_mesh_free(mesh);
     he_repaired_clear(&done);
 
-    /* The outline of a single face must not be filled, nor must a hole that is longer than
-     * allowed. */
+    /* The outline of a single face must not be filled, and a hole with more sides than allowed must
+     * not be filled. */
     done = (he_repaired){0};
     mesh = repair_mend_faces("0123", FILL, &done);
     fixture_counts(mesh, 4, 4, 1);

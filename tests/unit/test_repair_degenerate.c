@@ -1,5 +1,5 @@
-/* Tests of the repair drop_degenerate: what it keeps of a face that uses a vertex more than
- * once. */
+/* Tests of the repair drop_degenerate: which part of a face it keeps if the face uses a vertex more
+ * than once. */
 #include "repair_fixture.h"
 
 #include <math.h>
@@ -24,14 +24,15 @@ static void a_face_keeps_what_has_an_area(void **state)
         const char *before, *after;
         unsigned gone, mended;
     } rows[] = {
-        /* faces that use a vertex twice in a row, at any place in the face */
+        /* faces that use a vertex twice in succession, at the beginning, in the middle or at the
+         * end of the face */
         {"0122", "012", 0, 1},
         {"0012", "012", 0, 1},
         {"0120", "012", 0, 1},
         {"00122", "012", 0, 1},
         {"0000123", "0123", 0, 1},
-        /* Faces with spikes (paths that go out and straight back) at the end, at the beginning or
-         * around it. */
+        /* Faces with spikes (paths that go out and straight back), at the end, at the beginning, or
+         * all around the face. */
         {"01232", "012", 0, 1},
         {"012343", "0123", 0, 1},
         {"20123", "201", 0, 1},
@@ -44,10 +45,10 @@ static void a_face_keeps_what_has_an_area(void **state)
         {"01210", "", 1, 0},
         {"0", "", 1, 0},
         {"01", "", 1, 0},
-        /* faces whose corners go around twice, so they have no outline and must be dropped */
+        /* faces whose corners go around twice; such a face has no outline and must be dropped */
         {"012012", "", 1, 0},
         {"01230123", "", 1, 0},
-        /* a face that is mended among other faces, which must keep their order */
+        /* a face that must be mended between other faces; all faces must keep their order */
         {"045,0122,11,123", "045,012,123", 1, 1},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -80,9 +81,9 @@ static double twice_area(const he_soup *soup, size_t f)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/* Makes one face that covers the ring between two regular polygons of `sides` corners: its outline
- * goes along an edge to the inner polygon, around it in the opposite direction, and back along the
- * edge. */
+/* Makes one face that covers the ring between two regular polygons of `sides` corners. The face's
+ * outline goes around the outer polygon, along an edge to the inner polygon, around the inner
+ * polygon in the opposite direction, and back along the same edge. */
 static void make_keyhole(he_soup *soup, uint32_t sides)
 {
     const double turn = 6.283185307179586 / sides;
@@ -133,7 +134,8 @@ static void a_keyhole_is_cut_into_triangles(void **state)
     }
 }
 
-/* Each face consists of two loops that touch at a vertex, side by side or one inside the other. */
+/* Each tested face consists of two loops that touch at a vertex. The loops are side by side, or one
+ * is inside the other. */
 static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
 {
     (void)state;
@@ -171,7 +173,7 @@ static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
     }
 }
 
-/* A face that uses a vertex very often must be dropped; dividing it into loops would take too
+/* A face that uses a vertex very often must be dropped: dividing the face into loops would take too
  * long. */
 static void a_face_that_repeats_its_corners_is_left_out(void **state)
 {

@@ -104,7 +104,8 @@ static void welding_is_what_comparing_all_would_do(void **state)
 
 /* --- random soups and all repairs --- */
 
-/* Makes random faces on few vertices; most are triangles on an edge of the face before. */
+/* Makes random faces on few vertices. Most of the faces are triangles on an edge of the face
+ * before. */
 static void random_soup(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 3 + md_below(random, 8), corners[8] = {0, 1, 2};
@@ -155,7 +156,7 @@ static bool is_degenerate(const he_soup *soup, size_t f)
     return end - begin < 3;
 }
 
-/* Returns whether two faces have the same cycle of corners, in the same or the opposite
+/* Returns whether two faces have the same cyclic order of corners, in the same or in the opposite
  * direction. */
 static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
 {
@@ -176,8 +177,8 @@ static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
     return found;
 }
 
-/* Removes spikes and repeated neighbouring corners from a loop, in the order in which they are
- * found. */
+/* Removes spikes (paths that go out and straight back) and repeated neighbouring corners from a
+ * loop, in the order in which they are found. Returns the new number of corners. */
 static uint32_t reduce(uint32_t *loop, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -192,7 +193,7 @@ static uint32_t reduce(uint32_t *loop, uint32_t n)
     return n;
 }
 
-/* The directed edges of some loops; `ends` has the two vertices of each edge. */
+/* The directed edges of a set of loops; `ends` lists the two vertices of each edge. */
 typedef struct runs {
     uint32_t ends[32][2];
     uint32_t count;
@@ -225,8 +226,8 @@ static bool runs_twice(const runs *r)
     return twice;
 }
 
-/* Requires that the loops in `a` and those in `b` have the same directed edges, not counting edges
- * used in both directions, which cancel out. */
+/* Requires that the loops in `a` and the loops in `b` have the same directed edges. Edges that are
+ * used in both directions are not counted, because they cancel out. */
 static void expect_same_rim(const runs *a, const runs *b)
 {
     for (uint32_t v = 0; v < 11; v++) {
@@ -237,8 +238,8 @@ static void expect_same_rim(const runs *a, const runs *b)
     }
 }
 
-/* Checks the faces with which the repair replaced face f of the soup; the first of them is face
- * `at` of the result. Returns by how many faces f was replaced. */
+/* Checks the faces by which the repair replaced face f of the soup; the first of these faces is
+ * face `at` of the result. Returns the number of these faces. */
 static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
                             const uint32_t *from, size_t at)
 {
@@ -293,8 +294,8 @@ static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cu
     he_repaired_clear(&done);
 }
 
-/* Removes duplicate faces and requires that none are left. Degenerate faces are dropped before
- * that, because two of them may be duplicates. */
+/* Removes duplicate faces and requires that none are left. Degenerate faces are dropped first,
+ * because two degenerate faces may be duplicates. */
 static void expect_no_duplicates(const he_soup *soup)
 {
     he_soup copy;
@@ -323,8 +324,8 @@ static void expect_no_duplicates(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Counts the faces that have the edge between the vertices `a` and `b`: those that use it from a to
- * b, and those that use it from b to a. */
+/* Counts the faces at the edge between the vertices `a` and `b`: the faces that use the edge from a
+ * to b, and the faces that use it from b to a. */
 static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
 {
     *up = *down = 0;
@@ -338,9 +339,9 @@ static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up
     }
 }
 
-/* Returns whether faces can be reversed so that the two faces of each edge use it in opposite
- * directions. A union-find has two entries for each face, one for the face as it is and one for the
- * reversed face; if both entries are in one class, the function returns false. */
+/* Returns whether faces can be reversed so that the two faces of each edge use the edge in opposite
+ * directions. A union-find has two entries for each face: one for the face as it is, and one for
+ * the reversed face. If both entries of a face are in one class, the function returns false. */
 static bool is_orientable(const he_soup *soup)
 {
     size_t n = soup->face_count;
@@ -402,8 +403,8 @@ static void expect_oriented(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Requires that the repair `split` leaves no bow-tie, and that it still joins two faces that use an
- * edge in opposite directions. */
+/* Requires that after the repair `split` there is no bow-tie, and that two faces that use an edge
+ * in opposite directions are still joined at this edge. */
 static void expect_split(const he_soup *soup)
 {
     he_soup copy, again;
@@ -437,8 +438,8 @@ static void expect_split(const he_soup *soup)
     he_soup_clear(&again);
 }
 
-/* Requests the repairs `asked`. If the soup cannot be built even then, the repairs that the error
- * recommends must suffice. */
+/* Applies the repairs `asked`. If the soup cannot be built even then, the repairs that the error
+ * recommends must be enough. */
 static void expect_advice(const he_soup *soup, unsigned asked)
 {
     he_soup copy;

@@ -17,18 +17,19 @@ static void expect_closed(const he_soup *soup)
     he_repaired_clear(&done);
 }
 
-/* The closed surfaces touch along edges of four or more faces. If the faces at such an edge were
- * paired in their order, two pairs would join the same two fans, so faces must be paired in another
- * way. */
+/* In these closed surfaces, four or more faces meet at some edges, and the repair divides them into
+ * pairs. If the faces were paired in their order, two pairs would join the same two fans, so the
+ * repair must find other pairs. */
 static void pairs_between_the_same_fans_exchange_partners(void **state)
 {
     (void)state;
     static const char *const rows[] = {
         /* a tetrahedron and a reversed copy of it, both on the same vertices */
         "031,123,320,321,130,210,023,201",
-        /* two pairs of triangles back to back, with the second pair in reverse order */
+        /* two pairs of triangles back to back; the second pair is in reverse order */
         "012,013,103,102",
-        /* three pairs of triangles back to back, all at one edge, in a circle */
+        /* three pairs of triangles back to back, all at one edge; the first and the last triangle
+         * form a pair */
         "012,013,014,103,104,102",
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -79,8 +80,8 @@ static void random_closed_soups_stay_closed(void **state)
     }
 }
 
-/* The faces around one edge are pairs of triangles, back to back. The first way to pair these faces
- * joins the same two fans in every pair. */
+/* The faces around one edge are pairs of triangles, back to back. If the faces were paired in the
+ * order in which the repair tries them first, every pair would join the same two fans. */
 static void an_edge_of_very_many_faces_takes_no_longer(void **state)
 {
     (void)state;

@@ -6,8 +6,8 @@
 #include "repair/repair.h"
 #include "tests/failing.h"
 
-/* Two triangles meet along an edge, but each has its own vertices there. Many programs write a seam
- * of a texture like this. */
+/* Two triangles meet along an edge, but each triangle has vertices of its own at the ends of the
+ * edge. Many programs write the seam of a texture in this way. */
 static const char seam[] =
     "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
     "property float z\nproperty double s\nproperty double t\nproperty uchar red\n"
@@ -39,7 +39,8 @@ static void a_seam_of_texture_stays_a_seam(void **state)
     assert_int_equal(done.accounts[HE_REPAIR_WELD].count, 2);
     assert_int_equal(done.accounts[HE_REPAIR_WELD].moved, 2);
     assert_null(he_mesh_find_column(mesh, HE_VERTEX, "uv"));
-    /* If merged vertices have equal values, these must stay values of the vertex. */
+    /* If merged vertices have equal values of an attribute, it must stay an attribute of
+     * vertices. */
     assert_null(he_mesh_find_column(mesh, HE_HALFEDGE, "color"));
     assert_non_null(he_mesh_find_column(mesh, HE_VERTEX, "color"));
     he_warnings warnings;
@@ -113,10 +114,10 @@ static void the_edges_that_a_weld_would_make_are_counted(void **state)
     } rows[] = {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 -0\nv 1 0 0\n", "f 1 2 3\nf 4 5 6\n", 1},
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", "f 1 2 3\nf 4 3 2\n", 0},
-        /* The edges coincide, but both faces would use the merged edge in the same direction, so a
-         * weld cannot join them. */
+        /* The two edges coincide, but both faces would use the merged edge in the same direction,
+         * so a weld cannot join them. */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\n", "f 1 2 3\nf 4 6 5\n", 0},
-        /* Three faces have coinciding edges, of which only two can be joined. */
+        /* Three faces have coinciding edges; only two of these edges can be joined. */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nv 1 0 0\n",
          "f 1 2 3\nf 4 5 6\nf 7 8 9\n", 1},
         {"v 0 0 0\nv 0 0 0\nv 0 0 0\n", "f 1 2 3\n", 0},

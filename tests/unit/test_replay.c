@@ -1,6 +1,6 @@
-/* A copy of a mesh is moved forward and back along a log of edits. At each point it must equal the
- * mesh of that time: in links, positions, columns that were added, removed and restored, and
- * replaced contents. */
+/* A copy of a mesh is moved forward and back along a log of edits. At each point of the log, the
+ * copy must equal the mesh at that point: in its links, in its positions, in columns that were
+ * added, removed and restored, and in mesh data that was replaced as a whole. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -14,8 +14,8 @@
 
 enum { ENTRIES = 60 };
 
-/* Moves the copy by one entry of the log, from entry `at` to the one before it (if `back`) or after
- * it. */
+/* Moves the copy from its state after entry `at` of the log by one entry: back to the state after
+ * the entry before it if `back` is true, otherwise forward to the state after the next entry. */
 static he_status cross(const edit_log *h, he_replay *replay, size_t at, bool back)
 {
     size_t crossed = back ? at : at + 1;
@@ -60,8 +60,9 @@ static void every_point_of_a_log_can_be_reached(void **state)
     }
 }
 
-/* A new column belongs to the mesh alone, so a delta that adds it does not have its values: a copy
- * made before the edit cannot be moved across it. */
+/* A new column belongs to the mesh alone, so the delta of the edit that adds the column does not
+ * have the column's values: a copy that was made before the edit cannot be moved forward across the
+ * edit. */
 static void a_column_that_only_the_mesh_holds_cannot_be_replayed(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Tests of finding the handler for a request, and of everything that happens before and after a
- * handler, in a service whose store has one mesh, "m". */
+/* Tests of choosing the handler of a request, and of everything that happens before and after the
+ * handler runs, in a service whose store has one mesh, "m". */
 #include "api/describe/routes.h"
 #include "api/json/json_scan.h"
 #include "api/request/exchange.h"
@@ -78,7 +78,8 @@ typedef struct sent {
     const char *body;    /* NULL if the request has no body */
 } sent;
 
-/* The values of the request's headers, which must stay valid until api_free. */
+/* The values of the request's headers. They must stay valid until api_free has freed the
+ * exchange. */
 typedef struct header_list {
     char value[API_REQUEST_HEADERS][256];
 } header_list;
@@ -249,8 +250,9 @@ static const struct {
     {{"POST /v1/meshes/m/query", JSON, "{\"queries\":"}, 400, "malformed_json"},
     {{"POST /v1/meshes/m/query", JSON, "{\"a\":1,\"a\":1}"}, 400, "duplicate_member"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
-    /* A page of another site can send a form without asking the server first, but only with certain
-     * media types. A request with one of these types must be refused even if it has no body. */
+    /* A browser lets a page of another site send a form without asking the server first, but only
+     * with certain media types. A request with one of these types must be refused even if it has no
+     * body. */
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", ""}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
@@ -546,8 +548,9 @@ static void a_large_document_is_read_off_the_worker(void **state)
     free(body);
 }
 
-/* Fails if a JSON object has two members with one name. Objects may have any number of members: the
- * OpenAPI document has more than 256 schemas, which the parser of request bodies would refuse. */
+/* Fails if a JSON object has two members with the same name. The objects may have any number of
+ * members: the OpenAPI document has more than 256 schemas, which the parser of request bodies would
+ * refuse. */
 static void expect_no_repeated_member(const cJSON *value, const char *line)
 {
     const cJSON *child;
@@ -586,7 +589,7 @@ static void documents_of_the_tables_are_json(void **state)
     }
 }
 
-/* Checks that the rows of the route table are complete and consistent. */
+/* Checks that the entries of the route table are complete and consistent. */
 static void rows_are_whole(void **state)
 {
     (void)state;
@@ -680,8 +683,8 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
     }
 }
 
-/* Whichever allocation fails, the request must get a complete answer, or api_handle must return no
- * exchange. */
+/* Whichever allocation fails, the request must get a complete answer, unless api_handle returns no
+ * exchange at all. */
 static void every_failed_allocation_is_answered(void **state)
 {
     (void)state;
@@ -701,8 +704,8 @@ static void every_failed_allocation_is_answered(void **state)
             failing_end(&f, x != NULL);
             if (x != NULL && !f.is_over && api_answer_of(x)->status != 507 &&
                 api_answer_of(x)->status >= 400) {
-                /* The answer is an error with or without memory; without memory it must
-                 * nevertheless have a body. */
+                /* The answer is an error, even if no allocation fails. If one does fail, the error
+                 * must nevertheless have a body. */
                 assert_true(api_answer_of(x)->length > 0);
             }
             assert_true(x == NULL || api_answer_of(x)->status >= 200);

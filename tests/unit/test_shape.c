@@ -1,5 +1,5 @@
-/* Tests of the table of primitive shapes: their counts, positions and orientation, and which
- * arguments are refused. */
+/* Tests of the table of primitive shapes: which counts, positions and orientation the shapes have,
+ * and which arguments are refused. */
 #include "fixture.h"
 
 #include "tests/failing.h"
@@ -21,8 +21,8 @@ static const he_shape *shape_named(const char *name)
     return shape;
 }
 
-/* Makes a shape. The arguments are in the order in which the shape's row of the table lists its
- * parameters; NAN stands for the default. */
+/* Makes a shape. The arguments are in the order in which the table of shapes lists the shape's
+ * parameters; NAN stands for a parameter's default value. */
 static he_mesh *make(const char *name, double a, double b, double c, double d)
 {
     const he_shape *shape = shape_named(name);

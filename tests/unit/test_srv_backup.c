@@ -27,7 +27,7 @@ static int make_folders(void **state)
     return 0;
 }
 
-/* Removes the folders to which a restore has moved the old store. */
+/* Removes the folders into which restores have moved the store that they replaced. */
 static void remove_befores(void)
 {
     DIR *dir = opendir(folder);
@@ -149,8 +149,8 @@ static bool count_key(void *context, const st_kept_key *key)
     assert_string_equal(key->key.text, "a key");
     assert_string_equal(key->id, "a");
     assert_true(key->key.digest[1] == 8);
-    /* An Idempotency-Key must not name the state that its request made, because a restore may have
-     * removed that state. */
+    /* An Idempotency-Key in a restored store must not name the state that its request made, because
+     * the restore may have removed that state. */
     assert_true(key->incarnation == 0 && key->revision == 0 && key->metadata == 0);
     return true;
 }
@@ -277,8 +277,8 @@ static void a_backup_goes_under_no_log(void **state)
     }
 }
 
-/* The write-ahead log (hedge.db-wal) of a store killed by kill -9 must not be applied to the
- * database that is restored over it. */
+/* If a store was killed by kill -9, its write-ahead log (hedge.db-wal) stays. It must not be
+ * applied to a database that is later restored in the place of the old one. */
 static void a_log_left_behind_stays_with_its_database(void **state)
 {
     (void)state;
@@ -315,7 +315,7 @@ static void move(const char *from, const char *to)
 }
 
 /* A restore may be interrupted between any two of its steps. This test makes the state after each
- * step itself; the next start must complete the restore. */
+ * step itself; the next start of the store must complete the restore. */
 static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
 {
     (void)state;
@@ -349,7 +349,8 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
         }
         expect_records(1, &incarnation);
         told_open(&told, folder);
-        /* Before the file "restoring" is written, a start must keep the old store. */
+        /* If a restore was interrupted before it wrote the file "restoring", the next start must
+         * keep the old store. */
         assert_int_equal(told.journal.count(told.journal.self), step == 0 ? 2 : 1);
         told_end(&told);
         char path[2 * FOLDER_PATH];
@@ -364,7 +365,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
 }
 
 /* A killed restore has left a rollback journal of SQLite, which contains a first page of zeros. If
- * it stayed, SQLite would write this page into the next copy. */
+ * this journal stayed, SQLite would write the page into the next copy of a database. */
 static void what_a_killed_restore_left_is_not_played_into_the_next(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* Tests of the queue of events: every listener must read all messages in order, but none before it
- * is released as durable. A slow listener must learn that it missed messages, and messages must not
- * be kept for it. */
+/* Tests of the queue of events: every listener must read all messages in order, but no message
+ * before it is released as durable. A slow listener must learn that it missed messages, and the
+ * queue must not keep messages for a slow listener. */
 #include "tests/unit/fixture.h"
 
 #include "store/publish/broadcast_queue.h"
@@ -78,7 +78,8 @@ static void everybody_reads_everything_once(void **state)
     join(&late, &late_wakes);
     add(9, 5);
     st_queue_allow(&feed, 9);
-    assert_int_equal(early_wakes, 0); /* `early` is not waiting, so it must not be woken */
+    assert_int_equal(early_wakes,
+                     0); /* the listener `early` is not waiting, so it must not be woken */
     assert_reads(&early, "8;9;");
     assert_reads(&late, "9;");
     add(10, 5);
@@ -86,7 +87,8 @@ static void everybody_reads_everything_once(void **state)
     assert_int_equal(early_wakes, 1);
     add(12, 6);
     st_queue_allow(&feed, 12);
-    assert_int_equal(early_wakes, 1); /* a listener is woken once per wait, not once per message */
+    assert_int_equal(early_wakes,
+                     1); /* a listener is woken once per wait, not once for each message */
     assert_int_equal(late_wakes, 1);
     assert_reads(&early, "10;12;");
     assert_reads(&late, "10;12;");
@@ -110,7 +112,8 @@ static void what_is_not_allowed_is_not_read(void **state)
     assert_int_equal(wakes, 1);
     assert_reads(&listener, "8;9;");
     st_queue_end(&feed);
-    /* message 10 must be read before the queue ends, but it is not released yet */
+    /* message 10 must be read before the listener learns that the queue has ended, but it is not
+     * released yet */
     assert_step(&listener, ST_QUEUE_WAIT);
     st_queue_allow(&feed, 10);
     assert_reads(&listener, "10;");
@@ -131,7 +134,8 @@ static void what_is_beside_a_message_comes_after_it(void **state)
     add(8, 4);
     st_queue_add_beside(&feed, "b;", 2);
     st_queue_add_beside(&feed, "c;", 2);
-    assert_reads(&listener, "a;"); /* message 8 is not released yet */
+    assert_reads(&listener,
+                 "a;"); /* message 8 is not released yet, so messages 8, b and c must not be read */
     assert_int_equal(wakes, 1);
     add(9, 5);
     st_queue_allow(&feed, 9);
@@ -168,8 +172,8 @@ static void who_is_slow_is_behind_once(void **state)
         add(stamp, stamp);
     }
     assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
-    /* A slow listener has missed messages. It may learn from which position it can continue only
-     * when this position is durable. */
+    /* A slow listener has missed messages. It may learn the position from which it can continue
+     * only when this position is durable. */
     assert_step(&slow, ST_QUEUE_WAIT);
     st_queue_allow(&feed, stamp - 3);
     assert_step(&slow, ST_QUEUE_BEHIND);
@@ -177,7 +181,8 @@ static void who_is_slow_is_behind_once(void **state)
     assert_int_equal(place.stamp, stamp - 3);
     assert_int_equal(place.key, stamp - 3);
     assert_step(&slow, ST_QUEUE_WAIT);
-    /* A slow listener that has read a part of a message must still get the rest. */
+    /* A slow listener that has read the first part of a message must still get the rest of this
+     * message. */
     assert_int_equal(st_queue_read(&middle, byte, 2, &got), ST_QUEUE_GOT);
     assert_int_equal(got, 1);
     assert_int_equal(byte[0], ';');
@@ -202,10 +207,10 @@ static void bytes_are_bounded_too(void **state)
         assert_true(feed.bytes <= ST_QUEUE_BYTES);
     }
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
-    st_queue_shed(&feed); /* messages are kept while there is a listener */
+    st_queue_shed(&feed); /* the queue keeps messages as long as it has a listener */
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
     st_queue_leave(&slow);
-    /* a queue counts as followed until some time after its last listener left */
+    /* the queue counts as followed for some time after its last listener has left */
     assert_true(st_queue_is_followed(&feed));
     st_queue_shed(&feed);
     assert_int_equal(feed.count, 0);
@@ -219,7 +224,8 @@ static void a_listener_goes_back_to_a_key(void **state)
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
-    add(9, 4); /* a message about a change without a new revision */
+    add(9, 4); /* message 9 is about a change that makes no new revision, so it has the revision of
+                  message 8 */
     add(10, 5);
     st_queue_allow(&feed, 10);
     assert_true(st_queue_rewind(&listener, 3));

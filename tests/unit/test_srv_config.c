@@ -1,5 +1,5 @@
-/* Tests of the daemon's options: a flag overrides the environment, which overrides the default;
- * each refusal must be a sentence. */
+/* Tests of the daemon's options: a flag overrides an environment variable, and an environment
+ * variable overrides the default. Each refusal must be a sentence. */
 #include "tests/unit/fixture.h"
 
 #include "server/config.h"
@@ -7,7 +7,8 @@
 
 #include <unistd.h>
 
-static const char *const *variables; /* environment of the test: name, value, ..., NULL */
+static const char *const *variables; /* environment variables of the test: name, value, name, value,
+                                        and so on, then NULL */
 
 static char *environment(const char *name)
 {
@@ -188,8 +189,8 @@ static void actions_are_taken_from_the_command_line_only(void **state)
     assert_true(READ(&config, "-V"));
     assert_true(config.version);
     srv_config_clear(&config);
-    /* An action such as --help must not be possible from the environment, which is common to all
-     * commands. */
+    /* An action such as --help must not be possible by an environment variable, since all commands
+     * share the environment. */
     static const char *const set[] = {"HEDGE_HELP", "1", NULL};
     variables = set;
     assert_true(read_words(&config, (const char *const[]){NULL}));
@@ -198,7 +199,7 @@ static void actions_are_taken_from_the_command_line_only(void **state)
 }
 
 /* The output of --print-config must be a valid settings file with equal settings, and --help must
- * name every option in it. */
+ * name every option that is in this file. */
 static void printed_settings_read_back_the_same_and_help_names_them_all(void **state)
 {
     (void)state;
@@ -240,7 +241,7 @@ static void printed_settings_read_back_the_same_and_help_names_them_all(void **s
     assert_string_equal(printed, twice);
 }
 
-/* Reads a settings file with this text, together with an option of the command line. */
+/* Reads a settings file with this text, together with an option on the command line. */
 static bool read_file(srv_config *config, const char *text, size_t length, const char *word)
 {
     char path[] = "/tmp/settings-XXXXXX";
@@ -377,8 +378,8 @@ static void a_choice_is_one_of_its_words(void **state)
     }
 }
 
-/* The settings have a mistake, but also choose the format of the log: the message about the mistake
- * must be in that format. */
+/* The settings contain a mistake, but also choose the format of the log: the message about the
+ * mistake must have the chosen format. */
 static void the_format_of_the_log_outlives_a_refusal(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* Tests of meshes that cannot be loaded from the journal: a damaged mesh must be named, and it must
- * be possible to delete and to replace it; a mesh that a newer release wrote must be left as it
- * is. */
+/* Tests of meshes that cannot be loaded from the journal. The store must name a damaged mesh, and
+ * it must be possible to delete and to replace the mesh. A mesh that a newer release of hedge wrote
+ * must not be changed. */
 #include "tests/kept_journal.h"
 #include "tests/model/random.h"
 #include "tests/unit/edit_script.h"
@@ -93,7 +93,8 @@ static void a_mesh_of_a_newer_release_is_named_and_left_as_it_is(void **state)
         st_release(mesh);
         st_store_free(store);
     }
-    /* Once the release can read the version of the record, the mesh must be readable again. */
+    /* The record again has a version that this release can read: the mesh must be readable
+     * again. */
     kept_journal_damage(journal, "m", 4, KEPT_NEWER, 0);
     st_store *store = open_store();
     st_release(kept_store_load(store, "m"));

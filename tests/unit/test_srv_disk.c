@@ -1,6 +1,6 @@
-/* Tests of a store on a disk while memory or disk space runs out: a lost change must be reported to
- * its request however late, and no thread may be blocked for ever. In test_srv_starved.c single
- * allocations fail. */
+/* Tests of a store on a disk while memory or disk space runs out: a request must learn that its
+ * change was lost, however late this is known, and no thread may be blocked for ever. In
+ * test_srv_starved.c single allocations fail. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -61,8 +61,8 @@ static st_mesh *load(const char *id)
     return mesh;
 }
 
-/* Makes an edit that moves vertex 0 to x = revision, so that the content shows which revision it
- * is. */
+/* Makes an edit that moves vertex 0 to x = revision, so that the position shows which revision the
+ * mesh has. */
 static st_status edit(st_mesh *mesh, st_mesh_info *info)
 {
     const uint32_t vertex = 0;
@@ -109,9 +109,9 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* A handler pauses right after its commit. Meanwhile the disk becomes full, so that the commit is
- * lost, and then accepts other writes. Only then the handler asks whether its answer may be sent:
- * it must learn that the commit was lost. */
+/* A request handler pauses right after its commit. Meanwhile the disk becomes full, so that the
+ * commit is lost, and then the disk accepts other writes. Only now the handler asks whether its
+ * answer may be sent: it must learn that its commit was lost. */
 static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **state)
 {
     (void)state;
@@ -136,7 +136,7 @@ static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **
     while (disk_status() == ST_FULL) {
         sched_yield();
     }
-    /* Another request makes a new revision, which has the number of the lost revision. */
+    /* Another request makes a new revision, which gets the number of the lost revision. */
     st_mesh *again = load("m");
     assert_int_equal(revision_of(again), 1);
     assert_int_equal(edit(again, &info), ST_OK);
@@ -204,13 +204,13 @@ static void await_all(writer writers[WRITERS])
     }
 }
 
-/* A block of memory that is held only so that others cannot have it. */
+/* A block of memory that the test allocates only to use up the memory budget. */
 typedef struct block {
     struct block *next;
 } block;
 
 /* Allocates all memory that the budget has left, and adds the blocks to the list. The function
- * tries repeatedly, because other threads free memory meanwhile. */
+ * tries repeatedly, because other threads may free memory meanwhile. */
 static void take_all(block **list)
 {
     for (size_t size = LARGE; size >= SMALL / 16; size /= 4) {

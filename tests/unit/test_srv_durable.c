@@ -1,7 +1,7 @@
-/* Threads write, read and listen to a few meshes, which are created and deleted. The journal lags
- * behind, and its disk is sometimes full. No answer or event may show a change before it is
- * durable, or a change that was lost; a group of records must be written whole or not at all; and
- * no durable change may depend on a lost one. */
+/* Threads write, read and listen to a few meshes, which are created and deleted. The journal is
+ * slow, and its disk is sometimes full. No answer or event may show a change before the change is
+ * durable, nor a change that was lost. A group of records must be written completely or not at all,
+ * and no durable change may depend on a lost one. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -26,13 +26,13 @@ enum {
 
 static const char *const ids[MESHES] = {"a", "b", "c"};
 
-/* --- a journal that lags behind and loses records --- */
+/* --- a journal that makes records durable late, and loses some --- */
 
-/* What the test's journal notes about a record. The index of the note is the position of the
- * record. */
+/* What the test's journal remembers about a record. The index of a note in the array `notes` is the
+ * position of its record in the journal. */
 typedef struct note {
     uint64_t incarnation, number, revision;
-    uint64_t group; /* position of the last record of the group */
+    uint64_t group; /* position of the last record in the record's group */
     bool lost;
 } note;
 
@@ -42,13 +42,14 @@ static struct {
     uint64_t newest;
     bool losing;              /* whether the disk is full */
     size_t out;               /* reservations that have not ended */
-    uint64_t removed[MESHES]; /* position of the last deletion of each mesh id */
+    uint64_t removed[MESHES]; /* for each mesh id, position of the record that last deleted a mesh
+                                 with this id */
     _Atomic uint64_t durable;
     st_journal_listener listener;
 } journal = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static _Atomic bool writing;
-static _Atomic int broken; /* line number of a check that failed; 0: none */
+static _Atomic int broken; /* line of the source at which a check failed; 0: no check failed */
 
 static void expect_at(bool good, int line)
 {
@@ -136,8 +137,8 @@ static void lose(uint64_t from, uint64_t to)
 
 static _Atomic size_t incidents;
 
-/* Makes the disk full: loses all records that are not durable, and those for which a writer has
- * already reserved space. Returns the position of the last lost record. */
+/* Makes the disk full: the journal loses all records that are not durable, and all records for
+ * which a writer has already reserved space. Returns the position of the last lost record. */
 static uint64_t fill_up(uint64_t at)
 {
     pthread_mutex_lock(&journal.lock);
@@ -187,7 +188,7 @@ static void *lag_behind(void *context)
     return NULL;
 }
 
-/* --- which records must be durable before an answer --- */
+/* --- which records must be durable before an answer may be sent --- */
 
 static uint64_t position_of_record(uint64_t incarnation, uint64_t number)
 {
@@ -224,7 +225,8 @@ static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
 
 typedef struct answer {
     st_wait wait;
-    uint64_t needs[MESHES]; /* for each mesh, position of its newest record that the answer shows */
+    uint64_t
+        needs[MESHES]; /* for each mesh, the position of its newest record that the answer shows */
     _Atomic bool over;
 } answer;
 
@@ -405,8 +407,8 @@ static void read_one(worker *w)
     if (!info.removed) {
         show_mesh(w->store, &w->answers[w->made++], &info);
     } else if (mesh == NULL) {
-        /* The mesh was not found, so the answer depends on the last deletion of the mesh, unless
-         * this deletion was durable before the search. */
+        /* The mesh was not found, so the answer depends on the last deletion of a mesh with this
+         * id, unless the deletion was durable before the search began. */
         bool shows = removed > since && removed < st_waits_newest(st_store_waits(w->store));
         const uint64_t needs[MESHES] = {shows ? removed : 0};
         send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);
@@ -450,8 +452,8 @@ static void wake(void *context)
 
 static _Atomic size_t events;
 
-/* Reads events until the mesh is deleted or the test ends. Returns false when the next event has
- * not arrived yet. */
+/* Reads events until the mesh is deleted or the test ends. Returns false if the next event has not
+ * arrived yet. */
 static bool hear(st_listener *listener, bool *ended)
 {
     told event;
@@ -505,8 +507,8 @@ static void *listen_some(void *context)
 
 /* --- the run --- */
 
-/* Requires that the records of each mesh have consecutive numbers in the order of their positions,
- * and that no record after a lost one was kept. */
+/* Requires that the records of each mesh, in the order of their positions, have consecutive
+ * numbers, and that no record was kept that comes after a lost record. */
 static void expect_order(void)
 {
     for (uint64_t at = 1; at <= journal.newest; at++) {
@@ -559,8 +561,8 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     static worker workers[WRITERS + READERS + LISTENERS];
     pthread_t lagging;
     atomic_store(&writing, true);
-    /* The thread that fills the disk must start first. Otherwise it might not run before the
-     * writers have nearly ended. */
+    /* The thread that fills the disk must start before the other threads. Otherwise it might not
+     * run before the writers have nearly ended. */
     assert_int_equal(pthread_create(&lagging, NULL, lag_behind, &lag), 0);
     for (int i = 0; i < WRITERS + READERS + LISTENERS; i++) {
         start(&workers[i],
@@ -578,8 +580,8 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     }
     pthread_join(lagging, NULL);
 
-    /* Records that are not durable at the end count as lost, and no answer that shows one may have
-     * been sent. */
+    /* Records that are not durable at the end of the test count as lost. No answer that shows one
+     * of these records may have been sent. */
     advance(fill_up(atomic_load(&journal.durable)));
     assert_int_equal(journal.out, 0);
     size_t made = 0;

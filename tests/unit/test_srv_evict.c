@@ -66,7 +66,8 @@ static void make(const char *id)
     }
 }
 
-/* Returns whether the mesh has this revision: each edit moves vertex 0 to x = revision. */
+/* Returns whether the mesh has this revision, which the x coordinate of vertex 0 shows: each edit
+ * sets it to the number of its revision. */
 static bool is_whole(const he_mesh *m, uint64_t revision)
 {
     double x = he_position(m, (he_vertex){0}).x;
@@ -259,8 +260,8 @@ static void what_is_used_stays_in_memory(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* The meshes that were used longest ago must leave memory first, and no more meshes than
- * necessary. */
+/* The meshes that were not used for the longest time must leave memory first. No more meshes than
+ * necessary may leave memory. */
 static void the_least_recently_used_go_first(void **state)
 {
     (void)state;
@@ -274,7 +275,7 @@ static void the_least_recently_used_go_first(void **state)
     for (int i = 0; i < MANY; i++) {
         atomic_store(&store->meshes[i]->used, (uint64_t)1000 * (uint64_t)(MANY - i));
     }
-    /* The store must make an eighth of the memory free, which is about the memory of one mesh. */
+    /* The store must free an eighth of the memory budget, which is about the memory of one mesh. */
     st_memory_set_budget(st_memory_used());
     st_make_room(store, 0);
     st_memory_set_budget(BUDGET);
@@ -308,7 +309,7 @@ static void for_what_never_fits_nothing_goes(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* --- memory needed by a request --- */
+/* --- memory that a request needs and that meshes must leave for it --- */
 
 enum { LARGE = 1 << 20, SIDE = 128 };
 
@@ -356,8 +357,8 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     assert_non_null(memory);
     const size_t left = in_memory();
     assert_true(left < MESHES);
-    /* If a request needs more memory than the whole budget, no mesh must be removed from memory for
-     * it. */
+    /* If a request needs more memory than the whole budget, no mesh may be removed from memory for
+     * this request. */
     assert_null(he_mem_alloc(st_memory_budget()));
     assert_int_equal(in_memory(), left);
     st_store_serve(NULL);
@@ -366,7 +367,7 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
 }
 
 /* While a thread holds the lock of the store, no mesh can leave memory: an allocation that does not
- * fit must fail at once and not wait. */
+ * fit into the budget must fail at once, without waiting. */
 static void a_request_under_locks_is_not_stopped(void **state)
 {
     (void)state;
@@ -397,14 +398,14 @@ static void a_request_under_locks_is_not_stopped(void **state)
 /* --- meshes that cannot leave memory until their changes are on the disk --- */
 
 static slow_journal slow;
-static bool disk_moves; /* whether changes reach the disk during a wait */
+static bool disk_moves; /* whether changes become durable on the disk while a thread waits */
 static unsigned waits;
 
 bool __real_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 
-/* Replaces the store's wait for the disk: at once, either all changes are on the disk or the wait
- * has timed out. */
+/* Replaces the store's wait for the disk. The function returns at once: either all changes have
+ * become durable on the disk, or the wait has timed out. */
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
 {
     if (!slow.is_heard) {
@@ -419,8 +420,8 @@ bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint
     return disk_moves;
 }
 
-/* Makes a store with one mesh, which uses almost all of the memory budget and cannot leave memory,
- * because it is not on the disk yet. */
+/* Makes a store with one mesh, which uses almost all of the memory budget. The mesh cannot leave
+ * memory, because its changes are not on the disk yet. */
 static void open_full_and_slow(void)
 {
     st_mesh *mesh = NULL;
@@ -495,7 +496,8 @@ static void a_request_waits_for_the_disk_before_it_is_refused(void **state)
     assert_non_null(memory);
     assert_int_equal(waits, 1);
     assert_int_equal(in_memory(), 0);
-    /* All changes are on the disk, so waiting for the disk would not make more memory free. */
+    /* All changes are on the disk, so a wait for the disk could not free more memory and must not
+     * take place. */
     assert_null(he_mem_alloc(st_memory_budget() - st_memory_budget() / 8));
     assert_int_equal(waits, 1);
     he_mem_free(memory);
@@ -513,7 +515,7 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     assert_int_equal(in_memory(), MESHES - 1);
     st_mesh *mesh = NULL;
     assert_int_equal(st_find(store, ids[1], &mesh), ST_COLD);
-    /* While there is enough memory, all meshes must stay. */
+    /* As long as there is enough memory, all meshes must stay in memory. */
     st_memory_set_budget(BUDGET);
     for (size_t i = 0; i < store->count; i++) {
         atomic_store(&store->meshes[i]->used, 1);
@@ -523,9 +525,9 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     close_full();
 }
 
-/* Resident memory outside of counted blocks also uses up the budget, so meshes must leave memory
- * for it. In this test it is a mapping; in a daemon it is the program and the gaps between
- * blocks. */
+/* Resident memory that is not allocated in counted blocks also uses up the budget, so meshes must
+ * leave memory for it. In this test it is a mapping; in a daemon it is the program and the gaps
+ * between blocks. */
 static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state)
 {
     (void)state;
@@ -557,7 +559,7 @@ static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);
-    st_store_rest(store); /* resident memory did not grow since the last call */
+    st_store_rest(store); /* resident memory did not grow: the mesh must stay in memory */
     assert_int_equal(st_find(store, "a", &mesh), ST_OK);
     st_release(mesh);
     munmap(beside, BESIDE);

@@ -1,5 +1,6 @@
 /* Tests of finding the target, the body and the headers of a request, and of refusing requests that
- * are meant for other servers. Ambiguous and too large requests are tested in test_srv_syntax.c. */
+ * are meant for other servers. Ambiguous requests and too large requests are tested in
+ * test_srv_syntax.c. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/syntax/http_framing.h"

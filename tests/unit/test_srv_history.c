@@ -1,6 +1,6 @@
-/* Tests of the history of a stored mesh: earlier revisions, and cursors that move from revision to
- * revision, must equal the mesh at that time. Columns are added and removed, memory is limited, and
- * other threads write. */
+/* Tests of the history of a stored mesh: snapshots of earlier revisions, and cursors that move from
+ * revision to revision, must equal the mesh at the revision. Columns are added and removed, memory
+ * is limited, and other threads write. */
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -126,8 +126,8 @@ static uint64_t head_of(st_mesh *mesh, he_mesh **content)
     return info.revision;
 }
 
-/* Copies of the mesh at each revision. Revisions in the middle of an undo or redo of several steps
- * have no copy. */
+/* Copies of the mesh at each revision. Undoing or redoing several steps passes revisions of which
+ * there is no copy. */
 typedef struct album {
     he_mesh *at[MOST];
     uint64_t head;
@@ -184,8 +184,8 @@ static void snapshots_of_earlier_revisions(void **state)
         take_picture(&pictures, mesh);
         uint64_t revision = 1 + md_below(&random, (uint32_t)pictures.head);
         expect_snapshot(&pictures, mesh, revision);
-        /* the test holds a snapshot through 16 changes, so the store must keep this copy of the
-         * mesh */
+        /* the test uses a snapshot while the mesh changes 16 times, so the store must keep the copy
+         * of the mesh to which the snapshot refers */
         if (i % 16 == 0) {
             if (held != NULL) {
                 st_snapshot_release(held);
@@ -244,8 +244,8 @@ static void a_walk_follows_the_mesh(void **state)
         assert_int_equal(st_cursor_begin(mesh, from, &walk), ST_OK);
         assert_int_equal(st_cursor_begin(mesh, pictures.head + 1, &none), ST_AHEAD);
         follow(&pictures, walk, pictures.head);
-        /* A cursor must continue while the mesh changes and gets columns that are not in older
-         * copies of it. */
+        /* A cursor must continue to work while the mesh changes and gets columns that older copies
+         * of the mesh do not have. */
         for (unsigned i = 0; i < 30; i++) {
             change(mesh, &random, 100 + i);
             take_picture(&pictures, mesh);
@@ -260,8 +260,9 @@ static void a_walk_follows_the_mesh(void **state)
     }
 }
 
-/* The content and the delta that a cursor returned must stay valid after their entry was dropped
- * from the log. After that, the cursor must report that the history was cut. */
+/* A cursor has returned mesh data and a delta. Both must stay valid after their entry was dropped
+ * from the log of edits. After that, the cursor must report that the beginning of the history is
+ * missing. */
 static void a_walk_is_told_that_the_history_was_cut(void **state)
 {
     (void)state;
@@ -296,8 +297,8 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
 
 /* --- memory --- */
 
-/* After an undo, a column that the edit had added belongs to the log, so its bytes must be counted
- * in the log's budget. */
+/* If an edit added a column, an undo moves the column to the log of edits: its bytes must then be
+ * counted in the log's budget. */
 static void the_log_keeps_its_budget(void **state)
 {
     (void)state;
@@ -411,8 +412,8 @@ static void every_allocation_may_fail(void **state)
 enum { ROUNDS = 400, THREADS = 4 };
 static _Atomic bool writing, broken;
 
-/* Each edit moves the vertices 0 and 1 to one position, with x = revision. After an undo, x is the
- * revision of the edit that is current again. */
+/* Each edit moves the vertices 0 and 1 to one position, with x = number of the new revision. After
+ * an undo, x is the number of the revision to which the undo returned. */
 static void *write_on(void *context)
 {
     st_mesh *mesh = context;

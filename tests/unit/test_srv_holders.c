@@ -1,6 +1,6 @@
-/* Tests of the quotas of tokens, in a store on a disk: the counts must include all meshes of a
- * token, in memory or not, stay within the limits under concurrent requests, and be corrected when
- * changes are lost. */
+/* Tests of the quotas of access tokens, in a store on a disk. The counts for a token must include
+ * all its meshes, whether they are in memory or not; concurrent requests must not exceed the
+ * limits; and the counts must be corrected when changes are lost. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -54,7 +54,8 @@ static int remove_folder(void **state)
     return 0;
 }
 
-/* Makes a store in memory: it has no threads of its own, so the allocation hook can be changed. */
+/* Makes a store in memory. Such a store has no threads of its own, so the test can change the
+ * allocation hook. */
 static int keep_in_memory(void **state)
 {
     (void)state;
@@ -100,7 +101,7 @@ static void destroy(const char *id)
     st_release(mesh);
 }
 
-/* Divides faces until the content of the mesh takes more memory. */
+/* Divides faces of the mesh until the mesh takes more memory. */
 static st_status grow(const char *id)
 {
     st_mesh *mesh = load(id);
@@ -159,7 +160,8 @@ static void a_holder_s_meshes_are_counted_in_memory_or_not_and_given_back(void *
     limit("alice", 2, 0);
     expect("alice", 2);
     assert_int_equal(bytes_of("alice"), bytes);
-    assert_int_equal(create("e", "alice"), ST_QUOTA); /* the meshes of alice are not in memory */
+    assert_int_equal(create("e", "alice"),
+                     ST_QUOTA); /* the meshes of the token "alice" are not in memory */
     st_mesh *mesh = load("a");
     assert_string_equal(st_holder_of(mesh), "alice");
     st_release(mesh);
@@ -213,8 +215,9 @@ static void what_would_grow_beyond_the_bytes_is_refused_and_changes_nothing(void
     assert_int_equal(bytes_of("alice"), grown);
     assert_int_equal(create("n", "alice"), ST_QUOTA);
 
-    /* The creator of the mesh is over the quota. A write that makes the mesh smaller must be
-     * accepted with any token, a write that makes it larger must not. */
+    /* The mesh belongs to the token "alice", which is over its quota. A write that makes the mesh
+     * smaller must be accepted with any token; a write that makes the mesh larger must be refused
+     * with any token. */
     st_mesh *mesh = load("m");
     st_write w;
     assert_int_equal(st_write_begin(mesh, &(st_cause){.holder = "bob"}, &w), ST_OK);
@@ -293,7 +296,8 @@ typedef struct grower {
 
 enum { GROWTHS = 6 };
 
-/* Grows the mesh several times, continuing when the quota refuses it. */
+/* Makes the mesh larger several times; if the quota refuses one of these changes, the function
+ * continues with the next. */
 static void *grow_often(void *context)
 {
     grower *g = context;

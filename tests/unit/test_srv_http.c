@@ -1,6 +1,6 @@
-/* Tests of the real server, in the process of the test and over real sockets, on a journal that the
- * test can slow down: answers must wait until what they show is durable, a full job queue and too
- * many connections must give 503, and a stop must end everything. */
+/* Tests of the real server, in the process of the test and over real sockets. The test can slow
+ * down the journal: answers must wait until what they show is durable, a full job queue and too
+ * many connections must give 503, and stopping the server must end everything. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -119,8 +119,8 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     assert_int_equal(send(fd, request, (size_t)length, MSG_NOSIGNAL), length);
 }
 
-/* Reads the next answer completely and returns its status; `text` receives the answer with its
- * headers. */
+/* Reads the next answer completely, and returns its HTTP status; `text` receives the answer with
+ * its headers. */
 static int answer(int fd, char *text, size_t size)
 {
     size_t got = 0;
@@ -156,8 +156,8 @@ static int round_trip(const char *method, const char *path, const char *body)
     return status;
 }
 
-/* Requires that no answer arrives: the server answers other requests meanwhile with its only
- * worker, so an answer that may be sent would arrive first. */
+/* Requires that no answer arrives on this connection. Meanwhile the server, which has only one
+ * worker, answers another request: an answer that may be sent would arrive before that. */
 static void assert_held(int fd)
 {
     char byte;
@@ -176,7 +176,7 @@ static void answers_wait_until_what_they_show_is_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     assert_held(writer);
-    /* A read of a state that is not durable must wait, too. */
+    /* The answer to a read of a state that is not durable must wait, too. */
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_held(reader);
     slow_journal_advance(&slow, 1);
@@ -195,8 +195,8 @@ static void answers_wait_until_what_they_show_is_durable(void **state)
     assert_int_equal(answer(reader, text, sizeof text), 200);
     assert_non_null(strstr(text, "\"revision\":2"));
 
-    /* A new name makes no revision, but it can be lost as well, so answers must wait until it is
-     * durable. */
+    /* A new name makes no new revision, but it can be lost like a revision, so answers must wait
+     * until it is durable. */
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
     slow_journal_wait(&slow, 3);
     assert_held(writer);
@@ -214,7 +214,7 @@ static void answers_wait_until_what_they_show_is_durable(void **state)
     close(reader);
 }
 
-/* Reads from the server until the bytes read contain `text`. */
+/* Reads from the connection until the bytes read contain `text`. */
 static void read_until(int fd, const char *text)
 {
     char all[8192];
@@ -288,8 +288,8 @@ static void lists_and_absence_wait_until_durable(void **state)
     close(early);
 }
 
-/* A mesh that is not being changed must be readable at once, however far behind the journal is with
- * other meshes. */
+/* If no change of a mesh is in progress, the mesh must be readable at once, however many changes of
+ * other meshes the journal has not written yet. */
 static void an_idle_mesh_never_waits(void **state)
 {
     (void)state;
@@ -309,8 +309,8 @@ static void an_idle_mesh_never_waits(void **state)
     slow_journal_advance(&slow, 2);
 }
 
-/* Answers of every kind depend on the state of the mesh, so each must wait: not modified, gone,
- * stale, refused, dry run. */
+/* Answers of every kind depend on the state of the mesh, so each must wait until the state is
+ * durable: not modified, gone, stale, refused, dry run. */
 static void every_kind_of_answer_waits(void **state)
 {
     (void)state;
@@ -350,8 +350,8 @@ static void every_kind_of_answer_waits(void **state)
     close(writer);
 }
 
-/* The journal may report a lost change before or after the answer starts to wait: in neither case
- * may the answer say that the request succeeded. */
+/* The journal may report that a change is lost before or after the answer starts to wait: in
+ * neither case may the answer say that the request succeeded. */
 static void an_answer_that_shows_what_was_lost_is_503(void **state)
 {
     (void)state;
@@ -374,8 +374,8 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     assert_non_null(strstr(text, "\"code\":\"store_failed\""));
     assert_non_null(strstr(text, loss.reason));
     assert_non_null(strstr(text, "Retry-After: "));
-    /* The client that read the lost state gets 503 and must repeat its request; since this journal
-     * has not kept any state of the mesh, it then gets 404. */
+    /* The client that read the lost state gets 503, so it must repeat its request. Since the
+     * journal of this test has kept no state of the mesh, the client then gets 404. */
     assert_int_equal(answer(reader, text, sizeof text), 503);
     assert_non_null(strstr(text, "\"code\":\"store_lost\""));
     assert_non_null(strstr(text, "Retry-After: 0"));
@@ -385,7 +385,8 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     read_until(listener, "\"reason\":\"lost\"");
     assert_int_equal(answer(listener, text, sizeof text), 0);
     assert_null(strstr(text, "other"));
-    /* Changes of meshes other than "m" were not lost, so requests about them must succeed. */
+    /* The changes of other meshes than "m" were not lost, so requests about these meshes must
+     * succeed. */
     slow_journal_advance(&slow, 3);
     assert_int_equal(round_trip("PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/n", ""), 200);
@@ -401,14 +402,14 @@ static void events_wait_until_what_they_show_is_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     ask(listener, "GET", "/v1/meshes/m/events", "");
-    assert_held(listener); /* the state before the first event is not durable */
+    assert_held(listener); /* no answer yet: the state is not durable */
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     read_until(listener, ".1\n\n");
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"first\"}");
     slow_journal_wait(&slow, 2);
     assert_held(listener);
-    /* A second change is made while the event of the first change waits to be durable. */
+    /* A second change is made while the event of the first change still waits to be durable. */
     int other = connect_client();
     ask(other, "PATCH", "/v1/meshes/m", "{\"name\":\"second\"}");
     slow_journal_wait(&slow, 3);
@@ -528,8 +529,8 @@ static void a_full_queue_is_503_and_keeps_the_connection(void **state)
     assert_non_null(strstr(text, "RateLimit: \"requests\";r=9999"));
 
     open_gate();
-    /* The connection must still be open after the refusal. The queue may still be full for a
-     * moment. */
+    /* The connection must still be open after the refusal. The queue may stay full for a moment, so
+     * the request is repeated. */
     int status;
     do {
         ask(fd, "POST", "/v1/meshes", large);
@@ -547,8 +548,8 @@ static void hang_up(int fd)
     close(fd);
 }
 
-/* A client disconnects while its answer waits for the journal: stopping the server must not take
- * until the journal is ready. */
+/* A client disconnects while its answer waits for the journal: a stop of the server must not wait
+ * until the journal has made the answer's records durable. */
 static void a_stop_does_not_wait_for_a_held_client_that_hung_up(void **state)
 {
     int writer = connect_client();
@@ -612,8 +613,8 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     read_seconds = 0;
     start(state);
     slow_journal_advance(&slow, UINT64_MAX);
-    /* The mesh is so large that a read runs on a thread for long work. The time limit must apply to
-     * reads, and not to imports and edits. */
+    /* The mesh is so large that a read runs on a thread for long work. Such a read must be stopped
+     * by the time limit, but imports and edits must not be. */
     int fd = connect_client();
     ask(fd, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
     assert_int_equal(answer(fd, text, sizeof text), 201);
@@ -705,14 +706,14 @@ static void too_many_connections_are_503(void **state)
         close(fds[i]);
     }
     int status;
-    do { /* 503 until the server notices that the clients left */
+    do { /* 503 until the server notices that the clients have left */
         status = round_trip("GET", "/livez", "");
     } while (status == 503);
     assert_int_equal(status, 200);
 }
 
-/* If a refused request has a small body, the server must skip the body and keep the connection; if
- * the body is large or endless, it must send the refusal and close the connection. */
+/* If a refused request has a small body, the server must skip the body and keep the connection. If
+ * the body is large or endless, the server must send the refusal and close the connection. */
 static void a_small_refused_body_is_skipped_and_a_large_one_cut_off(void **state)
 {
     (void)state;
@@ -755,8 +756,8 @@ static void a_small_refused_body_is_skipped_and_a_large_one_cut_off(void **state
     close(fd);
 }
 
-/* If libmicrohttpd has read bytes from a socket without the check of their syntax, the request must
- * not be served. */
+/* libmicrohttpd may have read bytes from a socket whose syntax was not checked first: the request
+ * must then not be served. */
 static void a_request_that_was_not_checked_is_not_served(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Tests of the start of a store: it must compare its list of meshes with the indexes of the
- * database (sqlite_index.c), for any number of meshes. */
+/* Tests of the start of a store: it must compare the list of meshes with the indexes of the
+ * database (sqlite_index.c), whatever the number of meshes. */
 #include "tests/pace.h"
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
@@ -43,13 +43,13 @@ static void expect_start(const char *where)
     }
 }
 
-/* SQL that moves the pages which the statements before it changed from the write-ahead log into the
- * database file. It must run on the same connection, because a new one may find that the schema is
+/* SQL that moves changed pages from the write-ahead log into the database file. It must run on the
+ * connection that changed the pages, because a new connection may find that the schema is
  * damaged. */
 #define CHECKPOINT "; PRAGMA wal_checkpoint(TRUNCATE)"
 
-/* Makes a store whose list has this many meshes. Their checksums are not correct, which a start
- * does not check. */
+/* Makes a store whose list has this many meshes. The meshes have wrong checksums, but the start of
+ * a store does not check them. */
 static void make_store(size_t meshes)
 {
     char text[1024];
@@ -67,8 +67,9 @@ static void make_store(size_t meshes)
     store_sql_run(folder, text);
 }
 
-/* Finds the places where the table and its index store the id. At one place after another, flips a
- * bit of the id and requires that the store then refuses to start. Returns the number of places. */
+/* Finds the places in the database file where the table and its index store the id. At one place
+ * after another, flips a bit of the id, and requires that the store then refuses to start. Returns
+ * the number of places. */
 static unsigned expect_refusals(const char *id)
 {
     size_t size;
@@ -98,8 +99,8 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     expect_start(folder);
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
-    /* The schema of the database now names, for one index of the table, the first page of another
-     * index. */
+    /* In the schema of the database, one index of the table of meshes now has the first page of
+     * another index. */
     store_sql_run(
         folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
                 "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "

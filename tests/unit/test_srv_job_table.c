@@ -27,7 +27,7 @@ static st_pool *pool;
 static api_job_table *jobs;
 static api_service *service;
 
-static const char *key; /* Idempotency-Key of the next requests, or NULL */
+static const char *key; /* the Idempotency-Key that the next requests send, or NULL */
 
 static bool submit(void *context, const st_task *task)
 {
@@ -62,8 +62,7 @@ static int start(void **state)
     return 0;
 }
 
-/* Starts a server with a journal that makes nothing durable until the test calls
- * slow_journal_advance. */
+/* Starts a server whose journal makes nothing durable until the test calls slow_journal_advance. */
 static int start_behind(void **state)
 {
     (void)state;
@@ -112,7 +111,7 @@ static void take_facts(void *context, const api_job *job)
     *(api_job *)context = *job;
 }
 
-/* Returns the parameters for looking up the job with this id, by a client without a token. */
+/* Returns the parameters with which a client without a token looks up the job with this id. */
 static api_job_wanted wanted(const char *id)
 {
     return (api_job_wanted){.viewer = NULL, .id = id};
@@ -121,7 +120,8 @@ static api_job_wanted wanted(const char *id)
 static api_job look(const char *id)
 {
     api_job job = {.number = 0};
-    sched_yield(); /* the tests call this function in loops, beside the threads of the jobs */
+    sched_yield(); /* the tests call this function in loops, while the threads of the jobs need the
+                      processor, too */
     assert_true(api_job_find(jobs, wanted(id), take_facts, &job));
     return job;
 }
@@ -135,7 +135,7 @@ static api_job wait_for(const char *id, api_job_state state)
     return job;
 }
 
-/* Returns how many different values of its progress a job shows before it ends. */
+/* Returns how many different values of progress a job shows before it ends. */
 static size_t watch_a_job(void)
 {
     char id[API_JOB_ID + 1];
@@ -151,8 +151,8 @@ static size_t watch_a_job(void)
     return values;
 }
 
-/* On a busy machine a job may end before its progress is read often enough, so the test tries
- * several jobs. */
+/* On a busy machine a job may end before the test has read its progress often enough, so the test
+ * tries several jobs. */
 static void progress_is_seen_and_never_falls(void **state)
 {
     (void)state;
@@ -164,7 +164,7 @@ static void progress_is_seen_and_never_falls(void **state)
     print_message("note: %zu values seen\n", values);
 }
 
-/* Cancels a job at this progress. Returns false if the job ended before that. */
+/* Cancels a job when it has reached this progress. Returns false if the job ended before that. */
 static bool cancel_at(int percent)
 {
     char id[API_JOB_ID + 1];
@@ -225,8 +225,8 @@ static void an_end_is_shown_when_it_is_durable(void **state)
     do {
         job = look(first);
     } while (job.state != API_JOB_RUNNING || strcmp(job.phase, "storing") != 0);
-    /* Even a refusal may depend on a state that is not durable yet, so the end of the second job
-     * must wait, too. */
+    /* Even a refusal may depend on a state that is not durable yet, so the end of the second job,
+     * which is refused, must wait, too. */
     assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", second), 202);
     while (strcmp(look(second).phase, "storing") != 0) {
     }
@@ -393,7 +393,7 @@ static void a_stop_ends_what_waits_and_what_runs(void **state)
 
 /* --- records of jobs --- */
 
-static st_status refuses; /* result of an attempt to record a job */
+static st_status refuses; /* status that each attempt to record a job gives */
 static unsigned notes;
 
 static st_status take_note(void *self, const st_note *what, uint64_t *position)
@@ -415,8 +415,8 @@ static int start_noting(void **state)
     return 0;
 }
 
-/* A job must be recorded in the journal. If the journal is too far behind, the request must be
- * refused; if the disk is full, the job must be kept in memory only. */
+/* The start of a job must be recorded in the journal. If the journal is too far behind, the request
+ * must be refused; if the disk is full, the job must be kept in memory only. */
 static void a_job_that_cannot_be_noted(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Tests of the journal in a folder (core/journal/sqlite) without a store: records that were
- * appended must be there after a restart, and damage must be named. */
+/* Tests of the journal in a folder (core/journal/sqlite) without a store: all records that were
+ * appended must be there after a restart, and an error must say what is damaged. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -52,8 +52,8 @@ static kept_mesh mesh_as(const char *id, const he_mesh *content)
     return mesh;
 }
 
-/* The result of loading a mesh: its base (the record with a whole content), and how many records of
- * each kind follow the base. */
+/* The result of loading a mesh: its base (the record with all mesh data, from which the mesh is
+ * loaded), and how many records of each kind follow the base. */
 typedef struct loaded {
     st_status status;
     st_card card;
@@ -73,8 +73,8 @@ static void loaded_clear(loaded *l)
     he_mesh_free(l->staged_content);
 }
 
-/* Reads the next record or part of a mesh. If it is damaged, marks the mesh as damaged, as the
- * store does. */
+/* Reads the next record of a mesh, or the next part of its data. If it is damaged, marks the mesh
+ * as damaged, as the store does. */
 static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *out)
 {
     st_status status = j->read(reader, out);
@@ -84,7 +84,7 @@ static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *ou
     return status;
 }
 
-/* Reads the parts of a content, which follow its record. */
+/* Reads the parts of mesh data, which follow the record of the data. */
 static st_status load_parts(const st_journal *j, st_reader *reader, uint64_t parts, he_mesh **out)
 {
     he_stored_reader *content;
@@ -204,7 +204,8 @@ static void what_was_appended_is_there_after_a_restart(void **state)
     assert_int_equal(l.body[0], 49);
     assert_int_equal(l.card.counts.faces, he_mesh_faces(content));
     loaded_clear(&l);
-    /* After the restart, positions must continue after the last one before the restart. */
+    /* The positions of new records after the restart must be higher than all positions before the
+     * restart. */
     assert_true(kept_append(j, kept_edit(&b), &b, "x", 1) == last + 1);
     l = load(j, "b");
     assert_int_equal(l.status, ST_OK);
@@ -244,7 +245,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     st_card card;
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_ABSENT);
     assert_int_equal(j->open(j->self, "z", &card, NULL), ST_OK);
-    /* The id of a deleted mesh can be used again, with another incarnation number. */
+    /* The id of a deleted mesh can be used again. The new mesh has another incarnation number. */
     kept_mesh again = mesh_as("c", content);
     kept_append(j, kept_content(&again), &again, NULL, 0);
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_OK);
@@ -253,7 +254,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     he_mesh_free(content);
 }
 
-/* --- contents in parts, new bases, and deleting what is no longer needed --- */
+/* --- mesh data in parts, new base records, and deleting what is no longer needed --- */
 
 static he_mesh *large_mesh(void)
 {
@@ -264,7 +265,7 @@ static he_mesh *large_mesh(void)
     return mesh;
 }
 
-/* Opens the store and appends a mesh "a" with this content. */
+/* Opens the store and appends a new mesh "a" with this mesh data. */
 static kept_mesh open_with_mesh(told_journal *told, const he_mesh *content)
 {
     kept_mesh mesh = mesh_as("a", content);
@@ -282,8 +283,8 @@ static void a_staged_content_is_that_of_its_record(void **state)
     st_stage *stage;
     const st_journal *j = &told.journal;
     kept_append(j, kept_edit(&mesh), &mesh, "x", 1);
-    /* The edit replaces the content and can be undone, so the old base (the record with the whole
-     * old content) must stay. */
+    /* The edit replaces the mesh data and can be undone, so the old base (the record with all old
+     * mesh data) must stay. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     st_record record = kept_edit(&mesh);
     record.stage = stage;
@@ -294,7 +295,8 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(l.staged, 1);
     assert_true(l.base.number == 1);
     loaded_clear(&l);
-    /* A PUT replaces the content, so all earlier records of the mesh must be deleted. */
+    /* A PUT replaces the mesh data and cannot be undone, so all earlier records of the mesh must be
+     * deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     record = kept_content(&mesh);
     record.stage = stage;
@@ -310,13 +312,14 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM record"), 1);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 1);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
-    /* A content that was written to the disk but never published must be deleted. */
+    /* Mesh data that was written to the disk, but never belonged to a record, must be deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->unstage(j->self, stage);
     kept_append(j, kept_edit(&mesh), &mesh, "z", 1);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
-    /* After a mesh is deleted, none of its records and parts may be left. */
+    /* After a mesh is deleted, none of its records and none of the parts of its data may be
+     * left. */
     kept_append(j, kept_remove(&mesh), &mesh, NULL, 0);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 0);
@@ -385,7 +388,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     for (unsigned char i = 0; i < 20; i++) {
         kept_append(j, kept_edit(&mesh), &mesh, &i, 1);
     }
-    /* the new base (a record with the whole content) has the state after record 22 */
+    /* the new base (a record with all mesh data) holds the state after record 22, although records
+     * 23 and 24 follow */
     kept_mesh behind = mesh;
     st_record facts = kept_edit(&behind);
     facts.name = mesh.name;
@@ -395,7 +399,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->rebase(j->self, stage, &facts, facts.revision);
     loaded l = load(j, "a");
-    /* This load may have begun before the journal had the new base, so its result is not
+    /* The load may have begun before the journal had the new base, so the result of the load is not
      * checked. */
     loaded_clear(&l);
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "d", 1));
@@ -408,8 +412,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     loaded_clear(&l);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT min(number) FROM record"), 23);
-    /* A new base (a record with the whole content) whose number and revision are those of different
-     * records must be ignored and deleted. */
+    /* A new base (a record with all mesh data) has the number of one record and the revision of
+     * another: it must be ignored and deleted. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
@@ -494,8 +498,8 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         st_card at_once;
         assert_int_equal(j->open(j->self, "bad", &at_once, NULL), ST_DAMAGED);
         assert_true(at_once.damage[0] != '\0');
-        /* After the damage was found, the row of the mesh in the list of meshes must describe
-         * this damage. */
+        /* After damage was found in the data of a mesh, the entry of this mesh in the list of
+         * meshes must describe the damage. */
         kept_mesh other = mesh_as("other", NULL);
         he_mesh *content = script_mesh("012", NULL);
         other.content = content;
@@ -509,8 +513,8 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         assert_int_equal(l.status, ST_OK);
         assert_int_equal(l.edits, 5);
         loaded_clear(&l);
-        /* What the list of meshes says about a damaged mesh must suffice to delete it and to create
-         * it again. */
+        /* What the list of meshes says about a damaged mesh must be enough to delete the mesh and
+         * to create it again. */
         kept_mesh bad = {.incarnation = card.incarnation, .number = card.record};
         memcpy(bad.id, card.id, sizeof bad.id);
         bad.revision = card.revision;
@@ -528,7 +532,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
     }
 }
 
-/* --- starts that are refused --- */
+/* --- stores that a start must refuse --- */
 
 static void expect_refused(const char *where, const char *says)
 {
@@ -574,8 +578,8 @@ static void other_files_are_refused_by_name(void **state)
     expect_refused("/proc/1/no/folder", "cannot make");
 }
 
-/* The start must read every page of the table of keys and find the damage. Otherwise every later
- * write to the table would fail. */
+/* The start must read every page of the table of keys and so find the damage. Otherwise every later
+ * write to this table would fail. */
 static void a_damaged_table_of_keys_refuses_the_start(void **state)
 {
     (void)state;
@@ -588,9 +592,9 @@ static void a_damaged_table_of_keys_refuses_the_start(void **state)
 
 enum { EDITS = 4 };
 
-/* Opens a copy of the store whose write-ahead log is damaged. The open must fail with a message, or
- * the mesh must be marked as damaged, or every acknowledged edit must be there; returns true in the
- * last case. */
+/* Opens a copy of the store whose write-ahead log is damaged. Then either opening must fail with a
+ * message, or the mesh must be marked as damaged, or every acknowledged edit must be there. Returns
+ * true if every edit is there. */
 static bool open_copy(const char *copy, const char *what, size_t at)
 {
     st_sqlite_opened out;
@@ -613,8 +617,8 @@ static bool open_copy(const char *copy, const char *what, size_t at)
     return whole;
 }
 
-/* Makes a copy of the files that kill -9 leaves of a store with a mesh "a" and some acknowledged
- * edits. */
+/* Copies the files that a store leaves when it is killed by kill -9. The store has a mesh "a" and
+ * some acknowledged edits. */
 static void make_killed(const char *copy)
 {
     told_journal told;
@@ -703,7 +707,8 @@ static void a_flipped_bit_is_refused_or_named_or_harmless(void **state)
     folder_remove(copy);
 }
 
-/* A process may be killed while it makes a new store: the next start must begin again. */
+/* A process may be killed while it makes a new store: the next start must then make the store from
+ * the beginning. */
 static void a_store_is_new_until_its_first_start_is_over(void **state)
 {
     (void)state;

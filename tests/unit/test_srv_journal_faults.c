@@ -1,6 +1,6 @@
 /* Tests of the journal in a folder when the disk is full, slow or failing, and when memory is out:
- * records that were acknowledged must be on the disk, all others must be reported as lost, and
- * nothing else may change. */
+ * records that were acknowledged must be on the disk, all other records must be reported as lost,
+ * and nothing else may change. */
 #include "tests/disk.h"
 #include "tests/failing.h"
 #include "tests/store_folder.h"
@@ -61,7 +61,7 @@ static kept_mesh new_mesh(void)
     return (kept_mesh){.id = "a", .name = "a", .content = content, .incarnation = ++incarnations};
 }
 
-/* Opens the store and waits until a new mesh is durable in it. */
+/* Opens the store, makes a new mesh in it, and waits until the mesh is durable. */
 static kept_mesh open_with_mesh(told_journal *told, size_t queue)
 {
     kept_mesh mesh = new_mesh();
@@ -70,7 +70,7 @@ static kept_mesh open_with_mesh(told_journal *told, size_t queue)
     return mesh;
 }
 
-/* Reads a whole mesh and counts the records after its base (the record with a whole content). */
+/* Reads a whole mesh, and counts the records after its base (the record with all mesh data). */
 static st_status count_records(const st_journal *j, const char *id, unsigned *records)
 {
     st_card card;
@@ -87,7 +87,7 @@ static st_status count_records(const st_journal *j, const char *id, unsigned *re
 }
 
 /* Tries again and again to reserve space for a record, until the journal no longer refuses with
- * `refusal`, which must happen without help from the test. */
+ * `refusal`. The journal must come to this without help from the test. */
 static st_room *reserve_after(const st_journal *j, st_status refusal, bool freeing)
 {
     const st_room_need need = {.records = 1, .bytes = 16, .freeing = freeing};
@@ -100,13 +100,13 @@ static st_room *reserve_after(const st_journal *j, st_status refusal, bool freei
     return room;
 }
 
-/* --- the disk is full --- */
+/* --- a full disk --- */
 
 bool __real_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 
-/* Replaces the journal's wait by one that is a hundred times shorter. On a full disk, the journal
- * waits a second before each check for free space. */
+/* Replaces the journal's wait by a wait that is a hundred times shorter: on a full disk, the
+ * journal waits a second before each check for free space. */
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
 {
     const uint64_t now = st_clock_micros();
@@ -141,7 +141,7 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     assert_int_equal(records, 1);
     disk_fill(false);
     j->leave(j->self, reserve_after(j, ST_FULL, false));
-    /* The next record must get the number of the lost record. */
+    /* The lost record had a number: the next record must get this number again. */
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "4", 1));
     assert_int_equal(count_records(j, "a", &records), ST_OK);
     assert_int_equal(records, 2);
@@ -149,9 +149,10 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     told_end(&told);
 }
 
-/* If `no_space` is set, files other than those of SQLite get no disk space either. */
+/* If `no_space` is set, the disk has no space for files that do not belong to SQLite. */
 static _Atomic bool no_space;
-static _Atomic unsigned asked_for_space; /* requests for disk space outside of SQLite */
+static _Atomic unsigned
+    asked_for_space; /* number of requests for disk space that did not come from SQLite */
 
 int __real_fstatvfs(int file, struct statvfs *out);
 int __wrap_fstatvfs(int file, struct statvfs *out);
@@ -171,7 +172,7 @@ int __wrap_posix_fallocate(int file, off_t from, off_t size)
     return no_space ? ENOSPC : __real_posix_fallocate(file, from, size);
 }
 
-/* Identifies a folder whose syncs the test counts, and can make fail. */
+/* Identifies a folder: the test counts the syncs of this folder, and can make them fail. */
 static struct stat watched;
 static bool watched_fails;
 static unsigned watched_syncs;
@@ -191,8 +192,8 @@ int __wrap_fsync(int file)
     return watched_fails ? -1 : __real_fsync(file);
 }
 
-/* After a new folder is made, the folder above it must be synced. Otherwise a power loss could
- * remove the new folder with everything acknowledged in it. */
+/* After a new folder is made, the folder that contains it must be synced. Otherwise a power loss
+ * could remove the new folder with all acknowledged records in it. */
 static void the_folder_above_a_new_one_is_synced(void **state)
 {
     (void)state;
@@ -212,7 +213,7 @@ static void the_folder_above_a_new_one_is_synced(void **state)
         assert_true(st_sqlite_open(&options, &out));
         out.journal.close(out.journal.self);
         assert_int_equal(watched_syncs, 2);
-        /* A second start must not sync the folder above the store again. */
+        /* A second start must not sync the folder that contains the store again. */
         assert_true(st_sqlite_open(&options, &out));
         out.journal.close(out.journal.self);
         assert_int_equal(watched_syncs, 2);
@@ -229,7 +230,7 @@ static bool has_ballast(void)
 }
 
 /* The ballast is a file that only reserves disk space. If the disk is full, the start must free a
- * part of it, and deletions may use the rest. */
+ * part of the ballast, and deletions may use the rest. */
 static void a_store_starts_from_a_full_disk(void **state)
 {
     (void)state;
@@ -265,7 +266,7 @@ static st_health health_of(const st_journal *j)
 }
 
 /* On a full disk, SQLite can still write into reused space of its log, so a successful write does
- * not show that there is space again. The journal must check for free space itself. */
+ * not show that there is free space again. The journal must check for free space itself. */
 static void a_full_disk_stays_full_until_there_is_space(void **state)
 {
     (void)state;
@@ -320,8 +321,8 @@ static void rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile(voi
     assert_true(told.loss.from == last && told.loss.to == last);
     assert_int_equal(j->reserve(j->self, &removal, &room), ST_FULL);
     j->leave(j->self, left);
-    /* After some space is freed, the journal must accept deletions first, and later all other
-     * records. */
+    /* After some space is freed, the journal must first accept only deletions, and later all other
+     * records again. */
     room = reserve_after(j, ST_FULL, true);
     record = kept_remove(&mesh);
     told_wait(&told, j->append(j->self, room, &record, 1));
@@ -368,8 +369,8 @@ static void what_was_made_and_lost_was_never_there(void **state)
 
 enum { EDITS = 12 };
 
-/* Appends one record after another; the first record creates the mesh. The caller has chosen a sync
- * of the disk that fails. Returns how many records were acknowledged. */
+/* Appends one record after another, the first of which creates the mesh, while a sync of the disk
+ * that the caller has chosen fails. Returns how many records were acknowledged. */
 static unsigned append_while_failing(told_journal *told, kept_mesh *mesh)
 {
     const st_journal *j = &told->journal;
@@ -418,7 +419,7 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
         open_store(&told, 0);
         unsigned records = 0;
         st_status status = count_records(&told.journal, "a", &records);
-        /* There may be one record that was not acknowledged, because it was written before the sync
+        /* There may be one record that was not acknowledged: it was written before the sync
          * failed. */
         assert_true(status == ST_OK ? records + 1 >= acknowledged && records <= acknowledged
                                     : status == ST_ABSENT && acknowledged == 0);
@@ -430,8 +431,8 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
     assert_true(runs > EDITS && opened > EDITS);
 }
 
-/* On a full disk, the journal itself checks for free space. If the sync of such a check fails, the
- * journal must stop writing, as after any failed sync. */
+/* On a full disk, the journal checks for free space. If the sync of such a check fails, the journal
+ * must stop writing, as after any other failed sync. */
 static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
 {
     (void)state;
@@ -479,7 +480,7 @@ static void what_no_row_can_hold_is_refused_at_once(void **state)
     told_end(&told);
 }
 
-/* --- the disk is slow --- */
+/* --- a slow disk --- */
 
 static void a_slow_disk_bounds_the_queue(void **state)
 {
@@ -513,7 +514,7 @@ static void a_slow_disk_bounds_the_queue(void **state)
     assert_int_equal(j->reserve(j->self, &large, &room), ST_BEHIND);
     disk_hold(false);
     told_wait(&told, last);
-    /* A record that is larger than the limit of the queue must be accepted once the queue is
+    /* A record that is larger than the limit on the queue must be accepted as soon as the queue is
      * empty. */
     st_status status;
     while ((status = j->reserve(j->self, &large, &room)) == ST_BEHIND) {
@@ -549,8 +550,8 @@ static void one_connection_writes(void **state)
 
 /* --- memory is out --- */
 
-/* Makes each kind of change once; each may fail, so the caller must check which changes were
- * made. */
+/* Tries to make one change of each kind. Each attempt may fail, so the caller must check which
+ * changes were made. */
 static void use_all(told_journal *told, kept_mesh *mesh, unsigned *acknowledged)
 {
     const st_journal *j = &told->journal;

@@ -1,5 +1,5 @@
-/* Tests of Idempotency-Keys in the journal of a folder: a start must restore all keys of the last
- * 24 hours, or none of them. */
+/* Tests of Idempotency-Keys in the journal of a folder: a start must restore either all keys of the
+ * last 24 hours or none of them. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -44,7 +44,7 @@ static int teardown(void **state)
 typedef struct taken {
     char texts[MOST][32], holders[MOST][32];
     st_kept_key keys[MOST];
-    size_t count, most; /* `take` accepts at most `most` keys */
+    size_t count, most; /* `most`: the number of keys that `take` accepts */
 } taken;
 
 static bool take(void *context, const st_kept_key *key)
@@ -108,8 +108,8 @@ static void keys_come_back_with_what_they_were_for(void **state)
         told_end(&told);
         open_store();
     }
-    /* The keys of a mesh must be deleted with the mesh, except the key of the request that created
-     * it. */
+    /* When a mesh is deleted, its keys must be deleted, too, except the key of the request that
+     * created the mesh. */
     told_wait(&told, kept_append(&told.journal, kept_remove(&a), &a, NULL, 0));
     assert_int_equal(keys_of("a").count, 0);
     assert_int_equal(keys_of(NULL).count, 2);
@@ -152,7 +152,7 @@ static void keys_older_than_a_day_go(void **state)
     taken t = keys_of("a");
     assert_int_equal(t.count, 1);
     assert_string_equal(t.texts[0], "new");
-    /* When the newest key was appended, the two oldest rows were deleted: the key of the creation,
+    /* When the newest key was appended, the two oldest keys were deleted: the key of the creation,
      * and the oldest key of an edit. */
     assert_int_equal(keys_of(NULL).count, 0);
 }
@@ -175,7 +175,7 @@ static int64_t rows(void)
     return store_sql_number(folder, "SELECT count(*) FROM kept");
 }
 
-/* Appends the key of a request that changed nothing, so that no record has this key. */
+/* Appends the key of a request that changed nothing, so no record of a change has this key. */
 static uint64_t note(const kept_mesh *mesh, const char *text, double time)
 {
     const st_kept_key kept = {.key = {.text = text, .digest = {7, (uint64_t)time}, .time = time},
@@ -216,13 +216,14 @@ static void a_key_of_a_request_that_changed_nothing_is_kept(void **state)
 static bool count_key(void *context, const st_kept_key *key)
 {
     uint64_t *at = context;
-    assert_true(key->key.digest[1] > at[1]); /* keys must come in the order of time */
+    assert_true(key->key.digest[1] > at[1]); /* keys must come in the order of their times */
     at[1] = key->key.digest[1];
     at[0]++;
     return true;
 }
 
-/* A damaged key must be reported: otherwise its request might silently be executed again. */
+/* A damaged key must be reported: otherwise a repeated request with this key might silently be
+ * executed again. */
 static void a_damaged_key_is_told(void **state)
 {
     (void)state;

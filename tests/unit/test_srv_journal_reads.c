@@ -1,5 +1,5 @@
-/* Tests of reading a mesh from the journal of a folder: what memory it takes, what happens if the
- * mesh changes meanwhile, and that records of a newer release are left alone. */
+/* Tests of reading a mesh from the journal of a folder: how much memory it takes, what happens if
+ * the mesh changes meanwhile, and that records of a newer release stay as they are. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -48,8 +48,8 @@ static sqlite3 *open_database(void)
 
 /* --- memory --- */
 
-/* Appends edits of `each` bytes until they have `bytes` together and are on the disk, then reads
- * all of them. */
+/* Appends edits of `each` bytes, until they have `bytes` bytes together and are on the disk, then
+ * reads all these edits. */
 static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, size_t each)
 {
     const st_journal *j = &told->journal;
@@ -74,8 +74,8 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
     j->shut(reader);
 }
 
-/* The memory that SQLite allocates is never refused. If SQLite used much of a small budget to cache
- * the file, no memory would be left for meshes. */
+/* Memory that SQLite allocates is never refused, even beyond the budget. If SQLite used much of a
+ * small budget to cache the file, no memory would be left for meshes. */
 static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
 {
     (void)state;
@@ -96,7 +96,7 @@ static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
 
 /* --- meshes that change while they are read --- */
 
-/* Opens a reader of a mesh, then changes the mesh: `change` is 0 for an edit, 1 for a new content,
+/* Opens a reader of a mesh, then changes the mesh: `change` is 0 for an edit, 1 for new mesh data,
  * 2 if the mesh is deleted and created again. Then reports that the reader has found damage, and
  * returns whether the mesh that now has the id counts as damaged. */
 static bool is_condemned_after(int change, bool restarts)
@@ -209,9 +209,8 @@ static void a_record_of_a_newer_release_is_refused_with_both_versions(void **sta
     assert_int_equal(read_to_end(), ST_OK);
 }
 
-/* A content was written to the disk as a new base (the record from which a mesh is loaded), but
- * before it was used, a PUT replaced the content of the mesh: the unused content must be
- * deleted. */
+/* Mesh data was written to the disk as a new base (the record from which a mesh is loaded). Before
+ * this base was used, a PUT replaced the data of the mesh: the unused base must be deleted. */
 static void a_base_before_the_base_leaves_nothing(void **state)
 {
     (void)state;
@@ -233,8 +232,8 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 0);
 }
 
-/* Reads the mesh "a", and requires that it has its base (the record with a whole content), then
- * record 2, an edit whose parts together are `bytes`, then record 3. */
+/* Reads the mesh "a". Requires that it has its base (the record with all mesh data), then record 2,
+ * an edit whose parts have `bytes` bytes together, then record 3. */
 static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes, size_t size)
 {
     st_reader *reader = NULL;
@@ -288,7 +287,7 @@ static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
     told_open(&told, folder);
     expect_parts_of_edit(&told.journal, bytes, SIZE);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 4);
-    /* After a PUT replaces the content, the parts of old records must be deleted. */
+    /* After a PUT has replaced the mesh data, the parts of older records must be deleted. */
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     store_sql_wait_for_purge(folder, &told);
     assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 0);

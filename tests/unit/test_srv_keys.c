@@ -45,7 +45,7 @@ static void keep(st_keyed *c, const char *body, size_t length, bool changed)
     st_keyed_end(c);
 }
 
-/* Begins a request with the Idempotency-Key `text`, and at once ends it with this answer. */
+/* Begins a request with the Idempotency-Key `text`, and ends it at once with the answer `body`. */
 static void put(const char *text, const char *body, size_t length, double now)
 {
     st_keyed *c = NULL;
@@ -163,9 +163,9 @@ static void bytes_are_bounded(void **state)
     assert_int_equal(c->answer.length, ST_KEPT_BODY + 1);
     st_keyed_end(c);
 
-    /* The answer has too large a body to be kept, and the request changed nothing. It can simply be
-     * executed again, which is better than an answer without its body, so its key must not be
-     * kept. */
+    /* The request changed nothing, and the body of its answer is too large to be kept. Executing
+     * the request again is better than repeating an answer without its body, so the key of the
+     * request must not be kept. */
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);
     keep(c, body, ST_KEPT_BODY + 1, false);
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);

@@ -1,5 +1,5 @@
 /* Tests of loading meshes from the journal: a mesh that left memory after random edits and was
- * loaded again must equal the old one, and so must its history. */
+ * loaded again must equal the mesh before that, and so must its history. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/unit/edit_log.h"
@@ -124,7 +124,7 @@ static void change(st_mesh *mesh, md_random *random, unsigned serial)
     }
 }
 
-/* --- the loaded mesh equals the one that left memory --- */
+/* --- comparing the loaded mesh with the mesh that left memory --- */
 
 static he_mesh *content_of(st_mesh *mesh)
 {
@@ -148,11 +148,11 @@ static uint64_t dropped_by(st_mesh *mesh)
     return reach.dropped;
 }
 
-/* Applies undo (or redo) to both meshes as often as possible, and requires equal states. Each step
- * makes a revision, for which the histories may have to drop old entries. Some entries take more
- * bytes in one mesh than in the other, so the history of `is` may drop an entry earlier than that
- * of `was`; then the function returns false. The caller must make the journal ignore these
- * steps. */
+/* Applies undo (or redo) to the meshes `was` and `is` as often as possible, and requires equal
+ * states. Each step makes a revision, for which the histories may have to drop old entries. Since
+ * some entries take more bytes in one mesh than in the other, the history of `is` may drop an entry
+ * earlier than the history of `was`; the function then returns false. The caller must make the
+ * journal ignore these steps. */
 static bool expect_stack(st_mesh *was, st_mesh *is, st_action which)
 {
     while (writing_step(was, which, 1) == ST_OK) {
@@ -173,8 +173,8 @@ static void expect_stacks(st_mesh *was, st_mesh *is)
     }
 }
 
-/* Loads the mesh into another store, and requires that it equals the old one. Returns that
- * store. */
+/* Loads the mesh into another store, and requires that the loaded mesh equals the given one.
+ * Returns the other store. */
 static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
 {
     st_store *other = open_store(budget);
@@ -183,8 +183,8 @@ static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
     return other;
 }
 
-/* At the end of a test, requires that the loaded mesh equals the old one, and that undo and redo
- * lead both to equal states. */
+/* Called at the end of a test: requires that the loaded mesh equals the old one, and that undo and
+ * redo lead to equal states in the two meshes. */
 static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 {
     st_mesh *loaded;
@@ -198,8 +198,8 @@ static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 
 enum { ROUNDS = 12, CHANGES = 80 };
 
-/* The mesh is loaded again and again while the test changes it, and once more at the end; each time
- * the loaded mesh must equal the old one. */
+/* The test changes a mesh and loads it again and again, and once more at the end. Each time the
+ * loaded mesh must equal the changed one. */
 static void a_mesh_comes_back_as_it_was(void **state)
 {
     (void)state;
@@ -228,8 +228,8 @@ static void a_mesh_comes_back_as_it_was(void **state)
     }
 }
 
-/* A long edit makes more changes than fit into the body of a record, so the journal must store them
- * in parts. */
+/* A long edit makes more changes than fit into one record, so the journal must store the changes in
+ * parts. */
 static void a_large_edit_comes_back_from_its_parts(void **state)
 {
     (void)state;
@@ -257,7 +257,7 @@ static void a_large_edit_comes_back_from_its_parts(void **state)
     kept_journal_free(journal);
 }
 
-/* A task that signals that it has run. The pool runs the tasks of one mesh in order, so earlier
+/* A task that signals that it has run. The pool runs the tasks of one mesh in order, so all earlier
  * tasks of the mesh have then been done. */
 static void post(void *context)
 {
@@ -337,8 +337,8 @@ static void a_smaller_budget_keeps_the_newest(void **state)
     kept_journal_free(journal);
 }
 
-/* A revision that the history in memory no longer has must be read from the disk, as long as the
- * disk has its records. */
+/* A revision that is no longer in the history in memory must be read from the disk, as long as the
+ * disk has the records of the revision. */
 static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
 {
     (void)state;
@@ -378,8 +378,8 @@ static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
     kept_journal_free(journal);
 }
 
-/* Makes a mesh with many edits, without keeping undo history in memory, and waits for the store to
- * write a new base (a record with the whole content) after most of these edits. */
+/* Makes a mesh with many edits, without keeping undo history in memory. Then waits until the store
+ * has written a new base (a record with all mesh data) after most of these edits. */
 static st_mesh *make_rebased(st_store **store, st_pool **pool)
 {
     journal = kept_journal_new();
@@ -438,8 +438,8 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
         assert_int_equal(info.revision, 4);
         assert_true(i == 0 || info.modified == modified);
         modified = info.modified;
-        /* A request for a revision that does not exist must not make the store drop its copies of
-         * other revisions. */
+        /* A request for a revision that does not exist must not make the store drop the copies of
+         * other revisions that it keeps. */
         assert_int_equal(st_snapshot_at(mesh, 99, &none), ST_AHEAD);
         assert_int_equal(st_snapshot_at(mesh, 0, &none), ST_GONE);
         st_snapshot_release(snapshot);
@@ -450,8 +450,8 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
     kept_journal_free(journal);
 }
 
-/* A content was written to the disk as a new base (the record from which a mesh is loaded), but is
- * not used yet, because undo can still lead to earlier states. If the content of the mesh is
+/* Mesh data was written to the disk as a new base (the record from which a mesh is loaded). The
+ * base is not used yet, because undo can still lead to earlier states. If the data of the mesh is
  * replaced now, the unused base must be deleted. */
 static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
 {
@@ -466,13 +466,13 @@ static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
         assert_true(writing_commit(&w, "vertex_move", NULL));
     }
     await_bases(pool);
-    /* one new base is on the disk, but not in use */
+    /* one new base is on the disk, but is not used yet */
     assert_int_equal(kept_journal_out(journal), 1);
     assert_int_equal(writing_replace(mesh, script_mesh("012,023", NULL), NULL, NULL), ST_OK);
     assert_int_equal(kept_journal_out(journal), 0);
     assert_int_equal(kept_journal_facts(journal, "m").base, 1);
-    /* The replacement wrote the whole content, so the store must not write the content again as a
-     * new base. */
+    /* The replacement wrote all mesh data to the disk, so the store must not write the data again
+     * as a new base. */
     await_bases(pool);
     assert_int_equal(kept_journal_out(journal), 0);
     end_rebased(mesh, store, pool);
@@ -575,8 +575,8 @@ static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
     }
     assert_int_equal(all, 40);
     assert_int_equal(st_store_count(store), 40);
-    /* The id of a mesh that is only on the disk is in use, and the store must know that without
-     * loading the mesh. */
+    /* If a mesh is only on the disk, the store must know that its id is in use, without loading the
+     * mesh. */
     st_mesh *mesh;
     he_mesh *content = fixture_mesh("012");
     size_t opened = kept_journal_facts(journal, "m01").opened;

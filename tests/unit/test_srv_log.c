@@ -1,5 +1,5 @@
-/* Tests of the daemon's log: its lines in both formats, its levels, and what happens if no process
- * reads the pipe to which it is written. */
+/* Tests of the daemon's log: lines in both formats (text and JSON), levels, and what happens if no
+ * process reads the pipe to which the log is written. */
 #include "tests/unit/fixture.h"
 
 #include "server/log/log.h"
@@ -128,7 +128,7 @@ static void open_log(reader *r, const srv_log_settings *settings, size_t ring)
     assert_non_null(r->log);
 }
 
-/* Frees the log; returns all text that was written to it. */
+/* Frees the log, and returns all text that was written to it. */
 static const char *close_log(reader *r)
 {
     size_t got = 0;
@@ -276,8 +276,9 @@ static void *free_log(void *log)
     return NULL;
 }
 
-/* The log is not read until its ring buffer has overflowed. The lines that are read then, plus the
- * number of dropped lines that the log reports, must be the number of lines written. */
+/* The log is not read until its ring buffer has overflowed. After that, the number of lines that
+ * are read and the number of dropped lines that the log reports must add up to the number of lines
+ * written. */
 static void lines_that_find_no_place_are_counted(void **state)
 {
     (void)state;
@@ -295,8 +296,8 @@ static void lines_that_find_no_place_are_counted(void **state)
             srv_log_request(log, &sample, false);
         }
     }
-    /* To free the log, its writing thread must end, which waits for space in the pipe. So another
-     * thread frees the log while this one reads the pipe. */
+    /* Before the log is freed, its writing thread must end, and this thread waits for space in the
+     * pipe. Therefore another thread frees the log while the test reads the pipe. */
     pthread_t thread;
     const uint64_t counted = srv_log_dropped(log);
     assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);

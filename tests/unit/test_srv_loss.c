@@ -1,4 +1,4 @@
-/* Tests of what happens when the journal loses changes: everything in memory that depends on a lost
+/* Tests of what happens when the journal loses changes. Everything in memory that depends on a lost
  * change must be removed or refused: meshes, long edits, event streams, Idempotency-Keys,
  * answers. */
 #include "tests/slow_journal.h"
@@ -107,12 +107,12 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     assert_int_equal(st_write_claim(mesh, NULL, &w), ST_LOST);
     assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_LOST);
     assert_int_equal(st_listeners(store), 0);
-    /* The change of the mesh "n" was not lost, so the store must still have this mesh. */
+    /* The change of the mesh "n" was not lost, so the store must still have the mesh "n". */
     assert_int_equal(st_find(store, "n", &found), ST_OK);
     st_release(found);
     assert_false(facts(other).lost);
     (void)change(other);
-    /* Another mesh can be created with the id of the lost mesh. */
+    /* A new mesh can be created with the id of the lost mesh. */
     st_mesh *again = create("m");
     assert_true(facts(again).incarnation != facts(mesh).incarnation);
     assert_false(facts(again).lost);
@@ -120,7 +120,7 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
 }
 
 /* If a mesh was made from a changed state of another mesh, and this change is lost, the new mesh
- * must be lost, too. After the loss, making a mesh from this state must be refused. */
+ * must be lost, too. After the loss, it must be refused to make a mesh from the lost state. */
 static void nothing_is_made_of_what_was_lost(void **state)
 {
     (void)state;
@@ -129,7 +129,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     const st_shown kept = st_shown_of(&(st_mesh_info){.position = 2});
     const st_shown from[] = {kept, change(other)};
     he_mesh *content = fixture_mesh("012");
-    /* Before the change is lost, a mesh can be made from it. */
+    /* Before the change is lost, a mesh can be made from the changed state. */
     assert_int_equal(st_create_from(store, &(st_new_mesh){.id = "c", .from = &from[1]},
                                     fixture_mesh("012"), &made),
                      ST_OK);
@@ -159,7 +159,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     assert_int_equal(st_write_commit(&w, "append"), ST_LOST);
     assert_int_equal(facts(mesh).revision, 1);
     assert_true(journal.groups == groups);
-    /* A mesh can be made from the state before the lost change. */
+    /* A mesh can still be made from the state before the lost change. */
     assert_int_equal(
         st_create_from(store, &(st_new_mesh){.id = "d", .from = &from[0]}, content, &made), ST_OK);
     st_release(made);
@@ -209,8 +209,8 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* A handler paused after its commit while the disk was full, and continues when the disk has space
- * again: its answer must count as lost. */
+/* A request handler paused after its commit while the disk was full, and continues when the disk
+ * has space again: its answer must count as lost. */
 static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
 {
     (void)state;
@@ -236,7 +236,7 @@ static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
     }
 }
 
-/* During a long edit, the state from which it started is lost, so the commit of the edit must
+/* During a long edit, the state from which the edit started is lost, so the commit of the edit must
  * fail. */
 static void a_claim_of_a_lost_mesh_commits_nothing(void **state)
 {
@@ -280,8 +280,9 @@ static void listeners_are_sent_away(void **state)
     st_unfollow(mesh, &listener);
 }
 
-/* The mesh that a request created is lost. If the request is repeated with its Idempotency-Key, it
- * must be executed again; the kept answer is wrong, because the mesh does not exist. */
+/* The mesh that a request created is lost. If the request is repeated with the same
+ * Idempotency-Key, it must be executed again: the kept answer is no longer right, because the mesh
+ * does not exist. */
 static void the_key_of_a_lost_creation_is_forgotten(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* Tests of the daemon's memory: freed memory must be returned to the system when the process is
- * idle, and an error must say whether memory was refused because of the budget. */
+ * idle, and an error must say whether the memory budget was the reason why memory was refused. */
 #include "tests/unit/fixture.h"
 
 #include "api/json/problem.h"
@@ -25,10 +25,10 @@ static void pages_are_given_back_once_after_work_when_it_rests(void **state)
     assert_false(st_memory_rests(&rest, 520 * MILLIS));
 }
 
-/* The sanitizers replace the allocator of the C library, so nothing is measured with a
- * sanitizer. */
+/* The sanitizers replace the allocator of the C library, so the test measures nothing if a
+ * sanitizer is used. */
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-/* 64 MiB in all; the test frees all blocks but every 64th */
+/* 64 MiB in all; the test frees all blocks except every 64th */
 enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 };
 
 static size_t resident_bytes(void)
@@ -84,8 +84,8 @@ static bool asks_for_huge_pages(const void *address)
     return asks;
 }
 
-/* Small blocks are in the heap, where freeing them leaves room for a large block. The large block
- * must nevertheless get a mapping of its own, because huge pages are requested only for such
+/* Small blocks are in the heap, and freeing them makes room there for a large block. The large
+ * block must nevertheless get a mapping of its own, because huge pages are requested only for such
  * mappings. */
 static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **state)
 {

@@ -1,6 +1,6 @@
-/* Tests of finding the kernel's memory limit of the process, wherever it is in the tree of control
- * groups, and both outside and inside of a container. Each test makes the files of /proc and /sys
- * that it needs in a folder. */
+/* Tests of finding the kernel's memory limit of the process, wherever the limit is in the tree of
+ * control groups, both outside and inside of a container. Each test makes the files of /proc and
+ * /sys that it needs in a folder of its own. */
 #define _XOPEN_SOURCE 700 /* makes ftw.h declare nftw */
 
 #include "tests/unit/fixture.h"
@@ -126,7 +126,7 @@ static void version_1_and_a_mixed_system_are_read(void **state)
 }
 
 /* In a container with control groups of version 1, the root of the mounted tree is the container's
- * own group, but /proc shows the path that this group has on the host. */
+ * own group, but /proc shows the path of this group on the host. */
 static void a_bind_mount_of_the_own_group_is_found(void **state)
 {
     (void)state;
@@ -138,9 +138,9 @@ static void a_bind_mount_of_the_own_group_is_found(void **state)
     put("/proc/self/cgroup", "4:memory:/docker/abc/inner\n");
     put("/sys/fs/cgroup/memory/inner/memory.limit_in_bytes", "104857600\n");
     expect(100 * MIB, "/sys/fs/cgroup/memory/inner/memory.limit_in_bytes");
-    /* The group of the process is /docker/abcd/inner, which is not inside the mounted group
-     * /docker/abc although the name begins in the same way: only the limit at the root of the mount
-     * applies. */
+    /* The group of the process is /docker/abcd/inner. It is not inside the mounted group
+     * /docker/abc, although its name begins in the same way: only the limit at the root of the
+     * mount applies. */
     put("/proc/self/cgroup", "4:memory:/docker/abcd/inner\n");
     expect(300 * MIB, "/sys/fs/cgroup/memory/memory.limit_in_bytes");
 }

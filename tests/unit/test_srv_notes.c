@@ -1,5 +1,6 @@
-/* Tests of the jobs that the journal of a folder keeps: a start must restore a job as it was
- * recorded last, or as done if the change that it made was recorded, or not at all. */
+/* Tests of the jobs that the journal of a folder keeps. A start must restore a job in one of three
+ * ways: as it was recorded last; as done, if the change that the job made was recorded; or not at
+ * all. */
 #include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -41,7 +42,7 @@ static int teardown(void **state)
 enum { MOST = 8, BODY = 64 };
 
 typedef struct seen {
-    st_job jobs[MOST]; /* copies whose strings point into `texts` */
+    st_job jobs[MOST]; /* copies of the jobs; the strings of the copies are in `texts` */
     char texts[MOST][600], bodies[MOST][BODY];
     size_t count, most;
 } seen;
@@ -182,11 +183,11 @@ static void old_jobs_go_when_new_ones_come(void **state)
     }
     st_job late = accepted("late", 5);
     late.created = 1001 + ST_JOB_SECONDS;
-    note_job(&late); /* only the job "a" is too old at this time */
+    note_job(&late); /* at this time only the job "a" is old enough to be deleted */
     assert_int_equal(jobs_kept().count, 4);
     late.created = 5000 + ST_JOB_SECONDS;
     note_job(&late);
-    note_job(&late); /* each call deletes two old jobs at most */
+    note_job(&late); /* each call deletes at most two old jobs, so a second call is needed */
     const seen s = jobs_kept();
     assert_int_equal(s.count, 1);
     assert_string_equal(s.jobs[0].id, "late");
@@ -201,15 +202,15 @@ static void a_damaged_job_is_as_good_as_none(void **state)
     store_sql_run(folder, "UPDATE job SET number = 9 WHERE id = 'a'");
     store_sql_run(folder, "UPDATE job SET state = 7 WHERE id = 'b'");
     assert_int_equal(jobs_kept().count, 0);
-    /* The damaged record of a job is dropped, but the change that the job made must stay. */
+    /* The damaged record of a job must be dropped, but the change that the job made must stay. */
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
     append(&mesh, kept_content(&mesh), "a");
     assert_int_equal(told_losses(&told), 0);
     assert_int_equal(told.journal.count(told.journal.self), 1);
 }
 
-/* A database of version 1 has no table of jobs. The first start must upgrade it, and so must a
- * restore. */
+/* A database of version 1 has no table of jobs. The first start with this release must upgrade the
+ * database, and so must a restore. */
 static void an_older_file_is_raised(void **state)
 {
     (void)state;

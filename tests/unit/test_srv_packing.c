@@ -1,5 +1,5 @@
-/* Tests of compressing the parts of contents with zstd: decompressing must restore them unchanged;
- * a damaged part must be refused, without taking more memory than a part may have. */
+/* Tests of compressing the parts of mesh data with zstd: decompressing must restore the parts
+ * unchanged; a damaged part must be refused, without taking more memory than a part may have. */
 #include "journal/part_packing.h"
 #include "tests/unit/dense.h"
 #include "tests/unit/edit_script.h"
@@ -14,7 +14,8 @@
 
 static unsigned char plain[HE_STORED_PART_ROOM], packed[HE_STORED_PART_ROOM];
 
-/* Writes the first part of a mesh with many faces to `plain` and `packed`, and returns its size. */
+/* Writes the first part of a mesh with many faces to `plain`, compresses it to `packed`, and
+ * returns the uncompressed size. */
 static size_t make_part(unsigned *coding)
 {
     he_mesh *mesh = dense_grid(64, NULL, 1);
@@ -93,8 +94,8 @@ static void what_would_be_longer_than_a_part_is_refused(void **state)
     expect_refused("not a frame at all", 18, "not a zstd frame");
 }
 
-/* A part with a changed byte must either be refused with a reason or decompress to at most the size
- * that a part may have. */
+/* A compressed part with a changed byte must either be refused with a reason or decompress to at
+ * most the size that a part may have. */
 static void a_damaged_part_stays_within_its_room(void **state)
 {
     (void)state;

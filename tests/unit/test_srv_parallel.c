@@ -1,5 +1,5 @@
-/* Tests of parallel work: each part of the work must run exactly once, on any thread, and the
- * result must not depend on the number of threads. */
+/* Tests of parallel work: each part of the work must run exactly once, on any of the threads, and
+ * the result must not depend on the number of threads. */
 #include "tests/unit/fixture.h"
 
 #include "algo/subdivide.h"
@@ -23,7 +23,7 @@ typedef struct tally {
     _Atomic uint32_t runs[PARTS];
     /* NULL, or a pool on which each part of the work runs further parts */
     const he_parallel *parallel;
-    uint32_t failing; /* parts of the work with this index or a higher one fail */
+    uint32_t failing; /* parts of the work fail if their index is this number or higher */
 } tally;
 
 static he_status count_part(void *context, uint32_t part, he_error *err)
@@ -147,14 +147,14 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
 
 /* --- parallel algorithms of core --- */
 
-/* The meshes of the tests are so large that they are worked on in many parts. If `shuffled` is set,
- * vertices and faces are in random order. */
+/* SIDE makes the meshes of the tests so large that they are divided into many parts of work. If
+ * `shuffled` is set, vertices and faces are in random order. */
 enum { SIDE = 220 };
 
 static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
 {
-    /* The prime 7919 divides no `count` of this test, so different values of i give different
-     * results. */
+    /* `count` is never a multiple of the prime 7919 in this test, so different values of i give
+     * different results. */
     return shuffled ? (uint32_t)((uint64_t)i * 7919u % count) : i;
 }
 
@@ -238,8 +238,8 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
     }
 }
 
-/* Returns an array with the normals of all faces, followed by those of all corners; the caller must
- * free it. */
+/* Returns an array with the normals of all faces, followed by the normals of all corners. The
+ * caller must free the array. */
 static he_vec3 *normals_of(const he_mesh *mesh, he_progress *progress)
 {
     size_t faces = he_mesh_issued(mesh, HE_FACE),
@@ -253,7 +253,7 @@ static he_vec3 *normals_of(const he_mesh *mesh, he_progress *progress)
 
 enum { SCHEMES = HE_SQRT3 - HE_LOOP + 1 };
 
-/* The result of a subdivision, or its error: the scheme `loop` refuses faces that are not
+/* The result of a subdivision, or its error, since the scheme `loop` refuses faces that are not
  * triangles. */
 typedef struct subdivided {
     he_mesh *mesh;
@@ -319,8 +319,8 @@ static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **sta
 static void defects_are_the_same_on_1_2_and_8_threads(void **state)
 {
     (void)state;
-    /* Three faces, each of which adds a defect to the mesh: the first two have edges that two faces
-     * use already, the last one gives a vertex a second fan. */
+    /* Three faces, each of which adds a defect to the mesh: the first two have edges that two other
+     * faces use already, and the third gives a vertex a second fan of faces. */
     static const uint32_t extra[3][3] = {{0, 1, 5000}, {0, SIDE, SIDE + 1}, {9, 10, 11}};
     for (int which = 0; which < 3; which++) {
         static he_report alone, report;

@@ -141,8 +141,8 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
     remove_files(inner, inside);
     remove_files(folder, outside);
 
-    /* The folder of the web page does not exist any more: the server must show a notice in its
-     * place, and give the reason in a sentence. */
+    /* The folder of the web page does not exist any more. The server must show a notice instead of
+     * the page, and give the reason in a sentence. */
     assets = srv_assets_load(folder, message, sizeof message);
     assert_true(strlen(message) > 0);
     assert_true(find(assets, "/", &f));
@@ -187,7 +187,8 @@ static void a_connection_is_late_after_the_limit_of_its_stage(void **state)
             fail_msg("row %zu", i);
         }
     }
-    /* Calls for a connection without a record of its deadlines must not crash. */
+    /* A connection may have no record of its deadlines: calls with NULL for the record must not
+     * crash. */
     srv_connection_enter(NULL, SRV_STAGE_BODY, 0);
     srv_connection_moved(NULL, 1);
 }
@@ -199,8 +200,8 @@ static void a_reader_is_stuck_only_if_it_reads_too_slowly(void **state)
     srv_connection c = {0};
     assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(1)));
     assert_false(srv_connection_is_stuck(&c, &o, 100, 10, SECONDS(5)));
-    /* A client that reads 6000 bytes in 5 seconds is fast enough, and its speed is measured from
-     * zero again. */
+    /* A client that reads 6000 bytes in 5 seconds is fast enough; after that, the measurement of
+     * its speed begins again. */
     assert_false(srv_connection_is_stuck(&c, &o, 100, 6000, SECONDS(6)));
     assert_false(srv_connection_is_stuck(&c, &o, 100, 6100, SECONDS(10)));
     assert_true(srv_connection_is_stuck(&c, &o, 100, 7000, SECONDS(11)));
@@ -212,8 +213,8 @@ static void a_reader_is_stuck_only_if_it_reads_too_slowly(void **state)
     assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(200)));
 }
 
-/* Connects two sockets and returns the client's; `c` becomes the record of the server's socket,
- * which entered its present stage at the time `since`. */
+/* Connects two sockets and returns the client's socket. `c` becomes the record of the server's
+ * socket; the connection has been in its present stage since the time `since`. */
 static int connect_pair(srv_connection *c, uint64_t since)
 {
     struct sockaddr_in address = {.sin_family = AF_INET};
@@ -237,8 +238,8 @@ static void a_client_that_closed_its_side_waits_for_a_second(void **state)
     srv_connection c;
     int client = connect_pair(&c, SECONDS(100));
     assert_false(srv_connection_is_left(&c, SECONDS(200)));
-    /* The client sends more bytes after its request and then closes the connection. The server must
-     * notice that it has closed although the bytes are not read. */
+    /* The client sends more bytes after its request and then closes its sending side. The server
+     * must notice this although it does not read the bytes. */
     assert_int_equal(send(client, "next", 4, MSG_NOSIGNAL), 4);
     assert_int_equal(shutdown(client, SHUT_WR), 0);
     assert_false(srv_connection_is_left(&c, SECONDS(100)));
@@ -248,8 +249,8 @@ static void a_client_that_closed_its_side_waits_for_a_second(void **state)
     close(c.socket);
 }
 
-/* The buffer of a Unix socket takes fewer small messages than their bytes suggest, because the
- * kernel counts its own data for each message, too. */
+/* The buffer of a Unix socket holds fewer small messages than the size of their bytes suggests,
+ * because the kernel also counts its own data for each message. */
 static void a_last_answer_fits_beside_those_not_read_yet(void **state)
 {
     (void)state;

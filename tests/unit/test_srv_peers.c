@@ -1,5 +1,5 @@
 /* Tests of counting the connections of each address: which addresses count as one, how many
- * connections each one has, and what happens if the table is full or memory is out. */
+ * connections each address has, and what happens if the table is full or memory is out. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 
@@ -39,7 +39,8 @@ static void an_address_is_a_client_and_of_ipv6_a_network_is(void **state)
     }
 }
 
-/* Connections come and leave at random; the counts are compared with those in a simple array. */
+/* Connections come and leave at random. The counts in the table are compared with the counts in a
+ * simple array. */
 static void each_address_has_the_connections_that_came_and_did_not_leave(void **state)
 {
     (void)state;
@@ -79,8 +80,8 @@ static void each_address_has_the_connections_that_came_and_did_not_leave(void **
     srv_peers_free(peers);
 }
 
-/* A connection for which the table has no place must not be counted, and closing it must change no
- * count. */
+/* If the table has no free entry for the address of a connection, the connection must not be
+ * counted, and closing it must change no count. */
 static void a_full_table_counts_those_it_has(void **state)
 {
     (void)state;
@@ -113,7 +114,7 @@ static void a_table_without_memory_is_none(void **state)
         failing_end(&f, peers != NULL);
         srv_peers_free(peers);
     }
-    /* each of three allocations has failed once: the table, its hash heads and its entries */
+    /* each of the three allocations has failed once: the table, its hash heads and its entries */
     assert_int_equal(f.n, 4);
 }
 

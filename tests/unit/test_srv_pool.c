@@ -1,5 +1,6 @@
-/* Tests of the thread pool: in which order tasks run, and which tasks may occupy all threads. Tasks
- * that a test wants to block wait at a condition, the gate, until the test opens it. */
+/* Tests of the thread pool: in which order tasks run, and which tasks may occupy all threads. A
+ * task that a test wants to block waits for a condition variable (the gate), until the test opens
+ * the gate. */
 #include "system/thread_pool.h"
 
 #include "api/describe/routes.h"
@@ -102,8 +103,8 @@ static void submit(st_pool *pool, const char *name, double cost, uint64_t flow)
         pool, &(st_task){.work = note, .context = (void *)name, .cost = cost, .flow = flow}));
 }
 
-/* Four threads: at most two may run long reads, at most two may run jobs, and at least one must
- * stay free for brief work. */
+/* The pool has four threads: at most two may run long reads, at most two may run jobs, and at least
+ * one must stay free for brief work. */
 static void long_work_leaves_a_thread_to_brief_work(void **state)
 {
     (void)state;
@@ -156,7 +157,8 @@ static void a_full_queue_refuses_its_own_share_only(void **state)
     assert_string_equal(order, "b");
 }
 
-/* Makes a pool of one thread, which is blocked while the test submits further tasks. */
+/* Makes a pool of one thread, which is blocked until the gate is opened, so that the test can
+ * submit further tasks before they run. */
 static st_pool *one_at_gate(void)
 {
     st_pool *pool = st_pool_new("test", 1, ROOM);
@@ -204,8 +206,8 @@ static void a_flow_keeps_its_order(void **state)
     assert_string_equal(order, "123");
 }
 
-/* A chain of short tasks, in which each task submits the next one, so that one of them is always
- * waiting. */
+/* A chain of short tasks, in which each task submits the next one, so that one task of the chain is
+ * always waiting. */
 typedef struct stream {
     st_pool *pool;
     int left;
@@ -237,7 +239,7 @@ static void long_work_is_not_passed_over_for_ever(void **state)
     assert_in_range(at - order, 9, 11);
 }
 
-/* The number of calls of pthread_cond_signal by the pool; the linker redirects them to
+/* How often the pool has called pthread_cond_signal; the linker redirects these calls to
  * __wrap_pthread_cond_signal. */
 static _Atomic int signals;
 int __real_pthread_cond_signal(pthread_cond_t *condition);
@@ -249,7 +251,8 @@ int __wrap_pthread_cond_signal(pthread_cond_t *condition)
     return __real_pthread_cond_signal(condition);
 }
 
-/* A thread must be woken only when a task is submitted that may begin, and not when a task ends. */
+/* A thread must be woken only when a task is submitted that may begin at once, and not when a task
+ * ends. */
 static void a_thread_is_woken_only_for_something_to_do(void **state)
 {
     (void)state;
@@ -263,8 +266,8 @@ static void a_thread_is_woken_only_for_something_to_do(void **state)
     }
     assert_in_range(atomic_load(&signals), 0, TASKS);
 
-    /* Two long reads are blocked, as many as may run at once. Submitting further long reads must
-     * wake no thread. */
+    /* Two long reads are blocked, and no more than two may run at once. Submitting further long
+     * reads must therefore wake no thread. */
     send_to_gate(pool, ST_SHARE_LONG);
     send_to_gate(pool, ST_SHARE_LONG);
     await_at_gate(ST_SHARE_LONG, 2);
@@ -285,7 +288,7 @@ static void a_flow_is_a_client_with_a_mesh(void **state)
     assert_true(st_pool_flow("a", "") != st_pool_flow("", "a"));
 }
 
-/* The pool of this test has one task that runs and one that waits, and has refused one. */
+/* The pool of this test has one running task and one waiting task, and has refused one task. */
 static void the_page_of_metrics_has_the_numbers_of_a_pool(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* Tests of the facts about a client that the server takes from the headers of a trusted proxy, and
- * of the headers that it must not believe a client. */
+/* Tests of the facts about a client (such as its address) that the server takes from the headers of
+ * a trusted proxy, and of the headers that the server must not believe if the client itself sends
+ * them. */
 #include "tests/unit/fixture.h"
 
 #include "server/net/proxy.h"
@@ -52,8 +53,8 @@ static void what_is_no_network_is_refused(void **state)
 }
 
 typedef struct told {
-    const char *lines[3]; /* lines of the request's header, "Name: value" */
-    const char *address;  /* client's address; NULL if the request is refused */
+    const char *lines[3]; /* header lines of the request, each in the form "Name: value" */
+    const char *address;  /* expected address of the client; NULL if the request must be refused */
     srv_scheme scheme;
 } told;
 

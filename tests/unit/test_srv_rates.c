@@ -1,6 +1,6 @@
 /* Tests of the token buckets that limit the requests and bytes of clients, with a clock that the
- * test sets: which requests are admitted, how long a debt lasts, which bucket is dropped when the
- * table is full, and what the header fields say. */
+ * test sets: which requests are admitted, how long a bucket stays in debt, which bucket is dropped
+ * when the table is full, and what the header fields say. */
 #include "unit/fixture.h"
 
 #include "api/limit/rate.h"
@@ -57,7 +57,7 @@ static void a_bucket_lets_its_burst_in_and_then_its_rate(void **state)
         assert_true(admit(rates, 1, &rate, START + 100 * SECOND, &said));
     }
     assert_false(admit(rates, 1, &rate, START + 100 * SECOND, &said));
-    assert_true(admit(rates, 2, &rate, START, &said)); /* another client has its own bucket */
+    assert_true(admit(rates, 2, &rate, START, &said)); /* another client has a bucket of its own */
     api_rates_free(rates);
 }
 
@@ -75,12 +75,13 @@ static void bytes_make_a_debt_that_is_paid_before_another_request(void **state)
     assert_int_equal(said.requests.reset, 0); /* 0 because requests are not limited */
     charge(rates, 1, &rate, 50001, START);
     assert_false(admit(rates, 1, &rate, START, &said));
-    assert_int_equal(said.bytes.wait, 51); /* seconds until the bucket has a byte, rounded up */
+    assert_int_equal(said.bytes.wait,
+                     51); /* seconds until the bucket holds a byte again, rounded up */
     assert_int_equal(said.bytes.reset, 60);
     assert_false(admit(rates, 1, &rate, START + 50 * SECOND, &said));
     assert_true(admit(rates, 1, &rate, START + 50 * SECOND + 1000, &said));
-    /* A charge that no bucket could ever pay must be a debt for ever, and no number may
-     * overflow. */
+    /* If a charge is so large that no bucket could ever pay it, the debt must last for ever, and no
+     * number may overflow. */
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     assert_false(admit(rates, 1, &rate, START + 1000 * SECOND, &said));
@@ -118,7 +119,8 @@ static void new_limits_hold_at_once_for_a_bucket_that_is_there(void **state)
     assert_true(admit(rates, 1, &small, START, &said));
     assert_true(admit(rates, 1, &small, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    /* the bucket admits two more requests, not four, because two were made before */
+    /* the bucket admits two more requests, not four, because it admitted two before the limits
+     * changed */
     assert_true(admit(rates, 1, &large, START, &said));
     assert_true(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &large, START, &said));
@@ -150,19 +152,19 @@ static void of_a_full_table_the_oldest_full_bucket_goes(void **state)
     api_rate_state said;
     assert_non_null(rates);
     assert_true(admit(rates, 1, &rate, START, &said));
-    charge(rates, 1, &rate, 1000, START); /* this debt of client 1 lasts long */
+    charge(rates, 1, &rate, 1000, START); /* the debt of client 1 will last long */
     assert_true(admit(rates, 2, &rate, START, &said));
     assert_true(admit(rates, 3, &rate, START, &said));
     assert_int_equal(api_rates_count(rates), 3);
-    /* The buckets of clients 2 and 3 are full again. The bucket of 2 was used earlier, so it must
-     * be dropped to make room. */
+    /* The buckets of clients 2 and 3 are full again. The bucket of client 2 was used earlier than
+     * that of client 3, so the bucket of client 2 must be dropped to make room. */
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(api_rates_count(rates), 3);
     assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 3, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
-    /* Since no bucket is full, the one that was used longest ago must be dropped; its client then
-     * gets a new, full bucket. */
+    /* No bucket is full, so the bucket that was not used for the longest time must be dropped. Its
+     * client then gets a new, full bucket. */
     assert_true(admit(rates, 5, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
@@ -175,9 +177,10 @@ enum { CLIENTS = 14, ROOM = 10 };
 
 typedef struct naive {
     bool is_there;
-    uint64_t requests, bytes; /* what was taken from the bucket, in millionths */
-    uint64_t used;            /* number of the last step that used the bucket */
-    api_rate rate;            /* rate at the last use */
+    uint64_t requests,
+        bytes;     /* how much was taken from the bucket, in millionths of a request or byte */
+    uint64_t used; /* number of the last step that used the bucket */
+    api_rate rate; /* rate at the last use */
 } naive;
 
 static naive world[CLIENTS];
@@ -256,8 +259,8 @@ static bool expect_admit(naive *n)
 static void random_steps_agree_with_a_slow_oracle(void **state)
 {
     (void)state;
-    /* The limits of a client must stay the same during this test, because the model fills a bucket
-     * at the rate of its last use. */
+    /* Each client must have the same limits during the whole test, because the model always fills a
+     * bucket at the rate of its last use. */
     static const api_rate kinds[] = {{.requests = 2000, .seconds = 1},
                                      {.bytes = 50000, .seconds = 1},
                                      {.requests = 900, .bytes = 30000, .seconds = 2},
@@ -459,7 +462,7 @@ static void a_request_costs_as_much_among_many_clients_as_among_few(void **state
     }
     printf("note: limits cost a request %.2f us with 16 clients, %.2f us with %d\n", costs[0],
            costs[1], API_ADDRESS_RATES);
-    /* a generous limit, for sanitizers on slow machines */
+    /* the limit is generous, because sanitizers and some machines are slow */
     assert_true(costs[0] < 20 && costs[1] < 20);
 }
 

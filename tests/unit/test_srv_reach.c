@@ -1,5 +1,5 @@
-/* Tests of how far back the changes of a mesh can be read: to the oldest whole content on the disk,
- * even if memory holds only a few of the changes. */
+/* Tests of how far back the changes of a mesh can be read: as far as the oldest complete mesh data
+ * on the disk, even if memory holds only a few of the changes. */
 #include "tests/kept_journal.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -40,7 +40,7 @@ static he_mesh *content_of(st_mesh *mesh)
     return copy;
 }
 
-/* Reads all changes since the first revision, as a client does that missed many events. */
+/* Reads all changes since the first revision, like a client that has missed many events. */
 static void follow_all(st_mesh *mesh, he_mesh *const at[], uint64_t last)
 {
     st_cursor *cursor;
@@ -86,7 +86,7 @@ static void what_memory_has_dropped_is_followed_from_the_disk(void **state)
         store = open_store();
         mesh = load(store);
     }
-    /* After the content was replaced, the history must begin with the new content. */
+    /* After the mesh data was replaced, the history must begin with the new data. */
     assert_int_equal(writing_replace(mesh, content_of(mesh), NULL, NULL), ST_OK);
     st_history reach;
     st_cursor *gone;

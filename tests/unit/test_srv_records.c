@@ -1,5 +1,5 @@
-/* Tests of the records that the store gives to the journal: they alone must suffice to restore a
- * mesh. */
+/* Tests of the records that the store gives to the journal: a mesh must be restorable from its
+ * records alone. */
 #include "tests/slow_journal.h"
 #include "tests/unit/dense.h"
 #include "tests/writing.h"
@@ -57,8 +57,8 @@ static he_mesh *copy_of_content(void)
     return copy;
 }
 
-/* Requires that the newest record has these properties and the present name, revision and other
- * facts of the mesh; returns the record. */
+/* Requires that the newest record has these properties, and that it names the present name,
+ * revision and counts of the mesh. Returns the record. */
 static const st_record *expect(st_record_kind kind, bool barrier, const char *ops, uint64_t inverts)
 {
     const st_record *r = &journal.record;
@@ -88,8 +88,8 @@ static const st_record *expect(st_record_kind kind, bool barrier, const char *op
     return r;
 }
 
-/* Requires that the newest record is an edit whose body transforms `before` into the present
- * state. */
+/* Requires that the newest record is an edit, and that its body transforms `before` into the
+ * present state of the mesh. */
 static void expect_edit(he_mesh *before, bool barrier, const char *ops)
 {
     const st_record *r = expect(ST_RECORD_EDIT, barrier, ops, 0);
@@ -169,7 +169,7 @@ static void a_mesh_can_be_made_again_from_its_records(void **state)
     assert_null(expect(ST_RECORD_REMOVE, false, "", 0)->body);
 }
 
-/* The record of an edit that is too large for the undo history must say so, so that no later start
+/* If an edit is too large for the undo history, its record must say so, so that no later start
  * offers to undo the edit. */
 static void an_edit_beyond_the_undo_budget_says_so(void **state)
 {
@@ -182,7 +182,7 @@ static void an_edit_beyond_the_undo_budget_says_so(void **state)
     expect_edit(before, true, "face_poke");
 }
 
-/* --- large contents, which are written to the disk before their record --- */
+/* --- large mesh data, which is written to the disk before its record --- */
 
 static he_mesh *large(void)
 {
@@ -234,7 +234,8 @@ static void a_large_content_is_staged(void **state)
     compact_claimed(&w);
     assert_int_equal(st_write_commit(&w, "compact"), ST_OK);
     expect_staged(ST_RECORD_EDIT, true, "compact");
-    /* A large edit that keeps the content must be encoded without holding the lock of the mesh. */
+    /* A large edit that does not replace the mesh data must be encoded without holding the lock of
+     * the mesh. */
     claim(&w);
     assert_int_equal(he_face_poke(w.content, (he_face){0}, NULL, NULL, NULL, NULL, NULL), HE_OK);
     he_mesh *before = copy_of_content();
@@ -245,8 +246,8 @@ static void a_large_content_is_staged(void **state)
     st_mesh *made = NULL;
     assert_int_equal(st_create(store, "n", NULL, large(), NULL, &made), ST_OK);
     assert_non_null(slow_journal_staged(&journal));
-    /* The id of the new mesh is in use. The content that was written to the disk for it must be
-     * released. */
+    /* The id that the new mesh should get is in use. The mesh data that was already written to the
+     * disk for the new mesh must be released. */
     he_mesh *again = large();
     assert_int_equal(st_create(store, "n", NULL, again, NULL, &made), ST_TAKEN);
     assert_int_equal(journal.out, 0);
@@ -273,10 +274,10 @@ static void a_refused_stage_changes_nothing(void **state)
     assert_true(journal.groups == groups);
     assert_true(he_mesh_equal(before, st_read_begin(mesh, NULL)));
     st_read_end(mesh);
-    /* The commit was refused, but it ended the long edit, so another one can begin. */
+    /* The commit was refused, but it ended the long edit, so another long edit can begin. */
     compact_claimed(&w);
-    /* If the mesh is deleted during a long edit, the content that the edit has written to the disk
-     * must be released. */
+    /* If the mesh is deleted during a long edit, the mesh data that the edit has written to the
+     * disk must be released. */
     assert_int_equal(writing_remove(mesh), ST_OK);
     assert_int_equal(st_write_commit(&w, "compact"), ST_ABSENT);
     assert_int_equal(journal.out, 0);
@@ -284,8 +285,8 @@ static void a_refused_stage_changes_nothing(void **state)
     he_mesh_free(other);
 }
 
-/* Each allocation of a long edit fails in turn, including those of the journal: the edit must be
- * refused, and nothing may change. */
+/* Each allocation during a long edit fails in turn, including the allocations of the journal: the
+ * edit must be refused, and nothing may change. */
 static void every_allocation_of_a_claim_may_fail(void **state)
 {
     (void)state;

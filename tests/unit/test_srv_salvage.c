@@ -102,7 +102,8 @@ static void read_one(st_store *store, const st_card *card, found *f)
     st_release(mesh);
 }
 
-/* Recovers everything that can be read. Returns false if the file is refused as a whole. */
+/* Recovers everything that can be read from the store. Returns false if the database file is
+ * refused as a whole. */
 static bool read_all(const char *file, found *f)
 {
     st_sqlite_opened out;
@@ -128,8 +129,8 @@ static bool read_all(const char *file, found *f)
     return true;
 }
 
-/* The test overwrites each page of the file in turn. Only what was on this page may be lost;
- * everything else must be recovered. */
+/* The test overwrites each page of the database file in turn. Only what was on this page may be
+ * lost; everything else must be recovered. */
 static void a_damaged_page_costs_what_was_on_it(void **state)
 {
     (void)state;
@@ -152,24 +153,25 @@ static void a_damaged_page_costs_what_was_on_it(void **state)
             refused++;
             continue;
         }
-        /* If the page was in use, damage must be reported; if it was free, all meshes must be
-         * recovered. */
+        /* If the overwritten page was in use, damage must be reported; if the page was free, all
+         * meshes must be recovered. */
         assert_true(f.faults > 0 || f.whole == MESHES);
         named += f.faults > 0;
         if (f.listed < MESHES / 2) {
-            lists++; /* the page leads to all rows of the list of meshes */
+            lists++; /* all entries of the list of meshes are reached through the overwritten page
+                      */
         } else if (f.whole + f.part >= MESHES / 2) {
             least = f.whole < least ? f.whole : least;
         } else {
-            lists++; /* the page leads to all records */
+            lists++; /* all records are reached through the overwritten page */
         }
     }
     printf("note: %zu pages: %u refused, %u named, %u led to all of a table; else %u of %d meshes "
            "at least are whole\n",
            size / PAGE, refused, named, lists, least, MESHES);
     assert_int_equal(refused, 1);
-    /* At most three pages may lead to a whole table: the first page of the table of meshes, the
-     * first page of the table of records, and one page to which that page leads. */
+    /* There may be at most three pages through which a whole table is reached: the first page of
+     * the table of meshes, the first page of the table of records, and one page below that. */
     assert_true(lists <= 3);
     assert_true(named + refused + 8 > size / PAGE);
     assert_true(least > MESHES / 2);

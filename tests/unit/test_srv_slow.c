@@ -1,6 +1,6 @@
 /* Tests of the log line about a slow request, which divides the request's time into parts: time
- * that is spent in one part must be shown in that part. The test moves the clock, so it takes no
- * long time itself. */
+ * that passes in one part must be shown for that part. The test moves the clock, so it does not
+ * take long itself. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -19,8 +19,8 @@
 
 /* --- a clock that the test moves --- */
 
-/* The test moves the clock by an hour. Even on a busy machine, no part of a request really takes a
- * tenth of an hour. */
+/* The time by which the test moves the clock, one hour. Even on a busy machine, no part of a
+ * request really takes a tenth of an hour. */
 static const uint64_t passing = UINT64_C(3600) * 1000000;
 
 typedef enum moment { NEVER, AT_LOCK, AT_WORK, AT_POOL, AT_STORE } moment;
@@ -34,7 +34,8 @@ static void pass(void)
     atomic_fetch_add(&passed, passing);
 }
 
-/* Moves the clock, once, when the server reaches the point that the test has stored in `armed`. */
+/* If the server has reached the point that the test stored in `armed`, moves the clock, but only
+ * once. */
 static void come_to(moment here)
 {
     moment expected = here;
@@ -143,8 +144,8 @@ static int start(void **state)
     return 0;
 }
 
-/* Stops the server and checks its log: it must have one line, the request must have spent its time
- * in this part, and all parts must add up to the whole time. */
+/* Stops the server and checks its log: the log must have one line, the request must have spent its
+ * time in the part named `part`, and all parts must add up to the whole time. */
 static void stop_and_find(const char *part)
 {
     static const char *const parts[] = {"receive_us", "queue_us", "lock_us",
@@ -216,7 +217,7 @@ static void send_text(int fd, const char *text)
     assert_int_equal(send(fd, text, strlen(text), MSG_NOSIGNAL), strlen(text));
 }
 
-/* Sends a request after whose answer the server closes the connection. */
+/* Sends a request with a header that makes the server close the connection after its answer. */
 static void ask(int fd, const char *method, const char *path, const char *body)
 {
     char request[1024];
@@ -227,8 +228,8 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     send_text(fd, request);
 }
 
-/* Reads until the server closes the connection, then closes the client's socket and returns the
- * number of bytes that were read. */
+/* Reads until the server closes the connection, then closes the client's socket. Returns the number
+ * of bytes that were read. */
 static size_t read_all(int fd)
 {
     static char bytes[1 << 16];
@@ -260,7 +261,7 @@ static void put_mesh(const char *body)
 
 /* --- one test for each part of the time --- */
 
-/* The server sends 100 Continue when it has read the headers and waits for the body. */
+/* The server sends 100 Continue when it has read the request's headers and waits for the body. */
 static void time_in_which_the_body_arrives_is_to_receive(void **state)
 {
     (void)state;
@@ -280,7 +281,7 @@ static void time_before_a_thread_is_free_is_in_the_queue(void **state)
 {
     (void)state;
     atomic_store(&armed, AT_POOL);
-    /* making such a large mesh runs on a thread for long work */
+    /* the mesh is so large that the request runs on a thread for long work */
     put_mesh("{\"shape\":\"icosphere\",\"subdivisions\":5}");
     assert_int_equal(sem_trywait(&reached), 0);
     stop_and_find("queue_us");

@@ -1,7 +1,7 @@
 /* Tests of a store on a disk in which each allocation fails in turn, whether the store or SQLite
  * makes it, on any thread. Each request must be executed completely or not at all. The mesh in
- * memory, the mesh loaded again and the mesh after a restart must have exactly the changes of the
- * requests that succeeded. */
+ * memory, the mesh after it left memory and was loaded again, and the mesh after a restart must
+ * have exactly the changes of the requests that succeeded. */
 #include "tests/failing.h"
 #include "tests/store_folder.h"
 #include "tests/unit/dense.h"
@@ -16,7 +16,7 @@
 
 static char folder[FOLDER_PATH];
 static st_store *store;
-static he_mesh *large; /* a content so large that it is stored in parts */
+static he_mesh *large; /* a mesh so large that its data is stored in parts */
 
 /* --- the store --- */
 
@@ -36,17 +36,17 @@ static void close_store(void)
     store = NULL;
 }
 
-/* --- the state that the successful requests should have made --- */
+/* --- the state that must result from the requests that succeeded --- */
 
 enum { STEPS = 4 };
 
 typedef struct expected {
     bool made;         /* whether the mesh "n" exists */
     uint64_t revision; /* revision of the mesh "m" */
-    double x;          /* x of vertex 0 of the mesh "m" */
+    double x;          /* x coordinate of vertex 0 of the mesh "m" */
     uint32_t vertices;
-    /* x of vertex 0 after each possible undo and redo; the last element is for the next undo or
-     * redo */
+    /* x coordinate of vertex 0 after each possible undo and redo; the last element of an array
+     * belongs to the next undo or redo */
     double undo[STEPS], redo[STEPS];
     uint32_t undos, redos;
     bool renamed;
@@ -127,8 +127,8 @@ static void rename_mesh(st_mesh *mesh, expected *e)
     }
 }
 
-/* Replaces the content as a PUT does, which writes it to the disk without holding a lock; frees
- * `content`. */
+/* Replaces the mesh data as a PUT does: the new data `content` is written to the disk without
+ * holding a lock. Frees `content`. */
 static void replace(st_mesh *mesh, he_mesh *content, expected *e)
 {
     const double x = he_position(content, (he_vertex){0}).x;
@@ -187,8 +187,8 @@ static void evict(void)
     assert_int_equal(st_find(store, "m", &mesh), ST_COLD);
 }
 
-/* Returns the mesh "m", loading it if it is not in memory; NULL if there is no memory to load
- * it. */
+/* Returns the mesh "m", and loads it if it is not in memory. Returns NULL if there is not enough
+ * memory to load it. */
 static st_mesh *load(const expected *e)
 {
     st_mesh *mesh = NULL;
@@ -238,7 +238,7 @@ static void list(const expected *e)
     }
 }
 
-/* Makes each kind of request once, while the store's own threads run; frees `content`. */
+/* Makes one request of each kind, while the store's own threads run. Frees `content`. */
 static void use_all(he_mesh *content, expected *e)
 {
     st_mesh *mesh = load(e);
@@ -283,9 +283,10 @@ static void make_m(void)
     close_store();
 }
 
-/* If the environment variable ROUNDS is set, each of the first ROUNDS allocations fails, each in a
- * run of its own; otherwise the first 8 and some of the later ones. In this test the start does not
- * fail; test_srv_journal_faults.c tests starts without memory. */
+/* If the environment variable ROUNDS is set, the test has that many runs, and in run n the n-th
+ * allocation fails; otherwise the first 8 allocations and some later ones fail, each in a run of
+ * its own. The start of the store does not fail in this test; test_srv_journal_faults.c tests
+ * starts without memory. */
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;

@@ -47,7 +47,7 @@ static st_mesh *create(const char *id)
     return mesh;
 }
 
-/* Moves vertex 0 to (x, 0, 0) in one edit; if `barrier`, the edit cannot be undone. */
+/* Moves vertex 0 to (x, 0, 0) in one edit. If `barrier` is true, the edit cannot be undone. */
 static void move(st_mesh *mesh, double x, bool barrier, st_mesh_info *info)
 {
     st_write w;
@@ -114,8 +114,8 @@ static void ids_are_unique_and_listed_in_order(void **state)
 
     st_mesh *c = create("a"), *d = create("c");
     assert_int_equal(st_list(store, "a", list, 1), 1);
-    /* The store chose the id of the mesh in `info`, so this id may sort anywhere among the
-     * others. */
+    /* The store chose the id of one mesh itself (`info.id`), so this id may come before, between or
+     * after the other ids in the list. */
     bool first = strcmp(info.id, "a") > 0 && strcmp(info.id, "b") < 0;
     assert_ptr_equal(list[0], first ? b : a);
     st_release(list[0]);
@@ -299,8 +299,8 @@ static void the_undo_history_stays_within_its_budget(void **state)
     }
     assert_true(x_of(mesh) < EDITS - 2);
 
-    /* An edit larger than the undo budget must be applied, but then neither it nor any earlier edit
-     * can be undone. */
+    /* An edit that is larger than the undo budget must be applied, but afterwards neither this edit
+     * nor any earlier edit can be undone. */
     st_write w;
     he_mesh *content = writing_begin(mesh, &w);
     for (int i = 0; i < EDITS; i++) {
@@ -356,7 +356,7 @@ static void a_held_snapshot_does_not_change_and_a_new_one_is_current(void **stat
     assert_ptr_equal(st_snapshot_content(b, NULL), shared);
     assert_int_equal(info.revision, 2);
 
-    /* A snapshot must not change as long as a reference to it is held. */
+    /* A snapshot must not change as long as the test holds a reference to it. */
     move(mesh, 2, false, NULL);
     assert_true(he_position(shared, (he_vertex){0}).x == 1);
     st_snapshot_release(b);
@@ -367,8 +367,8 @@ static void a_held_snapshot_does_not_change_and_a_new_one_is_current(void **stat
     st_snapshot_release(a);
     st_snapshot_release(b);
 
-    /* A new snapshot must show the present mesh, even if the store makes it by updating a released
-     * one, and even after undo or after an edit that adds elements. */
+    /* A new snapshot must show the present mesh, even if the store makes it by updating a snapshot
+     * that was released, and even after an undo or after an edit that adds elements. */
     for (int round = 0; round < 4; round++) {
         if (round == 1) {
             assert_int_equal(step(mesh, ST_UNDO), ST_OK);
@@ -416,8 +416,8 @@ static void a_cached_value_lasts_until_the_mesh_changes(void **state)
     st_release(mesh);
 }
 
-/* Each call of the store is made once for each of its allocations, which fails: the call must be
- * refused, and the mesh must be unchanged. */
+/* Each call of the store is repeated once for each of its allocations; in each repetition one
+ * allocation fails. The call must be refused, and the mesh must be unchanged. */
 static void calls_without_memory_are_refused_and_change_nothing(void **state)
 {
     (void)state;
@@ -471,8 +471,8 @@ static void calls_without_memory_are_refused_and_change_nothing(void **state)
     st_release(mesh);
 }
 
-/* Memory counts as short when the next large block does not fit, although a smaller one still
- * would. */
+/* Memory counts as short when the next large block does not fit into the budget, although a smaller
+ * block would still fit. */
 static void memory_is_short_before_it_is_full(void **state)
 {
     (void)state;
@@ -515,7 +515,7 @@ static void memory_beyond_the_budget_is_refused_and_caches_make_room(void **stat
     assert_true(st_memory_is_full());
     assert_int_equal(st_create(store, "n", NULL, content, NULL, &other), ST_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
-    /* A write that needs more memory must get it by freeing caches. */
+    /* If a write needs more memory than is free, the store must free caches for it. */
     st_memory_set_budget(0);
     st_snapshot *snapshot = NULL;
     assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
@@ -547,12 +547,12 @@ static void memory_beyond_the_budget_is_refused_and_caches_make_room(void **stat
     open_store(BUDGET, MESHES);
 }
 
-/* In each edit, writers move the vertices 0 and 1 to one point. Readers must never see them at
- * different points, and never see the revision decrease. */
+/* Each edit of a writer moves the vertices 0 and 1 to one point. Readers must never see the two
+ * vertices at different points, and must never see the revision decrease. */
 enum { ROUNDS = 300, WRITERS = 2, READERS = 2 };
 static _Atomic bool broken;
 
-/* --- data that is derived from a content and kept with it --- */
+/* --- data that is derived from the mesh data of a revision and kept with it --- */
 
 static atomic_int destroyed;
 
@@ -562,7 +562,7 @@ static void destroy(void *value)
     atomic_fetch_add(&destroyed, 1);
 }
 
-/* Makes data of each derived kind for the mesh. */
+/* Makes data of each derived kind for the mesh, as requests do. */
 static void derive(st_mesh *mesh)
 {
     for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
@@ -593,7 +593,7 @@ static void derived_values_are_freed_by_shedding_and_with_the_mesh(void **state)
 }
 
 /* The store must have the delta of each revision as long as its history keeps the revision. A
- * barrier (an edit that cannot be undone) removes all earlier ones. */
+ * barrier (an edit that cannot be undone) removes all earlier revisions from the history. */
 static void each_revision_has_its_delta_until_a_barrier(void **state)
 {
     (void)state;

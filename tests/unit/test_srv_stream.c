@@ -1,6 +1,6 @@
 /* Tests of event streams that wait for events: a suspended stream must be resumed exactly once,
- * whatever ends its wait and when; comments must be sent if there are no events for a time; and a
- * stop must end all streams. */
+ * whatever ends its wait and whenever this happens; a comment must be sent if there are no events
+ * for some time; and a stop must end all streams. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/http_stream.h"
@@ -10,8 +10,8 @@
 
 enum { STREAMS = 40, NEWS = 2000, LONG = 1000000000 };
 
-/* A stream and its source of events. An event is a byte; `told` events were announced, `read` of
- * them were read. */
+/* A stream and its source of events. Each event is one byte. `told` is the number of events that
+ * were announced, `read` is the number of events that were read. */
 typedef struct talk {
     srv_stream stream;
     pthread_mutex_t lock;
@@ -19,7 +19,7 @@ typedef struct talk {
     void *context;
     unsigned told, read, starts, finishes;
     bool waiting, finished;
-    /* The members below are used by the threads that stand for the server's workers. */
+    /* The members from here on are used by the threads that stand for the server's workers. */
     bool aside, begun, ended;
     unsigned comments;
     struct talk *next;
@@ -70,7 +70,7 @@ static void tell(talk *t)
     pthread_mutex_unlock(&t->lock);
 }
 
-/* --- threads that read resumed streams, as libmicrohttpd's do --- */
+/* --- threads that read resumed streams, as the threads of libmicrohttpd do --- */
 
 static struct {
     pthread_mutex_t lock;
@@ -229,7 +229,8 @@ static void silence_is_filled(void **state)
     }
 }
 
-/* The stop comes when some streams were never read, some are being read, and some are suspended. */
+/* When the server stops, some streams were never read, some are being read, and some are
+ * suspended. */
 static void a_stop_finds_them_all(void **state)
 {
     (void)state;

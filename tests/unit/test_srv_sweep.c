@@ -1,6 +1,6 @@
-/* If many connections reach their deadline at once, they must be closed a few at a time, so that
+/* If many connections reach their deadlines at once, they must be closed a few at a time, so that
  * other threads can take the lock in between. The test counts how many connections are closed while
- * the lock is held. */
+ * the lock is held once. */
 #include "server/http/http_deadline.h"
 
 #include <setjmp.h>
@@ -16,7 +16,8 @@
 
 enum { LATE = 500 };
 
-static _Thread_local int closed_since; /* connections closed while the lock was held */
+static _Thread_local int
+    closed_since; /* number of connections closed since this thread took the lock */
 static _Atomic int most, closed;
 
 int __real_pthread_mutex_lock(pthread_mutex_t *mutex);
@@ -37,8 +38,8 @@ int __wrap_shutdown(int socket, int how)
     return __real_shutdown(socket, how);
 }
 
-/* Connected sockets: `others` are the clients' ends, `watched` are the records of the server's
- * ends. */
+/* Pairs of connected sockets: `others` are the clients' ends, `watched` are the records of the
+ * server's ends. */
 typedef struct pairs {
     int others[LATE];
     srv_connection *watched[LATE];
@@ -70,7 +71,7 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
 {
     (void)state;
     pairs p;
-    /* connections may be idle for 0 s */
+    /* connections may be idle for 0 seconds, so all are late at once */
     const srv_deadline_options options = {.max_connections = LATE};
     srv_deadlines *d = srv_deadlines_new(&options);
     assert_non_null(d);
@@ -97,7 +98,8 @@ static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
     closed = 0;
     open_pairs(d, &p);
     while (closed == 0) {
-        /* The search begins with the connection that was added last. */
+        /* Waits until one connection is closed. The search for late connections begins with the
+         * connection that was added last. */
     }
     char byte;
     for (int i = LATE - 1; i >= 0; i--) {

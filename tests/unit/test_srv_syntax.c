@@ -1,6 +1,6 @@
-/* Tests of the state machine that checks the bytes of a connection before libmicrohttpd reads them:
- * it must find the fault in each case of framing_cases.h, however the bytes are split and however
- * little free space the buffer has. It must pass on no byte after a fault. */
+/* Tests of the state machine that checks the bytes of a connection before libmicrohttpd reads them.
+ * The state machine must find the fault in each case of framing_cases.h, however the bytes are
+ * split and however little free space the buffer has. It must pass on no byte after a fault. */
 #include "tests/unit/fixture.h"
 
 #include "framing_cases.h"
@@ -17,11 +17,11 @@ typedef struct passed {
     srv_syntax syntax;
     char *bytes;
     size_t length;
-    size_t taken; /* number of input bytes that were checked */
+    size_t taken; /* number of bytes of the input that were checked */
 } passed;
 
-/* Passes these bytes to the check in a buffer with `room` more bytes of free space, as the server
- * does after recv(). Returns false if there is a fault. */
+/* Passes `bytes` to the check, in a buffer that has `room` bytes of free space after them, as the
+ * server does after recv(). Returns false if the check finds a fault. */
 static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
 {
     char *at = p->bytes + p->length;
@@ -39,8 +39,8 @@ static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
     return false;
 }
 
-/* How the bytes of a connection arrive: in pieces of `piece` bytes, except the first piece, which
- * has `first` bytes if `first` is not 0, into a buffer with `room` bytes of free space after each
+/* How the bytes of a connection arrive: in pieces of `piece` bytes each, but with `first` bytes in
+ * the first piece if `first` is not 0. The buffer has `room` bytes of free space after each
  * piece. */
 typedef struct arrival {
     size_t first, piece, room;
@@ -135,7 +135,11 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         size_t length, same = 0, taken;
         char *bytes = framing_case_bytes(c, &length);
         feed(&p[0], bytes, length, (arrival){0, 1, 0});
-        taken = p[0].taken - (c->fault ? 1 : 0); /* the last byte checked is the faulty one */
+        taken =
+            p[0].taken -
+            (c->fault
+                 ? 1
+                 : 0); /* if there is a fault, the last byte that was checked is the faulty byte */
         while (same < taken && (bytes[same] == p[0].bytes[same] || p[0].bytes[same] == '\0' ||
                                 ((bytes[same] | 0x20) == 'e' && p[0].bytes[same] == '-') ||
                                 (bytes[same] != '\n' && p[0].bytes[same] == ';'))) {
@@ -143,7 +147,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         }
         assert_int_equal(same, taken);
         assert_true(p[0].length - taken <= 24);
-        /* Other bytes after the faulty byte must not change the result. */
+        /* The result must stay the same if the bytes after the faulty byte are replaced. */
         if (c->fault) {
             memset(bytes + taken + 1, 'x', length - taken - 1);
             feed(&p[1], bytes, length, (arrival){0, length, ROOM / 2});
@@ -269,8 +273,8 @@ static void the_end_of_a_socket_is_passed_on(void **state)
     assert_int_equal(recv(pair[0], &byte, 1, 0), 0);
 }
 
-/* The time in which the headers must arrive counts from their first byte: a client that sends them
- * byte by byte gets no more time than one that sends them at once. */
+/* The time in which the headers must arrive counts from their first byte: a client that sends the
+ * headers byte by byte gets no more time than a client that sends them at once. */
 static void a_head_begins_with_its_first_byte(void **state)
 {
     (void)state;

@@ -27,7 +27,8 @@ static bool is_lower_hexadecimal(const char *text, size_t length)
            strspn(text, "0") != length;
 }
 
-/* Requires that the answer's traceparent is well formed, whatever the request's was. */
+/* Requires that the traceparent of the answer is well formed, whatever the traceparent of the
+ * request was. */
 static void check_answer(const srv_trace *trace, char flag)
 {
     char expected[SRV_TRACEPARENT + 1];
@@ -39,7 +40,7 @@ static void check_answer(const srv_trace *trace, char flag)
 
 typedef struct trace_case {
     const char *value;
-    char flag; /* flag in the answer; 0 if `value` is malformed */
+    char flag; /* expected flag in the answer's traceparent; 0 if `value` is malformed */
 } trace_case;
 
 static const trace_case cases[] = {
@@ -134,7 +135,7 @@ static void no_id_is_given_twice(void **state)
     }
 }
 
-/* Returns a pseudo-random number below `end`, by Knuth's generator MMIX. */
+/* Returns a pseudo-random number below `end`, by the generator of Knuth's computer MMIX. */
 static unsigned below(uint64_t *random, unsigned end)
 {
     *random = *random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);

@@ -61,10 +61,10 @@ static void count(st_wait *wait)
     in_order = in_order && wait->shown.position >= last;
     last = wait->shown.position;
     resumed++;
-    wait->resume = NULL; /* a second call of `resume` for this wait would crash */
+    wait->resume = NULL; /* from now on, a second call of `resume` would crash */
 }
 
-/* Adds a wait; returns false if it has ended already. */
+/* Adds a wait. Returns false if the wait ended at once. */
 static bool add(st_wait *wait, uint64_t position, uint64_t incarnation)
 {
     uint64_t since = incarnation == 0 ? 0 : position - 1;
@@ -89,7 +89,7 @@ static void one_notice_releases_a_thousand(void **state)
         early += all[i].resume == NULL;
     }
     assert_int_equal(resumed, early);
-    /* A wait that is added later must still end in the order of positions. */
+    /* A wait that is added after others must still end in the order of positions. */
     st_wait late, past;
     assert_true(add(&late, 251, 7));
     assert_false(add(&past, 250, 7));
@@ -133,14 +133,14 @@ static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
             assert_false(add(&all[i], rows[i].position, rows[i].incarnation));
         }
     }
-    /* An answer that was begun after the loss does not show a lost change, so it counts as
+    /* The answer was begun after the loss, so it does not show a lost change and counts as
      * durable. */
     const st_shown later = {.position = 7, .since = 6};
     assert_true(st_waits_is_durable(waits, &later));
 }
 
-/* The answer to a request for a list began when the journal had reported records as durable, but
- * before the threads that wrote these records had noted their positions. */
+/* A request asked for a list. Its answer began after the journal had reported records as durable,
+ * but before the threads that wrote these records had noted their positions. */
 static void a_list_of_nothing_new_is_not_lost(void **state)
 {
     (void)state;
@@ -199,7 +199,8 @@ static void *stop_waits(void *context)
 }
 
 /* Resumes a wait while another thread calls st_waits_stop. This function takes so long that
- * st_waits_stop would return earlier, if it did not wait until all waits are resumed. */
+ * st_waits_stop would return before its end, if st_waits_stop did not wait until all waits are
+ * resumed. */
 static void resume_slowly(st_wait *wait)
 {
     pthread_t stops;
@@ -212,8 +213,8 @@ static void resume_slowly(st_wait *wait)
     assert_int_equal(pthread_detach(stops), 0);
 }
 
-/* st_waits_stop must return only after each wait has been resumed, because its caller may then free
- * the memory of the waits. */
+/* st_waits_stop must return only after each wait has been resumed, because the caller of
+ * st_waits_stop may then free the memory of the waits. */
 static void a_stop_waits_for_what_is_being_resumed(void **state)
 {
     (void)state;

@@ -16,8 +16,8 @@
 
 #define URL "http://127.0.0.1:1"
 
-/* Opens a socket for the messages to systemd; its name is in the abstract namespace of Linux, not
- * in the file system. */
+/* Opens a socket that receives the messages for systemd. The name of the socket is in the abstract
+ * namespace of Linux, not in the file system. */
 static int be_systemd(void)
 {
     struct sockaddr_un own = {.sun_family = AF_UNIX};
@@ -34,8 +34,8 @@ static int be_systemd(void)
     return fd;
 }
 
-/* Calls srv_watch_look once, and requires that it sends `expected` to systemd, or nothing if
- * `expected` is NULL. */
+/* Calls srv_watch_look once. Requires that it sends `expected` to systemd or, if `expected` is
+ * NULL, that it sends nothing. */
 static void look_and_expect(srv_watch *watch, srv_parts *parts, int fd, const char *expected)
 {
     char text[512];

@@ -1,10 +1,9 @@
 /* Tests of meshes and edits as bytes (core/stored): reading must restore exactly what was written,
  * and damaged bytes must be refused with a reason and an offset. test_op_table.c converts every
  * operation to bytes and back.
- *
- * `test_stored --write FOLDER` writes the golden files (expected bytes) of a new version of the
- * format; those of a released version must never change. They are also the first inputs of the
- * fuzzer fuzz_stored. */
+ *  `test_stored --write FOLDER` writes the golden files (expected bytes) of a new version of the
+ * format; the golden files of a released version must never change. They are also the first
+ * inputs of the fuzzer fuzz_stored. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -43,9 +42,9 @@ static void code_log(const edit_log *log, stored_bytes *coded)
     he_mesh_free(m);
 }
 
-/* Applies entry i of the log from encoded bytes alone, as the start of a store does. After an undo,
- * the number of ids ever issued is set as well: a delta that was read from bytes does not always
- * know it. */
+/* Applies entry i of the log from encoded bytes alone, as the start of a store does. If the entry
+ * is an undo, the function also sets how many ids were ever issued, because a delta that was read
+ * from bytes does not always contain this number. */
 static he_status apply_coded(const edit_log *log, size_t i, const stored_bytes *coded,
                              he_delta **deltas, he_mesh *m)
 {
@@ -166,8 +165,8 @@ static he_column *labelled_column(const he_mesh *m)
     return column;
 }
 
-/* Adds a column, writes a value to it, adds faces, and removes the column again. Another column is
- * added and stays. */
+/* Adds a column, writes a value to it, adds faces, and removes the column again. Then adds another
+ * column, which stays. */
 static void change_columns(he_mesh *m)
 {
     const uint32_t value = 2;
@@ -189,8 +188,8 @@ static void drop_columns(he_mesh *m)
     }
 }
 
-/* Adds materials to the table of materials, changes them twice and deletes some, which leaves a
- * free slot in the middle of the table. */
+/* Adds materials to the table of materials, changes the table twice and deletes some materials,
+ * which leaves a free entry in the middle of the table. */
 static void change_materials(he_mesh *m)
 {
     script_prepare(m, "material_set name=red base_color=1,0,0,0.5 metallic=0.25 roughness=0.5 "
@@ -213,7 +212,7 @@ typedef struct specimen {
     const char *operation;
     void (*change)(he_mesh *m);
     bool columns;   /* whether the mesh has the columns of script_add_columns */
-    bool materials; /* whether the mesh has materials, with a free slot among them */
+    bool materials; /* whether the mesh has materials, with a free entry among them in the table */
 } specimen;
 
 static const specimen specimens[] = {
@@ -283,8 +282,9 @@ static void contents_and_edits_come_back_from_their_bytes(void **state)
     }
 }
 
-/* Writes a golden file (the expected bytes of an edit) to memory: the length of the content, the
- * content, how many ids were issued after the edit, and the edit. Returns the size of the file. */
+/* Writes a golden file (the expected bytes of an edit) to memory: the length of the encoded mesh,
+ * the encoded mesh, how many ids were issued after the edit, and the encoded edit. Returns the size
+ * of the file. */
 static size_t golden_of(const specimen *s, unsigned char *to)
 {
     specimen_run run = run_of(s);
@@ -300,9 +300,9 @@ static size_t golden_of(const specimen *s, unsigned char *to)
     return size;
 }
 
-/* Reads the golden files (expected bytes of each version of the format) and encodes the contents
- * again, which must give the same bytes. The test runs no operations on meshes, because their
- * results may change. */
+/* Reads the golden files (expected bytes of each version of the format) and encodes the meshes in
+ * them again, which must give the same bytes. The test runs no operations on meshes, because the
+ * results of operations may change. */
 static void golden_files_are_read_and_written_again(void **state)
 {
     (void)state;
@@ -376,16 +376,17 @@ static void expect_named(he_status status, const he_error *err, size_t size)
     assert_true(err->text[0] != '\0');
 }
 
-/* Reads damaged bytes of an edit. They must be refused and leave the mesh unchanged, or be applied
- * so that undo restores the mesh: a flipped bit of a value makes another valid edit, and only the
- * checksum of its record can detect that. */
+/* Reads the damaged bytes of an edit. Either the bytes must be refused and the mesh must stay
+ * unchanged, or the edit must be applied so that undo restores the mesh: if one bit of a value is
+ * flipped, the bytes are another valid edit, and only the checksum of its record can detect the
+ * damage. */
 static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *seen)
 {
     he_mesh *m = copy_of(run->before);
     he_delta *delta = NULL;
     he_error err = {.status = HE_OK};
     unsigned char *exact = malloc(damaged.size + 1);
-    /* The block ends with the bytes, so that a sanitizer detects reads past the end. */
+    /* The memory block ends where the bytes end, so that a sanitizer detects reads past the end. */
     memcpy(exact + 1, damaged.bytes, damaged.size);
     he_status status =
         he_stored_edit_forward(exact + 1, damaged.size, run->issued, m, &delta, &err);
@@ -485,7 +486,7 @@ static void a_newer_version_is_refused_and_both_versions_are_named(void **state)
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),
         HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 0, "the edit has version 2, this release reads 1");
-    run.content.bytes[5 + 4] = 7; /* the version, after the part's coding and length */
+    run.content.bytes[5 + 4] = 7; /* the version, which follows the part's coding and length */
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 4, "the mesh has version 7, this release reads 1");
@@ -506,8 +507,8 @@ static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.after, &delta, &err),
         HE_CORRUPT);
-    /* The change is refused at offset 2, where its run of changes begins: the version and the
-     * number of runs come before. */
+    /* The change is refused at offset 2, where the run of changes that contains it begins; before
+     * that are the version and the number of runs. */
     expect_text(&err, HE_CORRUPT, 2, "change 0 replaces a value that the mesh does not have");
     run.issued[HE_EDGE] += 1000;
     assert_int_equal(
@@ -518,15 +519,16 @@ static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
     run_clear(&run);
 }
 
-/* A few bytes declare counts of elements that would need gigabytes: the reader must refuse them
- * without allocating so much memory. */
+/* A few bytes declare numbers of elements that would need gigabytes: the reader must refuse the
+ * bytes without allocating so much memory. */
 static void a_small_content_gets_no_large_memory(void **state)
 {
     (void)state;
     specimen_run run = run_of(&specimens[0]);
     he_mesh *m = NULL;
     he_error err;
-    memset(run.content.bytes + 5 + 16, 0x3f, 12); /* counts of vertices, edges and faces */
+    memset(run.content.bytes + 5 + 16, 0x3f,
+           12); /* the declared numbers of vertices, edges and faces */
     failing_at(0);
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_CORRUPT);
@@ -536,9 +538,9 @@ static void a_small_content_gets_no_large_memory(void **state)
     run_clear(&run);
 }
 
-/* --- contents in several parts --- */
+/* --- mesh data in several parts --- */
 
-/* Makes a mesh whose content takes many parts; the labels (texts) of its attribute alone take more
+/* Makes a mesh whose data takes many parts. The labels (texts) of its attribute alone take more
  * than one part. */
 static he_mesh *large_mesh(void)
 {
@@ -553,12 +555,12 @@ static he_mesh *large_mesh(void)
         (void)snprintf(text, sizeof text, "label %u", i);
         assert_int_equal(he_labels_add(column->labels, text, strlen(text), &index, NULL), HE_OK);
     }
-    memset(he_column_row(column, 7), 0, column->row_bytes); /* row 7 belongs to a deleted face */
+    memset(he_column_row(column, 7), 0, column->row_bytes); /* face 7 is deleted: it has no value */
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     return m;
 }
 
-/* Writes a content as parts, and reads all parts except the last `less`. */
+/* Writes the data of a mesh as parts, and reads all parts except the last `less` parts. */
 static he_status read_parts(const he_mesh *m, uint64_t less, he_mesh **out, he_error *err)
 {
     unsigned char *part = malloc(HE_STORED_PART_ROOM);

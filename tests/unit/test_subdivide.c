@@ -1,9 +1,9 @@
-/* Tests of subdivision against what the papers prove: element counts in closed form, limit
- * positions, boundaries and creases that are cubic B-splines, darts and corners. Other tests are
- * about attributes, ids, undo and cancelling.
- *
- * The limit position of a vertex is a weighted sum of the vertex and its neighbours that is the
- * same after each step, so the tests compute it before and after a step. */
+/* Tests of subdivision against what the papers prove: numbers of elements in closed form, limit
+ * positions, boundaries and creases that are cubic B-splines, darts and corners. Other tests in
+ * this file are about attributes, ids, undo and cancelling.
+ *  The limit position of a vertex is a weighted sum of the positions of the vertex and its
+ * neighbours. A subdivision step must not change the limit position, so the tests compute it
+ * before and after a step. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -67,7 +67,7 @@ static he_vec3 at(const he_mesh *m, uint32_t v)
     return he_position(m, (he_vertex){v});
 }
 
-/* Makes n triangles or quads around vertex 0; they are not in one plane. */
+/* Makes n triangles or quads around vertex 0, not all in one plane. */
 static he_mesh *wheel(unsigned n, bool quads)
 {
     he_soup soup;
@@ -90,8 +90,8 @@ static he_mesh *wheel(unsigned n, bool quads)
     return m;
 }
 
-/* Returns the sum of the positions of the neighbours of v. If `across`, returns the sum of the
- * corners opposite to v in its quads. */
+/* Returns the sum of the positions of the neighbours of v. If `across` is true, returns the sum of
+ * the positions of the corners opposite to v in the quads at v. */
 static he_vec3 ring(const he_mesh *m, uint32_t v, bool across)
 {
     he_vec3 sum = {0, 0, 0};
@@ -212,8 +212,8 @@ static void counts_follow_their_formulas(void **state)
         assert_int_equal(he_mesh_boundary_halfedges(m), 4 * 16);
         he_mesh_free(m);
     }
-    /* Two steps of the scheme sqrt3 divide each side of a triangle into three and make nine
-     * triangles. */
+    /* Two steps of the scheme sqrt3 together divide each side of a triangle into three, and each
+     * triangle into nine. */
     m = script_mesh("012", NULL);
     assert_int_equal(he_subdivide(m, HE_SQRT3, 2, c, NULL), HE_OK);
     assert_int_equal(c[1].faces, 9);
@@ -323,8 +323,8 @@ static uint32_t features(const he_mesh *m)
     return count;
 }
 
-/* Returns the neighbour of vertex 0 along the feature edge that led to `rim` before the
- * subdivision. */
+/* Returns the neighbour of vertex 0 along the feature edge that connected vertices 0 and `rim`
+ * before the subdivision. */
 static uint32_t along(const he_mesh *m, uint32_t rim)
 {
     const he_column *column = he_mark_find(m, HE_EDGE, "feature");
@@ -364,8 +364,8 @@ static void creases_are_curves_darts_smooth_and_corners_stay(void **state)
         he_mesh_free(a);
         he_mesh_free(b);
     }
-    /* If one feature edge ends at a vertex (a dart), the vertex must move as without features, and
-     * the vertex in the middle of that edge must stay on the edge. */
+    /* If exactly one feature edge ends at a vertex (a dart), the vertex must move as if there were
+     * no features. The new vertex in the middle of this edge must lie on the old edge. */
     he_mesh *a, *b, *smooth = wheel(6, false);
     subdivide_marked("mark feature edge=0-1", HE_LOOP, 1, &a, &b);
     subdivide(smooth, HE_LOOP, 1);
@@ -443,8 +443,8 @@ static void values_linear_in_the_position_remain_so(void **state)
     }
 }
 
-/* The attribute `feature` is true by default, so new edges inside faces get this value; they must
- * nevertheless not become creases. */
+/* The attribute `feature` is true by default, so the new edges inside faces get the value true.
+ * They must nevertheless not become creases. */
 static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
 {
     (void)state;
@@ -463,8 +463,8 @@ static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
     }
 }
 
-/* A corner attribute without a smoothing rule has the positions of the vertices as its values:
- * after a step, each value must equal the position of its vertex. */
+/* A corner attribute without a smoothing rule has the positions of the vertices as its values.
+ * After a step, each value must be equal to the position of its vertex. */
 static void corners_are_refined_within_their_face(void **state)
 {
     (void)state;
@@ -476,7 +476,7 @@ static void corners_are_refined_within_their_face(void **state)
         for (uint32_t h = 0; h < 2 * he_mesh_edges(m); h++) {
             if (!he_is_boundary_halfedge(m, (he_halfedge){h})) {
                 he_vec3 p = at(m, he_origin(m, (he_halfedge){h}).i);
-                p.x += 100 * he_face_of(m, (he_halfedge){h}).i; /* a different value in each face */
+                p.x += 100 * he_face_of(m, (he_halfedge){h}).i; /* different in each face */
                 memcpy(he_column_row(column, h), &p, sizeof p);
             }
         }
@@ -501,8 +501,8 @@ static void corners_are_refined_within_their_face(void **state)
     }
 }
 
-/* The scheme sqrt3 flips edges. After that, every corner must have a value from the old face inside
- * which it now is. */
+/* The scheme sqrt3 flips edges. Afterwards every corner must have a value that comes from the old
+ * face in whose area the corner lies. */
 static void corners_of_flipped_triangles_are_of_their_face(void **state)
 {
     (void)state;
@@ -668,7 +668,7 @@ static void coordinates_as_large_as_doubles_get_stay_finite(void **state)
             he_vec3 p = {v % 2 ? 1.797e308 : -1.797e308, 1.797e308, v};
             he_set_position(m, (he_vertex){v}, p);
         }
-        subdivide(m, schemes[s], 3); /* checks the invariant I11 of each mesh, too */
+        subdivide(m, schemes[s], 3); /* also checks that positions are finite (I11) */
         assert_true(at(m, 0).y > 1.79e308);
         he_mesh_free(m);
     }

@@ -1,5 +1,5 @@
-/* Tests of tokens: the file that lists them, what they allow, and what happens when another file
- * replaces it. */
+/* Tests of access tokens: the file that lists them, what they allow, and what happens when another
+ * file replaces the list. */
 #include "unit/fixture.h"
 
 #include "api/token/tickets.h"
@@ -44,7 +44,7 @@ static void a_line_says_whose_a_token_is_and_what_it_may_do(void **state)
     assert_string_equal(b->prefixes[1], "shared.");
     assert_true(b->expires == 1798806605.0);
     unsigned char hash[API_TOKEN_HASH];
-    api_token_hash("test", 4, hash); /* the SHA-256 (FIPS 180-4) of "test" */
+    api_token_hash("test", 4, hash); /* the SHA-256 (FIPS 180-4) of the text "test" */
     assert_true(api_token_matches(a, hash));
     assert_false(api_token_matches(b, hash));
     hash[31] ^= 1;
@@ -160,7 +160,8 @@ static void a_file_has_its_limits(void **state)
     free(large);
 }
 
-/* A row stands for the role of a token, a column for the role that a request requires. */
+/* Each row of the table stands for the role of a token, each column for the role that a request
+ * requires. */
 static void roles_include_each_other_as_documented(void **state)
 {
     (void)state;
@@ -241,7 +242,7 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     assert_true(load(tokens, "# moved\n\na read " HASH " expires=1970-01-02"));
     assert_int_equal(api_tokens_count(tokens), 1);
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
-    assert_ptr_equal(again, a); /* the token is kept, since its line did not change */
+    assert_ptr_equal(again, a); /* kept, since the token's line did not change */
     api_token_release(again);
     assert_int_equal(first.told, 0);
 
@@ -252,7 +253,7 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     again = api_tokens_find(tokens, "test", 4, 0);
     assert_ptr_not_equal(again, a);
     api_token_release(again);
-    api_tokens_watch(tokens, &third.watch); /* calls `gone` at once, as the token is gone */
+    api_tokens_watch(tokens, &third.watch); /* calls `gone` at once: the token is gone */
     assert_int_equal(third.told, 1);
     assert_true(load(tokens, "b read " OTHER));
     assert_int_equal(first.told, 1);
@@ -281,8 +282,8 @@ static void a_line_may_set_limits_of_its_own(void **state)
     assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* 0 is no limit */
     assert_int_equal(api_token_limit(NULL, API_LIMIT_REQUESTS), 0);
 
-    /* New limits must not make the token a new one: running requests must continue, with the new
-     * limits. */
+    /* If the file gives a token new limits, the token must stay the same token: running requests
+     * must continue, with the new limits. */
     listener watcher = {.watch = {.token = a, .gone = tell}};
     api_tokens_watch(tokens, &watcher.watch);
     assert_false(load(tokens, "a read " HASH " prefix=x requests=1 requests=2"));
@@ -295,8 +296,8 @@ static void a_line_may_set_limits_of_its_own(void **state)
     assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 3);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 0);
 
-    /* When the file is replaced, a new token with the name of an old one must continue the old
-     * one's limits of requests; a token with another name must not. */
+    /* When the file is replaced, a new token with the name of an old token must continue the count
+     * of requests of the old token; a new token with another name must not. */
     api_token_list list;
     assert_true(read_text("a write " OTHER "\nb read " HASH, &list));
     assert_memory_equal(&list.items[0]->rate_key, &a->rate_key, sizeof a->rate_key);
@@ -391,7 +392,7 @@ static void a_new_token_is_in_its_line(void **state)
     api_tokens_free(tokens);
 }
 
-/* Returns the processor time of the process, which other programs do not increase. */
+/* Returns the processor time of the process, which does not depend on other programs. */
 static double seconds(void)
 {
     struct timespec now;

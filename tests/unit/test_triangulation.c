@@ -29,8 +29,9 @@ static double doubled_area(const he_planar_loop *f, uint32_t a, uint32_t b, uint
     return (f->x[b] - f->x[a]) * (f->y[c] - f->y[a]) - (f->y[b] - f->y[a]) * (f->x[c] - f->x[a]);
 }
 
-/* Requires that each triangle in turn cuts its middle corner off the rest of the polygon. Then
- * there are n - 2 triangles, every diagonal is in two of them, and every side in one. */
+/* Requires that each triangle in turn cuts its middle corner off the rest of the polygon. It
+ * follows that there are n - 2 triangles, that every diagonal is in two of them, and that every
+ * side is in one. */
 static void assert_cuts_corners(const he_planar_loop *f, const uint32_t *corners)
 {
     uint32_t n = f->n, *next = calloc(n, sizeof *next);
@@ -52,8 +53,8 @@ static void assert_cuts_corners(const he_planar_loop *f, const uint32_t *corners
     free(next);
 }
 
-/* Requires that all triangles are counter-clockwise and that their areas add up to the area of the
- * polygon. Then they cover the polygon exactly once. */
+/* Requires that all triangles are counter-clockwise, and that their areas add up to the area of the
+ * polygon. It follows that the triangles cover the polygon exactly once. */
 static void assert_covers(const he_planar_loop *f, const uint32_t *corners)
 {
     double whole = 0, sum = 0;
@@ -162,9 +163,9 @@ static bool meet(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c, ui
            on_segment(f, c, d, b);
 }
 
-/* Reverses pieces of a random polygon until no two sides cross. Returns false if that takes too
- * long, or if a point is on a side. The few points are on a grid, so that three are often
- * collinear. */
+/* Reverses pieces of a random polygon until no two of its sides cross. Returns false if this takes
+ * too long, or if a corner lies on a side. The corners are few and lie on a grid, so three corners
+ * are often collinear. */
 static bool untangle(he_planar_loop *f)
 {
     uint32_t n = f->n;
@@ -189,7 +190,7 @@ static bool untangle(he_planar_loop *f)
             for (uint32_t i = 0; i < n; i++) {
                 uint32_t k = (i + 1) % n, l = (i + 2) % n;
                 area += f->x[i] * f->y[k] - f->x[k] * f->y[i];
-                /* If a side runs back along the side before it, the two share more than a
+                /* If a side runs back along the side before it, the two sides share more than a
                  * corner. */
                 if (on_segment(f, i, k, l) || on_segment(f, k, l, i)) {
                     return false;
@@ -363,13 +364,14 @@ static void a_long_loop_is_given_up(void **state)
         assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, &work, &t, NULL),
                          HE_CANCELLED);
         assert_int_equal(told, 1);
-        /* Cancelled work must end soon: after at most one more corner or one more sweep. */
+        /* Cancelled work must end soon: after at most one more corner or one more pass over the
+         * corners. */
         assert_true(work.steps < 40 * 40000);
         he_mesh_free(m);
     }
 }
 
-/* --- triangulations that a copy of the mesh keeps --- */
+/* --- triangulations that are kept with a copy of the mesh --- */
 
 static he_replay *replay_of(const polygon_shape *shape, uint32_t n)
 {
@@ -469,8 +471,9 @@ static void keeping_fails_cleanly(void **state)
     he_replay_free(replay);
 }
 
-/* A hundred corners are searched as a list, four hundred as a tree, and both searches must find the
- * same. The other three hundred corners are far from all triangles of the test. */
+/* A hundred corners are searched as a list, and four hundred corners as a tree; both searches must
+ * find the same corners. The additional three hundred corners are far from all triangles of the
+ * test. */
 static void a_list_of_corners_finds_what_a_tree_finds(void **state)
 {
     (void)state;

@@ -7,8 +7,8 @@ static he_vec2 oracle_seen(he_vec3 p, int axis)
     return axis == 0 ? (he_vec2){p.y, p.z} : axis == 1 ? (he_vec2){p.z, p.x} : (he_vec2){p.x, p.y};
 }
 
-/* Returns the first axis, 0 to 2, so that the triangle has area if it is projected along this axis.
- * Returns 3 if the triangle has no area. */
+/* Returns the first axis (0, 1 or 2) along which the triangle can be projected so that the
+ * projection has an area. Returns 3 if the triangle itself has no area. */
 static int oracle_axis(const he_vec3 t[3])
 {
     int axis = 0;
@@ -44,7 +44,7 @@ static bool oracle_cross(he_vec2 a, he_vec2 b, he_vec2 c, he_vec2 d)
            oracle_is_on(c, d, b);
 }
 
-/* Returns whether the segment p-q meets the triangle t, which must have area. */
+/* Returns whether the segment from p to q meets the triangle t, which must have an area. */
 static bool oracle_segment(he_vec3 p, he_vec3 q, const he_vec3 t[3])
 {
     int at_p = he_orient3(t[0], t[1], t[2], p), at_q = he_orient3(t[0], t[1], t[2], q);
