@@ -50,7 +50,7 @@ static api_bench *begin(void)
 
 typedef struct refusal {
     const char *target; /* after /v1/meshes/m */
-    const char *body;   /* NULL: the request is a GET */
+    const char *body;   /* NULL if the request is a GET */
     int status;
     const char *code;
     const char *pointer; /* NULL: none */
@@ -153,8 +153,8 @@ static const refusal refusals[] = {
     {QUERY, "{\"queries\":[],\"limit\":1}", 400, "unknown_member", "/limit"},
 };
 
-/* Questions with mistakes. Each is sent as the second of several questions: the refusal must stand
- * in the place of its answer, and the other questions must be answered. */
+/* Questions with mistakes. Each is sent as the second of several questions: the refusal must take
+ * the place of the answer to this question, and the other questions must be answered. */
 static const refusal bad_questions[] = {
     {NULL, "1", 400, "wrong_type", ""},
     {NULL, "{}", 400, "missing_member", ""},
@@ -442,8 +442,8 @@ static bool has_no_time(void *context, const char *phase, double done)
     return false;
 }
 
-/* Runs a request step by step, which shows whether it moved from the worker to the job pool.
- * Streamed answers are read in pieces of odd sizes. */
+/* Runs a request step by step, so that the test sees whether the request moved from the worker to
+ * the job pool. Streamed answers are read in pieces of odd sizes. */
 static driven drive(api_bench *b, const char *method, const char *path, const char *accept,
                     const char *body)
 {

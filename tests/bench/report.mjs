@@ -45,8 +45,8 @@ const sections = {
     },
 };
 
-// The rows of `make bench` that README.md shows, because a user of a mesh library would ask for
-// them first.
+// The rows of `make bench` that README.md shows, because a user of a mesh library would look for
+// these first.
 const chosen = [
     'build from arrays, triangles',
     'sum over one-rings',

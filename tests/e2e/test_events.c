@@ -362,7 +362,7 @@ static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
     follow_to(&c, last);
     require_equal(c.client, &c.mesh);
     assert_true(c.applied > 0);
-    /* the mesh was fetched anew once, or again when the client fell behind again */
+    /* the client fetched the mesh anew, and once more each time it fell behind again */
     assert_true(c.anew > 0);
     last = post(c.client, "/v1/meshes/m/edits", POKE);
     follow_to(&c, last);

@@ -74,7 +74,7 @@ static void describe(size_t place, char out[80])
 /* --- one place after the other --- */
 
 /* Writes the undamaged files of the store into a folder. The file "ballast" only reserves disk
- * space, so its contents do not matter. */
+ * space, so zeros are written in place of its contents. */
 static void lay_out(const char *folder)
 {
     char path[2 * FOLDER_PATH];
