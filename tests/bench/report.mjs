@@ -1,5 +1,5 @@
 // report.mjs - writes down what a benchmark printed: its section of tests/bench/README.md and, for
-// `make bench`, six rows in README.md. `make report` calls it after each benchmark.
+// `make bench`, six rows of the table in README.md. `make report` calls it after each benchmark.
 //
 //     node report.mjs NAME COMMAND < OUTPUT
 //

@@ -48,13 +48,13 @@ const kernel = (name, order) => ({
     ],
 });
 
-// A row `of a list` tells our kernel which edges come next, as delaunay does. The peers have no
-// such call, so the row is compared with our own edits without it. When edits are made one after
-// another, each waits for memory: the links of a half-edge are in four arrays, so each random
-// half-edge costs four cache lines, where one record for all links would cost one. These arrays are
-// what makes traversal fast. A cache line takes 130 to 150 ns to arrive on the machine of these
-// figures, and 16 are fetched at a time.
-// `work` is what an edit takes in nanoseconds where all of the mesh is in the cache.
+// A row whose title ends in `of a list` tells our kernel which edges come next, as delaunay does.
+// The other libraries have no such call, so the row is compared with our own edits without this
+// call. When edits are made one after another, each waits for memory: the links of a half-edge are
+// in four arrays, so each random half-edge costs four cache lines, whereas it would cost one if all
+// its links were in one struct. These arrays are what makes traversal fast. A cache line takes 130
+// to 150 ns to arrive on the machine of these figures, and 16 are fetched at a time. `work` is what
+// an edit takes in nanoseconds where all of the mesh is in the cache.
 const waits = (deep, lines, work) => {
     const reads = 10 * Math.round(14 * Math.max(deep, lines / 16));
     return (

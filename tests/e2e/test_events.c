@@ -229,8 +229,8 @@ static void a_copy_stays_equal_through_random_edits(void **state)
     c.listener = listener_open(d, EVENTS, NULL, 0);
     dump(c.client, &c.mesh);
     for (; done < edits; asked++) {
-        /* Random arguments are drawn from the copy, so the copy must have all changes here; at
-         * other times it may be behind the server. */
+        /* Random arguments of edits are drawn from the copy, so the copy must be up to date here;
+         * at other times it may be behind the server. */
         follow_to(&c, last);
         if (md_chance(&random, 1)) {
             cut(&c);

@@ -175,8 +175,9 @@ static bool draw_vertex_separate(md_draft *d)
     return md_chance(d->r, 30);
 }
 
-/* Finds the fans of faces that get a new vertex when the vertex v is separated, and the first
- * neighbour of v in each: all fans but the one that ends with the stored half-edge of v. */
+/* Finds the fans of faces that get a new vertex when the vertex v is separated: all fans but the
+ * one that ends with the stored half-edge of v. Writes the first neighbour of v in each of these
+ * fans. */
 static uint32_t leaving(const he_mesh *m, uint32_t v, uint32_t starts[OR_VERTICES])
 {
     uint32_t n = 0;

@@ -60,8 +60,8 @@ static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
     return true;
 }
 
-/* Gives faces an attribute of numbers under the name `material`, which otherwise has the labels
- * that name materials. Does nothing if faces have an attribute of that name. */
+/* Gives faces an attribute of numbers under the name `material`. Usually the attribute of that name
+ * has labels, the names of materials. Does nothing if faces have an attribute of that name. */
 static bool add_clash(he_mesh *m)
 {
     if (he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE) != NULL) {

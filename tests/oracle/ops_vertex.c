@@ -57,8 +57,8 @@ static bool would_go(const bool *gone, uint32_t f)
     return f == OR_NONE || gone[f];
 }
 
-/* Returns whether an element that is deleted together with the faces is locked; the vertex `alone`
- * is deleted, too. */
+/* Returns whether a deleted face, or an edge or vertex that is deleted together with the faces, is
+ * locked; the vertex `alone` is deleted, too. */
 static uint64_t locked_among(const or_mesh *o, const bool *gone, uint32_t alone, bool keep_isolated)
 {
     bool locked = alone != OR_NONE && o->vertex[alone].locked;

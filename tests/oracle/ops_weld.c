@@ -32,8 +32,8 @@ static bool repeats(const or_face *f)
     return false;
 }
 
-/* Returns why the faces cannot meet at their edges, as a set of refusals; faces in `skip` do not
- * count. */
+/* Returns why the faces cannot meet at their edges, as a set of refusals. Faces in `skip` are
+ * ignored. */
 static uint64_t clashes(const or_mesh *o, const bool *skip)
 {
     static uint8_t uses[OR_VERTICES][OR_VERTICES];
