@@ -398,8 +398,8 @@ static void a_cursor_is_of_its_revision(void **state)
     int revision = (int)number_of(r.json, "revision");
     int degree = (int)number_of(cJSON_GetArrayItem(items, 0), "degree");
     bench_reply_free(&r);
-    /* The next page shows the revision of the first page, so an edit between the two requests must
-     * not change it. */
+    /* The next page must show the mesh at the revision of the first page, so an edit between the
+     * two requests must not change the next page. */
     edit(b, "{\"op\":\"face_poke\",\"face\":3}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 200);
@@ -583,8 +583,8 @@ static char *repeated(const char *question, unsigned times)
     return text;
 }
 
-/* A read that a worker has to stop is started again on another thread and must be answered once. A
- * write is not stopped. */
+/* A request that reads takes longer than a worker may work on it: it is stopped, started again on
+ * another thread, and must be answered once. A request that writes is not stopped. */
 static void a_read_that_outstays_the_worker_begins_anew(void **state)
 {
     (void)state;

@@ -383,7 +383,7 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     } cases[] = {{"/v1/meshes/m", NULL, "*"},
                  {"/v1/meshes/m", "\"x\"", NULL},
                  {"/v1/meshes/absent", "*", NULL}};
-    /* a store with a journal in memory knows at once that a mesh id is unknown */
+    /* a store with a journal in memory knows at once that no mesh has this id */
     const st_journal forgetful = st_journal_memory();
     api_bench *b = begin_over(&forgetful);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -66,7 +66,7 @@ class Side {
         this.child.stdin.on('error', () => {});
     }
 
-    // Returns the measurement of a row; null if the program does not have it.
+    // Returns the measurement of a row; null if the program does not have this row.
     async run(row) {
         this.child.stdin.write(`${row}\n`);
         const { value: line, done } = await this.lines.next();

@@ -103,8 +103,8 @@ static void end_quickly(slow_client *s, const char *whole, size_t length)
     free(in);
 }
 
-/* The slow clients are more than the workers. They read nothing between begin_slowly and
- * end_quickly; if they delayed the requests that are sent meanwhile, the test would never end. */
+/* There are more slow clients than workers. They read nothing between begin_slowly and end_quickly;
+ * if they delayed the requests that are sent meanwhile, the test would never end. */
 static void slow_downloads_delay_nobody(void **state)
 {
     (void)state;

@@ -76,9 +76,10 @@ static void pack_and_unpack(api_coding coding, const uint8_t *bytes, size_t size
     free(packed);
 }
 
-/* If zlib or libzstd decodes the body in one call, the daemon must accept it, with the same bytes.
- * In one call zlib decodes one gzip member only, and libzstd accepts blocks larger than RFC 8878
- * allows: so gzip is not compared beyond the ratio, and zstd only if the daemon accepts it. */
+/* If zlib or libzstd decodes the body in one call, the daemon must accept it, too, and get the same
+ * bytes. There are two exceptions, which the caller leaves out: a gzip body that exceeds the
+ * allowed ratio, and a zstd body that the daemon refuses, because libzstd accepts blocks larger
+ * than RFC 8878 allows when it decodes in one call. */
 static void compare(api_coding coding, const uint8_t *bytes, size_t size, int code,
                     const unfolded *whole)
 {

@@ -670,12 +670,13 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
     if (he_mesh_faces(m) > 0 && he_mesh_boundary_halfedges(m) == 0 && md_chance(r, 10)) {
-        /* Dual is preferred on closed meshes, which are rare and do not stay closed. */
+        /* The operation `dual` is preferred on closed meshes, because these are rare and other
+         * edits soon open them. */
         choose(c, "dual");
     }
     he_op_defaults(c->op, c->args);
     const md_row *row = row_of(c->op->name);
-    /* A mesh with few faces is mostly spared from operations that make it smaller. */
+    /* If a mesh has few faces, operations that make it smaller are mostly skipped. */
     if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
         return false;
     }

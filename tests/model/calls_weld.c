@@ -6,7 +6,8 @@
 
 /* --- merging vertices --- */
 
-/* Draws the ends of two consecutive boundary edges, so that merging them makes the edges one. */
+/* Draws the two outer ends of two consecutive boundary edges. Merging these vertices makes one edge
+ * of the two edges. */
 static uint32_t draw_zip(md_draft *d, uint32_t v[2])
 {
     he_halfedge h = {md_boundary_halfedge(d)};

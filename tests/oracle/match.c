@@ -88,7 +88,8 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Finds which edge survives an edge_join: either of the two may, and keeps its direction. */
+/* Finds which of the two joined edges survives an edge_join. hedge may choose either one; the
+ * surviving edge keeps its direction. */
 static bool adopt_joined(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
 {
     bool alive[2];

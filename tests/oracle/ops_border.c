@@ -251,8 +251,8 @@ uint64_t or_edge_weld(or_mesh *o, uint32_t ea, uint32_t eb, or_keep keep)
     if (refused != 0) {
         return refused;
     }
-    /* The faces of the two edges must run along the joined edge in opposite directions, so the ends
-     * of one are exchanged if they do not. */
+    /* The faces of the two edges must run along the joined edge in opposite directions. If they do
+     * not, the two ends of one edge are exchanged. */
     if (forward != backward) {
         uint32_t swap = goes[0];
         goes[0] = goes[1];

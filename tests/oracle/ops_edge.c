@@ -323,7 +323,8 @@ void or_draw_together(or_mesh *o, const or_collapse *c)
         if (edge->alive && (edge->a == u || edge->b == u)) {
             uint32_t other = edge->a == u ? edge->b : edge->a;
             if (o->joined[v][other] != OR_NONE) {
-                edge->alive = false; /* the vertex v has an edge to this neighbour of u already */
+                edge->alive =
+                    false; /* an edge connects the vertex v with this neighbour of u already */
             } else {
                 *(edge->a == u ? &edge->a : &edge->b) = v;
             }

@@ -87,7 +87,8 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
     return refused;
 }
 
-/* If several edges get the same two ends, the lowest stays, unless it has no face left. */
+/* If several edges get the same two ends, only the edge with the lowest id stays. Edges that have
+ * no face left are deleted. */
 static void weld_edges(or_mesh *o, const uint32_t *to)
 {
     for (uint32_t e = 0; e < o->edges; e++) {
