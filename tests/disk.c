@@ -84,7 +84,7 @@ static bool sync_fails(void)
 
 typedef struct disk_file {
     sqlite3_file base;
-    bool writes; /* the file is a database, not a journal or log, and is open for writing */
+    bool writes; /* set if the file is a database, not a journal or log, and is open for writing */
     sqlite3_file *real;
 } disk_file;
 

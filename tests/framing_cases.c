@@ -13,7 +13,8 @@
 #define LAST   "0\r\n\r\n"
 
 #define BYTES(text) text, sizeof(text) - 1
-/* A case whose bytes are a correct request, so that a handler answers with this status. */
+/* Defines a test case whose bytes are a correct request, so that the daemon answers it with this
+ * status. */
 #define TAKEN(name, bytes, status)                               \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, NULL, 0, 0 \
@@ -22,7 +23,7 @@
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 0, 0 \
     }
-/* A case whose bytes have a framing fault, which the daemon must find. */
+/* Defines a test case whose bytes have a framing fault, which the daemon must find. */
 #define FAULT(name, bytes, status, code)                         \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 1, 1 \

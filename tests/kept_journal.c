@@ -24,10 +24,11 @@ struct st_stage {
     } * part;
 };
 
-/* A stored record. `uses` counts its mesh and the readers of its mesh, all of which need it. */
+/* A stored record. `uses` is a reference count: the mesh and each reader of the mesh have one
+ * reference. */
 typedef struct kept_record {
     size_t uses;
-    /* The record; its texts and body are copies, its Idempotency-Key is not stored. */
+    /* The record. Its texts and its body are copies; its Idempotency-Key is not stored. */
     st_record record;
     char name[ST_MESH_NAME + 1];
     char ops[256];
@@ -36,7 +37,7 @@ typedef struct kept_record {
 
 typedef struct kept_mesh {
     st_card card;
-    kept_record *base; /* the record with the whole mesh, encoded in the parts of its stage */
+    kept_record *base; /* the record with the whole mesh, which is encoded in parts */
     kept_record **records;
     size_t count, capacity, opened, parts;
     struct kept_mesh *next;
@@ -47,9 +48,10 @@ struct kept_journal {
     pthread_cond_t changed;
     kept_mesh *meshes; /* list of meshes, sorted by id */
     uint64_t newest;
-    size_t out; /* number of rooms, stages and readers that are not freed yet */
+    size_t out; /* number of rooms (reserved memory), stages (data written in advance) and readers
+                   that are not freed yet */
     st_status refuse;
-    size_t staged_edits; /* number of edits that were written in advance */
+    size_t staged_edits; /* number of edits whose bytes were written in advance */
     bool ignores;
     bool stopped;
     size_t waiting;
@@ -84,7 +86,7 @@ static void count_out(kept_journal *journal, int by)
     pthread_mutex_unlock(&journal->lock);
 }
 
-/* --- rooms (reserved memory) and stages (contents written in advance) --- */
+/* --- rooms (reserved memory) and stages (data written in advance) --- */
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)
 {
@@ -498,7 +500,8 @@ static void tell_health(void *self, st_health *out)
 
 st_journal kept_journal_open(kept_journal *journal)
 {
-    /* functions not set below are those of a journal for which everything is durable */
+    /* functions that are not set below are those of the journal in memory, for which every change
+     * is durable at once */
     st_journal out = st_journal_memory();
     out.self = journal;
     out.keeps = true;

@@ -503,7 +503,8 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     require_set(m, json_member(data, "modified"), true);
     apply_columns(m, data);
     const cJSON *materials = cJSON_GetObjectItem(data, "materials");
-    if (materials != NULL) { /* an event that changes a material has the whole table of materials */
+    if (materials !=
+        NULL) { /* an event that changes a material contains the whole table of materials */
         mirror_set_materials(m, materials);
     }
     apply_deleted(m, json_member(data, "deleted"));

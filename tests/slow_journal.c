@@ -56,7 +56,7 @@ static st_status stage_content(void *self, const he_mesh *content, st_stage **ou
     return ST_OK;
 }
 
-/* Counts an edit that is written in advance; its bytes are not stored. */
+/* Counts an edit whose bytes are written in advance; the bytes are not stored. */
 static st_status stage_edit(void *self, const unsigned char *bytes, size_t size, st_stage **out)
 {
     slow_journal *journal = self;
@@ -136,8 +136,8 @@ static void tell_measures(void *self, st_journal_measures *out)
     *out = ((const slow_journal *)self)->measures;
 }
 
-/* Keeps the first record of the newest group, with its room and stage, so that tests can examine
- * it. The caller must hold the lock. */
+/* Stores the first record of the newest group, with its room (reserved memory) and its stage (data
+ * written in advance), so that tests can examine them. The caller must hold the lock. */
 static void keep_newest(slow_journal *journal, st_room *room, const st_record *first)
 {
     journal_room_free(journal->room);

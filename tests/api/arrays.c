@@ -121,8 +121,9 @@ void arrays_assert_same(const arrays *a, const arrays *b)
     }
 }
 
-/* Checks that the triangles of each live face are consecutive and in order, that the rows reserved
- * for further triangles are zeros, and that each vertex has its row. */
+/* Checks the arrays of the mesh that a viewer draws: the triangles of each live face must be
+ * consecutive and in order, unused entries of the array of triangles must be zeros, and each vertex
+ * must have its own entry. */
 void arrays_check(const arrays *c, const he_mesh *m)
 {
     he_frame frame;

@@ -144,8 +144,8 @@ static void replace_all(api_text *text, const char *from, const char *to)
     api_text_clear(&out);
 }
 
-/* Replaces each part of the text that matches the pattern in a row of the file's list "differs" by
- * the text "shown" in that row. */
+/* Replaces parts of the text by what the examples file shows for them. Entry `row` of the file's
+ * list "differs" gives a pattern and the text "shown", which replaces each match of the pattern. */
 static void show(const session *s, uint32_t row, api_text *text)
 {
     char after[NAME], form[NAME], shown[NAME], pattern[2 * NAME + 2];
@@ -169,8 +169,8 @@ static void show(const session *s, uint32_t row, api_text *text)
     regfree(&compiled);
 }
 
-/* Replaces the parts of an answer that differ from run to run, such as ids, by what the file
- * shows. */
+/* Replaces the parts of an answer that differ from run to run, such as ids, by the fixed texts that
+ * the examples file has in their place. */
 static void settle(const session *s, api_text *text)
 {
     const he_json *json = &s->file->json;

@@ -50,9 +50,9 @@ static void link_halfedges(pg_mesh *pg)
         }
         pg->face_first[f] = find_halfedge(pg, pg->corners[f][0], pg->corners[f][1]);
     }
-    /* After a boundary half-edge h follows a boundary half-edge that starts where h ends. At a
-     * bow-tie, a vertex with several fans of faces, several half-edges qualify: pg_learn_next
-     * records which one the API has chosen. */
+    /* The half-edge after a boundary half-edge h is a boundary half-edge that starts where h ends.
+     * If that vertex is a bow-tie (it has several fans of faces), several half-edges qualify:
+     * pg_learn_next records which one the API has chosen. */
     for (unsigned h = 0; h < pg->halfedges; h++) {
         for (unsigned k = 0; k < pg->halfedges && pg->face[h] == PG_NONE; k++) {
             if (pg->face[k] == PG_NONE && pg->origin[k] == target(pg, h)) {
@@ -227,7 +227,7 @@ static unsigned read_off(const pg_mesh *pg, const char *kind, const char *what, 
     if (strcmp(what, "faces") == 0) {
         return pg->face[strcmp(kind, "face") == 0 ? h ^ 1u : h];
     }
-    return h; /* the relations outgoing, halfedges, loop and ring consist of the half-edges */
+    return h; /* the relations outgoing, halfedges, loop and ring list half-edges */
 }
 
 void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out)
@@ -324,8 +324,9 @@ void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_
     }
 }
 
-/* Returns the half-edge that follows `h` in a walk along edges, or across faces if `across` is set;
- * PG_NONE at the end of the walk. */
+/* Returns the half-edge that follows `h` in a walk, or PG_NONE at the end of the walk. The walk
+ * goes straight on from edge to edge, or, if `across` is set, from each edge to the opposite edge
+ * of a quadrilateral. */
 static unsigned onward(const pg_mesh *pg, bool across, unsigned h)
 {
     pg_list about = {.count = 0};

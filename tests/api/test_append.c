@@ -1,5 +1,5 @@
-/* The edit `append` adds a second mesh to the edited one. The second mesh is found by its id, its
- * present state is used, and the edit is refused if it is not available. */
+/* The edit `append` adds a copy of a second mesh to the edited mesh. The second mesh is named by
+ * its id and copied in its present state. If it is not available, the edit is refused. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -175,8 +175,9 @@ static void no_mesh_gets_more_attributes_than_it_may(void **state)
     bench_free(b);
 }
 
-/* The appended mesh is so large that the edit makes its result outside the mesh's lock. Each
- * `append`, of the mesh to itself or to a small mesh, must use the state before the edit. */
+/* The appended mesh is so large that the edit makes its result outside the mesh's lock. Whether the
+ * large mesh is appended to itself or to a small mesh, `append` must copy its state before the
+ * edit. */
 static void a_large_mesh_takes_in_and_is_taken_in(void **state)
 {
     (void)state;

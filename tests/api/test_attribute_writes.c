@@ -189,7 +189,7 @@ static void an_edit_adds_no_more_attributes_or_labels(void **state)
     for (int i = 1; i < API_MAX_LABELS; i++) {
         api_text_add_format(&labels, ",\"%d\"", i);
     }
-    api_text_add(&labels, "]}", 3); /* the 3 bytes are "]}" and its NUL */
+    api_text_add(&labels, "]}", 3); /* the 3 bytes are ']', '}' and the NUL that ends the text */
     assert_false(labels.failed);
     strip_send(b, 201, "PUT", "/v1/meshes/n/attributes/faces/material", labels.bytes);
     strip_send(b, 413, "POST", "/v1/meshes/n/edits",

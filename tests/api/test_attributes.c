@@ -93,7 +93,8 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
             size_t got;
             char *back = read_all(b, target, OCTETS, &got);
             assert_int_equal(got, length);
-            /* in the mesh "plain" no element was deleted, so all rows are read back */
+            /* no element of the mesh "plain" was deleted, so the values of all elements are read
+             * back */
             if (strcmp(mesh, "plain") == 0) {
                 assert_memory_equal(back, body, length);
             }

@@ -71,7 +71,8 @@ static state_of take(api_bench *b)
                       bench_expect(200, bench_get(b, "/v1/meshes/m/edits"))};
 }
 
-/* Requires that the mesh, the answers about it and its history are as they were in `before`. */
+/* Requires that the mesh, the answers about it and its history equal those that `before`
+ * recorded. */
 static void expect_same(api_bench *b, state_of *before)
 {
     state_of now = take(b);

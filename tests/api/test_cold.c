@@ -225,8 +225,8 @@ static void what_the_client_has_of_a_cold_mesh_loads_nothing(void **state)
     assert_string_equal(bench_header(&is, "ETag"), tag);
     bench_done(is);
     assert_int_equal(loads("m"), 0);
-    /* If the entity tag in the request is from another revision than the requested one, the client
-     * gets the whole answer, which loads the mesh. */
+    /* If the client has a cached copy of another revision than the one that it requests, it gets
+     * the whole answer, for which the mesh must be loaded. */
     bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m?revision=2", has, NULL)));
     poke(b, "m", 0);
     b = restart(b);

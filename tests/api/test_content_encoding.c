@@ -49,8 +49,8 @@ static bench_reply get(api_bench *b, const char *target, const char *accept)
     return bench_send(b, "GET", target, HEADERS("Accept-Encoding", accept), NULL);
 }
 
-/* Sends `plain` with its body compressed by `coding`, and with headers for this coding and for the
- * media type `type`; `plain` itself has no headers. */
+/* Sends the request `plain`, which has no headers, with its body compressed by `coding`. Headers
+ * for this coding and for the media type `type` are added. */
 static bench_reply send_packed(api_bench *b, const char *coding, const char *type,
                                const bench_request *plain)
 {
@@ -445,8 +445,8 @@ static void what_is_not_the_coding_is_refused(void **state)
     bench_free(b);
 }
 
-/* Begins the upload of an OBJ file in zstd: the frame header, which declares a window of 8 MiB, is
- * sent, and nothing of the contents. */
+/* Begins the upload of an OBJ file compressed with zstd. Only the frame header is sent, which
+ * declares a window of 8 MiB; the file's bytes are still to come. */
 static api_exchange *begin_wide(api_bench *b, api_step *step)
 {
     static const char frame[] = {0x28,   (char)0xB5, 0x2F, (char)0xFD, 0,   13 << 3,

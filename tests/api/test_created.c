@@ -17,9 +17,9 @@ static int vertices_of(const bench_reply *summary)
     return cJSON_GetObjectItem(counts, "vertices")->valueint;
 }
 
-/* If set, a second request changes the new mesh after the mesh was created and before the request
- * that created it is answered. The linker makes calls of st_create_from go to the wrapper in this
- * file (Makefile). */
+/* If set, a second request changes the new mesh after it was created and before the first request,
+ * which created it, is answered. The linker replaces calls of st_create_from by calls of the
+ * wrapper in this file (see the Makefile). */
 static bool meddling;
 static uint32_t victim; /* the vertex of the new mesh that the second request deletes */
 
@@ -56,7 +56,8 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
     api_bench *b = bench_new();
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         meddling = true;
-        /* the vertex differs in each step, because the third mesh is a copy of the second */
+        /* the second request deletes another vertex in each step, because the third mesh is a copy
+         * of the second one, in which a vertex is already missing */
         victim = (uint32_t)i;
         bench_reply r = bench_expect(201, bench_send(b, made[i][0], made[i][1], NULL, made[i][2]));
         meddling = false;

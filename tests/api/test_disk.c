@@ -39,8 +39,8 @@ static void lose_newest(st_status why)
 /* --- changes of the mesh are lost before a write begins --- */
 
 /* If not ST_OK, the newest change is lost right before the next write begins, with this status as
- * the reason. The linker makes calls of st_write_begin go to the wrapper in this file (Makefile),
- * in which the journal reports the loss. */
+ * the reason. The linker replaces calls of st_write_begin by calls of the wrapper in this file (see
+ * the Makefile), in which the journal reports the loss. */
 static st_status loss_before;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -64,8 +64,8 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
         const char *code, *retry;
     } cases[] = {{ST_FULL, ST_FULL, 507, "store_full", ""},
                  {ST_FAILED, ST_FAILED, 503, "store_failed", "1"},
-                 /* The change was lost while the disk was full, but now there is space again. If
-                  * the client repeats the request, the mesh is in its last durable state. */
+                 /* The change was lost because the disk was full, but now there is space again. A
+                  * client that repeats the request finds the mesh in its last durable state. */
                  {ST_FULL, ST_OK, 503, "store_lost", "0"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_bench *b = begin();
@@ -76,8 +76,8 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
             cases[i].status, bench_send(b, "PATCH", "/v1/meshes/m", NULL, "{\"name\":\"y\"}"));
         assert_string_equal(bench_text(&r, "code"), cases[i].code);
         assert_string_equal(bench_header(&r, "Retry-After"), cases[i].retry);
-        /* The refusal does not wait for the disk. If it waited, it could be replaced by another
-         * refusal when the service notices the lost change. */
+        /* The refusal is sent without waiting for the disk. If it waited, the service might notice
+         * the lost change meanwhile and send another refusal. */
         assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
         bench_reply_free(&r);
         bench_free(b);
@@ -118,8 +118,8 @@ st_status __wrap_st_write_commit(st_write *w, const char *ops)
     return __real_st_write_commit(w, ops);
 }
 
-/* When the copy is made the disk works again, so the copy can only be refused because changes of
- * its source were lost. */
+/* When the copy is made, the disk works again. So the only possible reason to refuse the copy is
+ * that changes of the copied mesh were lost. */
 static void what_was_lost_is_not_copied_or_appended(void **state)
 {
     (void)state;
@@ -222,8 +222,8 @@ static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void *
     assert_int_equal(journal.staged_edits, 0);
     staging_for = b;
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    /* A list of API_CLAIM_EDITS operations changes so many rows that the edit needs the exclusive
-     * right to write the mesh (a claim), whether it runs on a worker or as a job. */
+    /* A list of API_CLAIM_EDITS operations changes so many elements that the edit needs the
+     * exclusive right to write the mesh (a claim), whether it runs on a worker or as a job. */
     splits(b, API_CLAIM_EDITS);
     assert_int_equal(journal.staged_edits, 1);
     bench_free(b);
@@ -240,8 +240,9 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     char body[80];
     api_bench *b = begin();
     slow_journal_advance(&journal, UINT64_MAX);
-    /* A change of an attribute is encoded for the journal: for a small mesh while the mesh is
-     * locked, and for a large one before that, which is called staging. */
+    /* A change of an attribute is encoded for the journal. For a small mesh this happens while the
+     * mesh is locked; for a large mesh it happens before the mesh is locked, which is called
+     * staging. */
     bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\"}")));
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     (void)snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE,
@@ -281,8 +282,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
 
 /* --- an answer that waits until its change is durable --- */
 
-/* The answers to the writes wait because the changes are not on the disk yet. Once the changes are
- * durable, the meshes can be evicted from memory, even if the answers have not been sent. */
+/* The answers to the writes are not sent until the changes are on the disk. Once they are, the
+ * meshes can be evicted from memory, even if the answers have not been sent yet. */
 static void a_mesh_can_be_evicted_while_the_answer_that_made_it_waits(void **state)
 {
     (void)state;

@@ -122,7 +122,7 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
 }
 
 /* Number of calls of he_changes_find and he_changes_sum, which find what an edit changed. The
- * linker makes these calls go to the wrappers below (Makefile). */
+ * linker replaces these calls by calls of the wrappers below (see the Makefile). */
 static unsigned finds;
 
 he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
@@ -376,9 +376,9 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     stream_dump(b, &copy);
     while (now.revision < EDITS) {
         /* The random edits leave out `compact`, which deletes the history, and two kinds of edits
-         * that the history does not describe in detail: refinements, and attributes that a material
-         * adds. The mesh stays so small that an edit of all its elements fits into one message; an
-         * edit that emptied the mesh is undone. */
+         * that the history does not describe in detail: refinements of the mesh, and material edits
+         * that add an attribute. The mesh stays so small that a change of all its elements fits
+         * into one message; an edit that emptied the mesh is undone. */
         size_t row = md_below(&random, (uint32_t)he_op_count());
         const char *name = he_op_at(row)->name;
         size_t faces = mirror_count(&now, HE_FACE);
@@ -457,7 +457,8 @@ static void what_cannot_be_told_is_one_resync(void **state)
     (void)state;
     api_bench *b = bench_new();
     make_four_revisions(b);
-    require_resync(b, "since=1", NULL, "gap"); /* revision 1 is from before the mesh was replaced */
+    require_resync(b, "since=1", NULL, "gap"); /* revision 1 belongs to the mesh that was replaced,
+                                                  so no events lead from it to the present mesh */
     make_four_revisions(b);
     require_resync(b, "since=5", NULL, "future");
     make_four_revisions(b);

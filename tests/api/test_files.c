@@ -389,8 +389,8 @@ static void a_report_says_what_was_read_and_what_was_not(void **state)
     bench_free(b);
 }
 
-/* ?format= determines the format of a body, or else its Content-Type. If the bytes look like
- * another format, the refusal must say which. */
+/* The format of a body is given by ?format=, or, without that, by the header Content-Type. If the
+ * bytes look like another format, the refusal must say which. */
 static void a_body_of_another_format_is_told(void **state)
 {
     (void)state;

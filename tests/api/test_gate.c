@@ -2,8 +2,8 @@
  * (api/request/gate.h), must decide correctly, and the tests must fail if any one of its checks is
  * left out.
  *
- * The linker makes calls of each check go to a wrapper in this file (Makefile), so that the program
- * can leave out one check at a time. */
+ * The linker replaces calls of each check by calls of a wrapper in this file (see the Makefile), so
+ * that the program can leave out one check at a time. */
 #include "tests/api/gate.h"
 
 #include "api/request/gate.h"
@@ -19,8 +19,8 @@
 
 #include <cmocka.h>
 
-/* X(name of a check, its return type, its parameters, its arguments, the result if it is left
- * out) */
+/* Each row is X(name of a check, its return type, its parameters, its arguments, the result that
+ * the wrapper returns if the check is left out). */
 #define CHECKS(X)                                                                                  \
     X(api_gate_enter, bool, (api_exchange * x), (x), true)                                         \
     X(api_gate_sees, bool, (const api_exchange *x, const char *mesh), (x, mesh), true)             \
@@ -57,8 +57,8 @@
     X(api_tokens_find, api_token *, (api_tokens * s, const char *text, size_t length, double now), \
       (s, text, length, now), __real_api_tokens_find(s, "boss-s3cr3t", 11, now))
 
-/* X(name of a function without a result, its parameters, its arguments); if it is left out, the
- * wrapper does nothing */
+/* Each row is X(name of a function without a result, its parameters, its arguments). If the
+ * function is left out, its wrapper does nothing. */
 #define ACTIONS(X)                                                       \
     X(api_rating_charge, (api_exchange * x, uint64_t bytes), (x, bytes)) \
     X(api_tokens_watch, (api_tokens * s, api_token_watch * w), (s, w))
@@ -128,7 +128,7 @@ static void each_check_that_is_left_out_is_noticed(void **state)
 #undef NAME
     size_t unnoticed = 0;
     for (left_out = 0; left_out < CHECK_COUNT; left_out++) {
-        /* gate_limit_findings() is called before gate_findings() because it takes less time */
+        /* gate_limit_findings() is called first because it takes less time than gate_findings() */
         size_t findings = gate_limit_findings(false);
         findings = findings > 0 ? findings : gate_findings(false);
         printf("note: without %s: %zu findings\n", names[left_out], findings);
@@ -138,9 +138,9 @@ static void each_check_that_is_left_out_is_noticed(void **state)
     assert_int_equal(unnoticed, 0);
 }
 
-/* The time of a lookup must not reveal whether a ticket was found, or how much of its hash was
- * correct. So the lookup must compare the hashes of all tickets, even after it has found the right
- * one. */
+/* The time of a lookup must not reveal whether a ticket was found, or how much of a guessed ticket
+ * was correct. So the lookup must compare the hashes of all tickets, even after it has found the
+ * right one. */
 static void as_many_tickets_are_compared_whichever_is_found(void **state)
 {
     (void)state;
@@ -165,9 +165,9 @@ static void as_many_tickets_are_compared_whichever_is_found(void **state)
     api_tickets_free(tickets);
 }
 
-/* A lookup must compare the tokens of its whole hash bucket, even after it has found the right one.
- * So each of the k tokens in a bucket is found after k comparisons, and the number of tokens that
- * are found after k comparisons is a multiple of k. */
+/* A lookup must compare all tokens in a bucket of the hash table, even after it has found the right
+ * one. So the lookup of each of the k tokens in a bucket takes k comparisons, and the number of
+ * tokens whose lookup takes k comparisons is a multiple of k. */
 static void as_many_tokens_are_compared_whichever_is_found(void **state)
 {
     (void)state;

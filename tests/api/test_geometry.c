@@ -181,8 +181,8 @@ static void edit(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* If elements are deleted, the rows of the other vertices must stay in their places, because
- * vertices keep their ids. The rows of triangles must stay without gaps. */
+/* The array of vertices has an entry for each vertex id, so the entries of the remaining vertices
+ * must not move when elements are deleted. The array of triangles must stay without gaps. */
 static void rows_of_vertices_keep_their_ids_when_others_are_deleted(void **state)
 {
     (void)state;
@@ -204,7 +204,8 @@ static void rows_of_vertices_keep_their_ids_when_others_are_deleted(void **state
     bench_free(b);
 }
 
-/* An edit followed by its undo must give the same rows as before; only the revision may differ. */
+/* An edit followed by its undo must give the same arrays as before; only the revision may
+ * differ. */
 static void an_undo_brings_back_the_same_rows(void **state)
 {
     (void)state;

@@ -1,9 +1,8 @@
-/* A client's arrays that are updated by the answers of GET .../geometry?since= must equal the rows
- * that a new client fetches.
- *
- * The environment gives EDITS, the number of random edits (default 3000), and SEED (default: from
- * the clock). A layout is an assignment of elements to rows; a client whose layout is outdated gets
- * an answer with all rows. */
+/* A client keeps the arrays of vertices and triangles and updates them by the answers of GET
+ * .../geometry?since=. They must equal the arrays that a new client fetches.
+ *  The environment gives EDITS, the number of random edits (default 3000), and SEED (default:
+ * from the clock). A layout assigns elements to entries of the arrays; a client whose layout is
+ * outdated gets an answer with all entries. */
 #include "tests/api/arrays.h"
 #include "tests/writing.h"
 
@@ -230,7 +229,7 @@ static void end(world *w)
 }
 
 /* Two clients follow random edits. One requests the changes after nearly every edit, the other one
- * only after many edits. Both must have the rows that a new client fetches. */
+ * only after many edits. The arrays of both must equal those that a new client fetches. */
 static void patched_arrays_equal_fresh_ones(void **state)
 {
     (void)state;
@@ -317,8 +316,8 @@ static void an_answer_lists_only_the_rows_that_an_edit_touched(void **state)
     arrays_update(w.b, "m", &c);
     post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":5}");
     bench_reply r = arrays_ask(w.b, "m", &c);
-    /* The split added a vertex and made pentagons of two quadrilaterals, so their triangles need
-     * six rows instead of four. */
+    /* The split added a vertex and made pentagons of two quadrilaterals, so six triangles instead
+     * of four are needed to draw them. */
     assert_int_equal(arrays_u32(r.body + 88), 1);
     assert_true(arrays_u32(r.body + 92) <= 10);
     assert_true(r.length <= HEADER + 16 + 16 + 48 + 160);
@@ -327,8 +326,8 @@ static void an_answer_lists_only_the_rows_that_an_edit_touched(void **state)
     end(&w);
 }
 
-/* The entity tag must contain the revision, the layout, and the earlier revision in ?since=, from
- * which on the answer lists the changes. */
+/* The entity tag must contain the revision, the layout of the arrays, and the revision in ?since=,
+ * after which the listed changes were made. */
 static void tags_depend_on_the_revision_and_on_since(void **state)
 {
     (void)state;
@@ -384,7 +383,7 @@ static void bad_parameters_are_refused_and_old_layouts_get_all_rows(void **state
         bench_reply_free(&r);
     }
     /* A request with a `since` later than the newest revision is refused. If the request names
-     * another layout, its `since` is ignored and it gets all rows. */
+     * another layout, its `since` is ignored and the answer has the whole arrays. */
     arrays ahead = {.revision = c.revision + 1, .layout = c.layout};
     bench_reply r = arrays_ask(w.b, "m", &ahead);
     assert_int_equal(r.status, 400);
@@ -395,7 +394,7 @@ static void bad_parameters_are_refused_and_old_layouts_get_all_rows(void **state
     assert_true(arrays_u64(r.body + 16) == 0 && arrays_u64(r.body + 80) == c.layout);
     bench_reply_free(&r);
     /* The service records changes only after the first request for arrays. A client that names an
-     * earlier revision must get all rows. */
+     * earlier revision must get the whole arrays. */
     poke(w.b, 0);
     poke(w.b, 1);
     put(w.b, starts[1]);
@@ -455,7 +454,8 @@ static void a_layout_outlives_small_edits_and_ends_when_it_does_not_fit(void **s
     arrays_update(w.b, "m", &c);
     uint64_t fifth = c.layout;
     assert_true(fifth != fourth);
-    /* A new layout begins when more than half of the rows of triangles are unused. */
+    /* A new layout begins when more than half of the entries of the array of triangles are
+     * unused. */
     for (int face = 0; face < 48; face += 12) {
         char body[200];
         int used = snprintf(body, sizeof body, "{\"op\":\"face_delete\",\"faces\":[%d", face);
@@ -483,8 +483,8 @@ static void the_pool_answers_a_large_mesh_with_changes(void **state)
     poke(w.b, 77);
     arrays_update(w.b, "m", &c);
     assert_true(c.whole == 1 && c.changes == 1 && c.bytes < 300);
-    /* The transform changes many rows, but not most of them, so the answer must still consist of
-     * changes. */
+    /* The transform changes many vertices, but not most of them, so the answer must still consist
+     * of changes. */
     post(w.b, "/v1/meshes/m/edits",
          "{\"op\":\"transform\",\"matrix\":[1,0,0,0.001,0,1,0,0,0,0,1,0,0,0,0,1]}");
     arrays_update(w.b, "m", &c);

@@ -26,8 +26,8 @@ static uint64_t head_of(api_bench *b)
     return revision;
 }
 
-/* Returns every element with all its links and values, and the document of the mesh, at the
- * revision `revision`; 0 means the present one. */
+/* Returns every element with all its links and values, and the mesh as a JSON document, at the
+ * revision `revision`; a `revision` of 0 means the present one. */
 static char *dump(api_bench *b, uint64_t revision)
 {
     static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
@@ -152,7 +152,8 @@ typedef struct model {
     uint64_t head;
     uint64_t done[MOST], undone[MOST];
     size_t done_count, undone_count;
-    /* for each revision, the newest edit in `done` at that time; 1 if there was none */
+    /* for each revision, the newest edit in `done` when the revision was made; 1 if `done` was
+     * empty */
     uint64_t state[MOST];
     char *dumps[MOST];
 } model;
@@ -332,8 +333,8 @@ static void every_revision_stays_what_it_was(void **state)
     char *again = dump(b, 0);
     assert_string_equal(again, last);
     printf("note: %" PRIu64 " revisions, %zu steps deep\n", m->head, deepest);
-    /* Reads the earlier revisions in a mixed order. Each must read as it did when it was the newest
-     * one. */
+    /* Reads the earlier revisions in a mixed order. Each answer must equal the one that the mesh
+     * gave when the revision was the newest. */
     for (uint64_t i = 0; i < m->head; i++) {
         uint64_t revision = 1 + (i * 37 + 11) % m->head;
         char *then = dump(b, revision);
@@ -398,7 +399,8 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
             snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
             r = history_post(b, "undo", body);
             assert_true(r.status == 410 || r.status == 200);
-            /* undo succeeds (200) if it can reach another revision with equal content */
+            /* undo succeeds (200) if it can reach another revision at which the mesh was the
+             * same */
             if (r.status == 200) {
                 char *same = dump(b, 0);
                 assert_string_equal(same, dumps[oldest - 1]);
@@ -606,8 +608,8 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     bench_reply r = bench_expect(200, history_post(b, "undo", "{\"to_revision\":2}"));
     assert_int_equal(history_number(r.json, "revision"), 4);
     bench_done(r);
-    /* A state that was undone and then followed by another edit can be read, but neither undo nor
-     * redo leads to it. */
+    /* A state that was left by undo, after which another edit was made, can be read, but neither
+     * undo nor redo leads to it. */
     bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
     r = bench_expect(409, history_post(b, "undo", "{\"to_revision\":3}"));
     assert_string_equal(history_code(&r), "unreachable_revision");
@@ -640,7 +642,7 @@ static void a_finer_mesh_is_one_step_of_the_history(void **state)
     bench_done(bench_expect(200, history_post(b, "redo", "{\"steps\":2}")));
     char *again = dump(b, 0);
     assert_string_equal(again, after);
-    /* An id that an undone edit has issued must not be issued again. */
+    /* Later edits must not issue the ids of elements that an undone edit made. */
     bench_done(bench_expect(200, history_post(b, "undo", "{\"steps\":3}")));
     r = bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}"));
     const cJSON *results = cJSON_GetObjectItem(r.json, "results");

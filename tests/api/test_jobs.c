@@ -149,7 +149,7 @@ static void what_is_wrong_with_the_request_is_said_at_once(void **state)
     bench_reply_free(&r);
     r = expect(412, "POST", "/v1/meshes/m/copy", stale, NULL);
     bench_reply_free(&r);
-    /* the edit succeeds because no job has claimed the mesh */
+    /* the edit succeeds because no job has the exclusive right to write the mesh */
     send(200, "POST", "/v1/meshes/m/edits", POKE);
 }
 
@@ -200,8 +200,8 @@ static void beyond_the_queue_jobs_are_refused(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "too_many_jobs");
     assert_string_not_equal(bench_header(&r, "Retry-After"), "");
     bench_reply_free(&r);
-    /* An edit claims its mesh while it waits as a job. If the queue has no space for the job, the
-     * claim must be released. */
+    /* An edit that waits as a job claims its mesh (no other request may write it). If the queue has
+     * no space for the job, the claim must be released. */
     send(201, "PUT", "/v1/meshes/m", LARGE);
     r = expect(503, "POST", "/v1/meshes/m/edits", async, TRANSFORM);
     bench_reply_free(&r);
@@ -233,8 +233,8 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
-/* Requires that the request is refused because the job `job` has claimed the mesh, and that the
- * refusal names this job. */
+/* Requires that the request is refused because the job `job` has the exclusive right to write the
+ * mesh, and that the refusal names this job. */
 static void expect_named(const char *job, const char *method, const char *target, const char *body)
 {
     bench_reply r = expect(409, method, target, NULL, body);
@@ -510,8 +510,8 @@ static api_exchange *listen_to(const char *job, const api_source **live)
     return x;
 }
 
-/* The mesh of a job is deleted, and another mesh is created with its id. Listeners of the new mesh
- * must get no events about the job. */
+/* The mesh of a job is deleted, and another mesh is created with the same id. Listeners of the new
+ * mesh must get no events about the job. */
 static void a_job_is_told_to_followers_of_its_own_mesh_only(void **state)
 {
     (void)state;
@@ -563,7 +563,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "event: bye\ndata: {\"reason\":\"ended\"}"));
     api_free(x);
 
-    /* A listener that comes after the end of the job gets the final event at once. */
+    /* A listener that connects after the end of the job gets the final event at once. */
     x = listen_to(path, &live);
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
@@ -630,7 +630,7 @@ static void starve(const char *method, const char *target, const char *body)
             assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
             bench_reply_free(&r);
         }
-        /* Whether the request was refused, the job failed or it succeeded, the mesh must be
+        /* Whether the request was refused, or the job failed, or both succeeded, the mesh must be
          * writable afterwards. */
         send(200, "POST", "/v1/meshes/m/edits", POKE);
         bench_free(bench);

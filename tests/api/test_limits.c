@@ -171,7 +171,8 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
     pass_seconds(10);
     bench_done(bench_expect(404, bench_send(b, "HEAD", "/v1/meshes/none", NULL, NULL)));
     pass_seconds(10);
-    api_charge(x, 200); /* api_charge() charges the client with the 200 bytes of an answer */
+    api_charge(x,
+               200); /* api_charge() counts the 200 bytes of an answer against the client's limit */
     expect(b, 429, "/v1/meshes");
     api_free(x);
     pass_seconds(10);
@@ -280,7 +281,7 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     expect_code(r, 429, "too_many_jobs_of_token",
                 "the token is limited to 2 jobs that wait or run");
-    /* the limit of jobs does not apply to a request that does not become a job */
+    /* the limit applies only to requests that become jobs */
     bench_done(bench_expect(200, bench_get(b, check)));
     bench_use_token(b, "prueba");
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));

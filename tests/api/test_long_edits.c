@@ -103,7 +103,7 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
 enum { REVISIONS = 80, SOME = 6 };
 
 /* Creates a mesh so large that an edit of all its elements works on a copy, which then replaces the
- * content of the mesh. */
+ * mesh. */
 static void put_large(api_bench *b)
 {
     int status =

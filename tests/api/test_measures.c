@@ -149,7 +149,8 @@ static void octets_are_doubles_and_null_is_nan(void **state)
         numbers += !isnan(value);
         assert_true(isnan(value) || fabs(value) < 1e-12);
     }
-    /* one vertex, which is not on the boundary, has a curvature; the others have none (NaN) */
+    /* only one vertex is not on the boundary and so has a curvature; the value of each other vertex
+     * is NaN */
     assert_int_equal(numbers, 1);
     bench_reply_free(&r);
     r = bench_send(b, "POST", QUERY, octets,
@@ -264,9 +265,9 @@ static void faces_that_meet_are_listed_up_to_a_limit(void **state)
     bench_free(b);
 }
 
-/* Three thousand triangles lie in one place, so a question about that place has to visit all of
- * them. The steps of all questions in a request count toward one budget, but the first question is
- * always answered. */
+/* Three thousand triangles lie at one position, so a question about that position has to visit all
+ * of them. The visits for all questions of a request count toward one budget, but the first
+ * question is always answered. */
 static void crowded_places_have_a_budget(void **state)
 {
     (void)state;
@@ -321,8 +322,8 @@ static void crowded_places_have_a_budget(void **state)
 
 /* --- isolated vertices far away --- */
 
-/* Returns the answer to a request about a cube and an isolated vertex. The vertex is at the
- * distance `far`, or, if that is 0, at the origin: inside the cube and on no face. */
+/* Returns the answer to a request about a cube and an isolated vertex at the distance `far`. If
+ * `far` is 0, the vertex is at the origin, which is inside the cube and on no face. */
 static bench_reply ask_cube(api_bench *b, double far, const char *method, const char *target,
                             const char *body)
 {

@@ -1,5 +1,5 @@
-/* The handler of a route that reads is called once per request, with the requested state of the
- * mesh in x->content. */
+/* The handler of a route that reads a mesh is called once per request, and finds the requested
+ * state of the mesh in x->content. */
 #include "tests/api/request.h"
 
 #include "api/request/mesh_access.h"
@@ -103,7 +103,8 @@ static api_bench *bench_of_two_revisions(void)
 }
 
 /* Sends a request to a route of the test's table and returns the status of the answer. `*step`
- * becomes the state of the request when it left the worker. */
+ * becomes the step that the request needed after its head was read: API_READY, or API_WORK if a
+ * worker had to run; this function then does that work. */
 static int ask(api_service *service, const char *word, const char *query, const char *tag,
                api_step *step)
 {
@@ -236,8 +237,8 @@ static void rows_that_read_content_say_so(void **state)
 
 /* --- two requests compute the layout of the arrays at the same time --- */
 
-/* If not NULL, a second request on this bench computes the layout of the mesh while the first
- * request computes it. */
+/* If not NULL, this bench sends a second request while the first one computes the layout of the
+ * mesh's arrays; the second request computes the layout, too. */
 static api_bench *interrupted;
 static uint64_t others_layout;
 

@@ -21,7 +21,7 @@ static const char type[] = "multipart/form-data; boundary=" BOUNDARY;
 typedef struct file {
     const char *name, *type;
     const char *bytes;
-    size_t length; /* 0: `bytes` is a NUL-terminated text */
+    size_t length; /* 0 if `bytes` is a NUL-terminated text */
 } file;
 
 enum { MOST_FILES = 4, MOST_BODY = 4096 };
@@ -156,8 +156,8 @@ static void a_buffer_that_did_not_come_is_named(void **state)
     expect_refused(
         422, "unsupported", "the buffer is in another file, 'a.bin': send both",
         send_files(b, "/v1/meshes", (file[MOST_FILES]){{"a.gltf", NULL, GLTF("a.bin"), 0}}));
-    /* The body has two files of the name to which the glTF refers, in other folders. The request is
-     * refused, because either file could be the right one. */
+    /* The body has two files, in different folders, whose name is the one to which the glTF refers.
+     * The request is refused, because either file could be meant. */
     expect_refused(422, "unsupported", "the file 'x/a.bin' of a buffer was not sent",
                    send_files(b, "/v1/meshes",
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("x/a.bin"), 0},
@@ -280,7 +280,7 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     expect_refused(415, "unsupported_media_type", "multipart/mixed",
                    bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", mixed, packed.bytes,
                                                         packed.length}));
-    packed.length -= 4; /* cuts off "--" and the line break at the end of the body */
+    packed.length -= 4; /* leaves out "--" and the line break at the end of the body */
     expect_refused(400, "bad_multipart", "ends before its last delimiter",
                    send_body(b, "POST", "/v1/meshes", &packed));
     /* A mistake in the mesh file is reported as soon as it is read, before the other files have
@@ -314,8 +314,8 @@ static void another_boundary_is_the_same_request(void **state)
         bench_reply_free(&r);
     }
     free(first);
-    /* If the name or the bytes of any file change, an Idempotency-Key must treat the body as
-     * another request. */
+    /* A request with the same Idempotency-Key counts as another request if the name or the bytes of
+     * any file have changed. */
     for (size_t i = 0; i < 2; i++) {
         file *changed = &files[1];
         *changed = i == 0 ? (file){"b.mtl", NULL, MTL, 0} : (file){"a.mtl", NULL, MTL "\n", 0};

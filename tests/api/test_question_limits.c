@@ -50,7 +50,7 @@ static api_bench *begin(void)
 
 typedef struct refusal {
     const char *target; /* after /v1/meshes/m */
-    const char *body;   /* NULL: the request is a GET */
+    const char *body;   /* NULL if the request is a GET */
     int status;
     const char *code;
     const char *pointer; /* NULL: none */
@@ -153,8 +153,8 @@ static const refusal refusals[] = {
     {QUERY, "{\"queries\":[],\"limit\":1}", 400, "unknown_member", "/limit"},
 };
 
-/* Questions with mistakes. Each is sent as the second of several questions: the refusal must stand
- * in the place of its answer, and the other questions must be answered. */
+/* Questions with mistakes. Each is sent as the second of several questions: the refusal must take
+ * the place of the answer to this question, and the other questions must be answered. */
 static const refusal bad_questions[] = {
     {NULL, "1", 400, "wrong_type", ""},
     {NULL, "{}", 400, "missing_member", ""},
@@ -398,8 +398,8 @@ static void a_cursor_is_of_its_revision(void **state)
     int revision = (int)number_of(r.json, "revision");
     int degree = (int)number_of(cJSON_GetArrayItem(items, 0), "degree");
     bench_reply_free(&r);
-    /* The next page shows the revision of the first page, so an edit between the two requests must
-     * not change it. */
+    /* The next page must show the mesh at the revision of the first page, so an edit between the
+     * two requests must not change the next page. */
     edit(b, "{\"op\":\"face_poke\",\"face\":3}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 200);
@@ -442,8 +442,8 @@ static bool has_no_time(void *context, const char *phase, double done)
     return false;
 }
 
-/* Runs a request step by step, which shows whether it moved from the worker to the job pool.
- * Streamed answers are read in pieces of odd sizes. */
+/* Runs a request step by step, so that the test sees whether the request moved from the worker to
+ * the job pool. Streamed answers are read in pieces of odd sizes. */
 static driven drive(api_bench *b, const char *method, const char *path, const char *accept,
                     const char *body)
 {
@@ -583,8 +583,8 @@ static char *repeated(const char *question, unsigned times)
     return text;
 }
 
-/* A read that a worker has to stop is started again on another thread and must be answered once. A
- * write is not stopped. */
+/* A request that reads takes longer than a worker may work on it: it is stopped, started again on
+ * another thread, and must be answered once. A request that writes is not stopped. */
 static void a_read_that_outstays_the_worker_begins_anew(void **state)
 {
     (void)state;

@@ -378,8 +378,9 @@ static void questions_are_of_the_revision(void **state)
     static const char walk[] = "{\"walk\":\"breadth_first\",\"from\":{\"face\":1}}";
     static const struct {
         int revision;
-        const char *first, *second; /* expected error codes; NULL: the question is answered */
-        int faces, walked;          /* 0: refused */
+        const char *first,
+            *second;       /* the expected error code, or NULL if the question must be answered */
+        int faces, walked; /* 0: refused */
     } rows[] = {{1, NULL, "no_such_element", 6, 6},
                 {2, NULL, NULL, 9, 9},
                 {3, "deleted_element", NULL, 8, 0},

@@ -37,11 +37,11 @@ static api_bench *bench_of_sphere(void)
     return b;
 }
 
-/* A request that reads; `accept` NULL: the client accepts anything. */
+/* A request that reads. If `accept` is NULL, it has no header Accept, so it accepts anything. */
 typedef struct reading {
     const char *method, *target, *body, *accept;
-    /* the job shows a link to its answer and not the answer, which is not JSON or is a whole
-     * mesh */
+    /* set if the job shows a link to its answer instead of the answer itself, because the answer is
+     * a whole mesh or is not JSON */
     bool linked;
 } reading;
 
@@ -276,8 +276,9 @@ static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state
     bench_free(b);
 }
 
-/* An answer that lists only the changes since a revision has an entity tag of its own. The service
- * must compute the tag without making the answer. */
+/* An answer that lists only the changes since a revision has an entity tag of its own. A client
+ * that has this answer must get a 304 at once: the service computes the tag without making the
+ * answer. */
 static void changed_rows_that_the_client_has_are_told_at_once(void **state)
 {
     (void)state;
@@ -299,9 +300,9 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_done(r);
     assert_non_null(strstr(tag, "-3\""));
     bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
-    /* The entity tag of the changes must not match the answer with all rows, so a job begins. A
-     * `since` later than the newest revision is refused when the rows are read, whatever tag the
-     * client names. */
+    /* The entity tag of the answer with the changes must not match the answer with the whole
+     * arrays, so a job begins. A `since` later than the newest revision is refused when the arrays
+     * are read, whatever tag the client names. */
     bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
     const char *later = strchr(target, '?') + 1;
     memcpy(target + (later - target), "since=9", 7);
@@ -395,8 +396,8 @@ static void a_result_that_the_client_has_is_not_sent_again(void **state)
     bench_free(b);
 }
 
-/* A client that reads a result keeps it until it has read all, even if the job is deleted
- * meanwhile. */
+/* A client that has begun to read the result of a job can read all of it, even if the job is
+ * deleted meanwhile. */
 static void a_result_outlives_its_job_while_it_is_read(void **state)
 {
     (void)state;

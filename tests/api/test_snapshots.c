@@ -1,5 +1,5 @@
-/* Which thread makes a snapshot of a mesh: never a worker if the mesh is large, and no thread at
- * all if the client has the present state. */
+/* Which thread makes a snapshot of a mesh: never a worker if the mesh is large. No snapshot is made
+ * at all if the client already has the present state. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -11,8 +11,8 @@
 
 static int snapshots;
 
-/* The linker makes calls of the functions below go to the wrappers in this file (Makefile), which
- * count these calls. */
+/* The linker replaces calls of the functions below by calls of the wrappers in this file (see the
+ * Makefile), which count them. */
 st_status __real_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __wrap_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __real_st_snapshot_held(st_mesh *mesh, st_snapshot **out);

@@ -106,7 +106,8 @@ static void answers_are_of_the_revision_they_name_while_others_write(void **stat
 
 /* --- two requests that both need the tree first --- */
 
-/* The linker makes calls of the functions below go to the wrappers in this file (Makefile). */
+/* The linker replaces calls of the functions below by calls of the wrappers in this file (see the
+ * Makefile). */
 st_derived *__real_st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 st_derived *__wrap_st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 void __real_st_derived_end(st_mesh *mesh, st_derived_kind kind);
@@ -123,13 +124,15 @@ static struct {
     bool closed;
     bool begun, met;
     atomic_bool making; /* the first request is about to build the tree of bounding boxes */
-    /* The following members are protected by the lock of `place`, which will hold the tree. */
+    /* The following members are protected by the lock of `place`, where the tree will be stored. */
     st_derived *place;
     bool held;
     int waited;
-    /* set to true when the second request comes, which cancels the first one; NULL: not set */
+    /* a flag that the test sets when the second request comes, to cancel the first one; NULL if the
+     * first one is not cancelled */
     bool *leaves;
-    /* set to true as soon as the second request waits, which cancels it; NULL: not set */
+    /* a flag that the test sets as soon as the second request waits, to cancel it; NULL if it is
+     * not cancelled */
     bool *gives_up;
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
@@ -287,7 +290,7 @@ static void the_second_asker_makes_the_tree_that_the_first_gave_up(void **state)
 }
 
 /* The second request is cancelled while it waits for the tree that the first one builds. It must be
- * answered at once, because the first request continues only afterwards. */
+ * answered at once: the test lets the first request continue only after that answer. */
 static void who_waits_for_a_tree_may_give_up(void **state)
 {
     (void)state;

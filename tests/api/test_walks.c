@@ -127,8 +127,8 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
     traverse(b, &wanted, "{\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u}", v, depth);
 }
 
-/* Compares the answer about a breadth-first walk with that walk in the polygon mesh `pg`. A depth
- * of PG_NONE means that the request has no depth, a limit of 0 that it has no limit. */
+/* Compares the answer about a breadth-first walk with the same walk in the polygon mesh `pg`. If
+ * the depth is PG_NONE, the request has no depth; if the limit is 0, it has no limit. */
 static void try_flood(api_bench *b, const pg_mesh *pg, const pg_flood *flood)
 {
     pg_list ids, depths;

@@ -23,7 +23,8 @@ typedef struct write {
     int status;
     const char *body;
     const char *headers[3];
-    /* BEFORE: a request with the same key and body was done before */
+    /* BEFORE: a request with the same idempotency key and body is sent before this one; DRY: a dry
+     * run */
     enum { ONCE, BEFORE, DRY } how;
 } write;
 
@@ -110,8 +111,9 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
-/* The store encodes edits and meshes for this journal in advance, as for a journal on a disk and
- * unlike for the journal in memory, so the test can let the allocations for that fail, too. */
+/* A journal for which the store encodes edits and meshes in advance, as it does for a journal on a
+ * disk. The journal in memory needs no encoding, so with it the test could not let the allocations
+ * of the encoder fail. */
 static slow_journal journal;
 
 /* Creates a mesh with steps to undo, steps to redo, and a deleted face. */
@@ -317,8 +319,8 @@ static void a_full_disk_takes_removals(void **state)
 /* --- preconditions --- */
 
 /* `writing`: a write is in progress; `removed_under_lock`: the mesh was removed during a write. The
- * linker makes calls of the store's functions go to the wrappers below (Makefile), which set these
- * variables. */
+ * wrappers below set these variables; the linker replaces calls of the store's functions by calls
+ * of the wrappers (see the Makefile). */
 static bool writing, removed_under_lock;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -381,7 +383,7 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     } cases[] = {{"/v1/meshes/m", NULL, "*"},
                  {"/v1/meshes/m", "\"x\"", NULL},
                  {"/v1/meshes/absent", "*", NULL}};
-    /* a store with a journal in memory knows at once that a mesh id is unknown */
+    /* a store with a journal in memory knows at once that no mesh has this id */
     const st_journal forgetful = st_journal_memory();
     api_bench *b = begin_over(&forgetful);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -500,8 +502,9 @@ static void lists_of_operations_have_a_price(void **state)
 /* The number of triangles of the mesh, a disk. They share the vertex SPOKES, the hub. */
 enum { SPOKES = 20000 };
 
-/* Writes a list of edits around the hub. The second operation names an element made by the first
- * one; each operation visits all half-edges at the hub and removes one. */
+/* Writes a list of edits around the hub. The second operation names an element that the first one
+ * made. Each later operation visits all half-edges at the hub and leaves one fewer of them
+ * there. */
 static void write_hub_list(api_bench *b, api_text *body, int operations)
 {
     char path[100];
@@ -540,8 +543,8 @@ static void a_list_about_one_hub_becomes_a_job(void **state)
     char job[100];
     (void)snprintf(job, sizeof job, "%s", bench_header(&r, "Location"));
     bench_reply_free(&r);
-    /* The request had begun the edit, undid it when it was refused, and became a job. Other
-     * requests read the old mesh, but cannot write until the job has ended. */
+    /* The request had begun the edit, but was refused and undid it; the edit then became a job.
+     * Other requests read the mesh as it was before, but cannot write until the job has ended. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_reply_free(&r);

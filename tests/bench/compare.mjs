@@ -66,7 +66,7 @@ class Side {
         this.child.stdin.on('error', () => {});
     }
 
-    // Returns the measurement of a row; null if the program does not have it.
+    // Returns the measurement of a row; null if the program does not have this row.
     async run(row) {
         this.child.stdin.write(`${row}\n`);
         const { value: line, done } = await this.lines.next();
@@ -111,8 +111,8 @@ function agree(row, part, name, ours, theirs) {
     }
 }
 
-// Runs a row once in each program. If the row has `after`, the result is described by that row of
-// our program.
+// Runs a row once in each program. If the row has a member `after`, the results that are compared
+// are those of our own row of that name, which reads what each program has written.
 async function round(row, part, start, sides, figures) {
     const results = {};
     const others = row.sides ?? part.sides;
@@ -157,12 +157,12 @@ const shown = (figure) => {
     return figure >= 100 ? figure.toFixed(0) : digits(figure);
 };
 
-// Returns how many times better our figure is than theirs: for most figures the larger is better,
-// with `less` the smaller.
+// Returns how many times better our figure is than that of the other program. A larger figure is
+// better, unless the row has `less`.
 const ratio = (row, ours, theirs) => (row.less ? theirs / ours : ours / theirs);
 
-// If a target is met by less than a twentieth, it may be missed in another run, so such a row is
-// explained like a row that misses its target.
+// A figure within a twentieth of its target may miss it in another run, so such a row is explained
+// like a row that misses its target.
 const EDGE = 0.95;
 
 function verdict(row, part, medians) {

@@ -2,37 +2,38 @@
 // and 10M faces, as tables and as a picture, build/growth.svg. The picture in the README is
 // tests/bench/growth.svg. The rows are those of tests/bench/ours on the bumpy torus.
 //
-// No operation of the kernel costs more per element because there are more elements: the lines bend
-// where the caches and the pages of the machine do. Three tables beside the first show which bend
-// has which cause. The figures below belong to the picture: an EPYC with 1 MiB of L2 cache per core
-// and 32 MiB of L3, while other programs ran.
+// The algorithms of the kernel cost the same per element on every size of mesh. The lines bend only
+// where the mesh outgrows a cache of the machine or where its memory pages cost more. The three
+// tables after the first show the cause of each bend. The figures below belong to the picture: an
+// EPYC with 1 MiB of L2 cache per core and 32 MiB of L3, while other programs ran.
 //
 // Caches. A face takes 66 bytes, so 10k faces are 0.7 MB and fit into L2, 100k are 7 MB and fit
 // into L3, 1M and 10M are 66 MB and 660 MB and fit into neither. The row `random read` reads words
-// all over a block of that size and has its steps there and nowhere else: 1.1, 1.8, 8.9 and 9.7 ns.
-// Flips, collapses, decimation and everything with shuffled ids read and write a few dozen such
-// places per element and rise with it: flips 54, 94, 364, 394 ns, collapses 140, 241, 699, 820.
-// One-rings in natural order read forward, which the processor prefetches, and stay flat: 1.0 to
-// 1.2 ns. So do normals, 9.1 to 9.6.
+// at random places of a block of that size; its time rises only where the block outgrows a cache:
+// 1.1, 1.8, 8.9 and 9.7 ns. Flips, collapses, decimation and everything with shuffled ids read and
+// write a few dozen random places per element, so their times rise in the same way: flips 54, 94,
+// 364, 394 ns, collapses 140, 241, 699, 820. One-rings in natural order read forward, which the
+// processor prefetches, and stay flat: 1.0 to 1.2 ns. So do normals, 9.1 to 9.6.
 //
-// Address translation. Columns of 4 MiB and more request huge pages, which is from 100k to 1M faces
-// on. Without huge pages, at 10M faces a random read costs 12 ns instead of 9.7, building shuffled
-// faces 266 instead of 235, their one-rings 51 instead of 43, their normals 93 instead of 84.
+// Address translation. Arrays of 4 MiB and more request huge pages; the arrays of a mesh reach that
+// size between 100k and 1M faces. Without huge pages, at 10M faces a random read costs 12 ns
+// instead of 9.7, building shuffled faces 266 instead of 235, their one-rings 51 instead of 43,
+// their normals 93 instead of 84.
 //
-// Pages that are touched for the first time. Operations that make new columns (build, split,
-// compact, Loop, import) have the system find and clear their pages. Build rises from 10k to 100k
-// (56 to 67 ns) because its columns of over 1 MiB become mappings of their own: 1,934 small pages,
-// one for 52 faces; it falls at 1M (52), where huge pages make that one for 190. Loop (33, 39, 24)
-// and import of OBJ (134, 223, 176) behave in the same way. At 10M the system has the greater part
-// of compact (129 of 158 ns) and of Loop, which makes 40M faces (112 of 128). It is not the
-// clearing that takes so long: a compact of 10M faces measured separately took 217 ns with huge
-// pages and 69 without, 44 of them in the system, for 180,950 small pages in place of 6,188. On a
-// machine where blocks of 2 MiB are hard to find, huge pages cost writers as much as they give
-// readers.
+// Pages that are touched for the first time. Operations that make new arrays (build, split,
+// compact, Loop, import) wait while the system finds and clears their pages. Build rises from 10k
+// to 100k (56 to 67 ns) because its arrays of over 1 MiB become mappings of their own: 1,934 small
+// pages, one per 52 faces. It falls at 1M (52 ns), where huge pages leave one page per 190 faces.
+// Loop (33, 39, 24) and import of OBJ (134, 223, 176) behave in the same way. At 10M the system
+// takes the greater part of the time of compact (129 of 158 ns) and of Loop, which makes 40M faces
+// (112 of 128). It is not the clearing that takes so long: a compact of 10M faces measured
+// separately took 217 ns with huge pages and 69 without, 44 of them in the system, for 180,950
+// small pages in place of 6,188. On a machine where blocks of 2 MiB are hard to find, huge pages
+// cost writers as much as they give readers.
 //
-// Import of OBJ bends at 10M because of this, too (80 of 216 ns): its soup grows beside the
-// columns. Splits have both causes: random places, and columns that grow by half when they are full
-// (252 of 824).
+// Import of OBJ bends at 10M because of new pages, too (80 of 216 ns): it also makes lists of
+// vertices and faces before the mesh. Splits have both causes: random places, and arrays that grow
+// by half when they are full (252 of 824).
 
 import { readFileSync, writeFileSync, mkdirSync } from 'node:fs';
 import os from 'node:os';
@@ -40,8 +41,8 @@ import path from 'node:path';
 
 import { plot } from './plot.mjs';
 
-// The sides of the torus, which has twice the square of this number in faces, and how often a row
-// is run.
+// The sizes of the torus, each with the number of runs of a row. A torus with the side n has 2 n *
+// n faces.
 const SIZES = [
     { side: 71, runs: 15 },
     { side: 224, runs: 7 },
@@ -49,8 +50,8 @@ const SIZES = [
     { side: 2236, runs: 1 },
 ];
 
-// For each line of the picture: its row in tests/bench/ours, its title and its element. Two lines
-// of one colour are the same row in natural and in shuffled order.
+// Each entry is a line of the picture: its row in tests/bench/ours, its title and its kind of
+// element. Two lines of one colour are the same row in natural and in shuffled order.
 const NATURAL = [
     ['gather', 'random read', 'read', '#8a8a8a'],
     ['build', 'build', 'face', '#2f7fc1'],
@@ -67,14 +68,16 @@ const NATURAL = [
     ['check_obj', 'import OBJ', 'face', '#4a6fd8'],
 ];
 const SHUFFLED = ['build', 'one_ring', 'face_normals'];
-// The rows that show the cost of pages: those whose elements are read at random places.
+// The rows that show the cost of pages: those whose elements are read in random order.
 const BY_PAGES = { natural: ['gather', 'split', 'loop'], shuffled: SHUFFLED };
-// The system counts its time in ticks, so a shorter measurement says nothing about it.
+// A shorter measurement says nothing about the time spent in the system, because the system counts
+// this time in ticks.
 const LEAST_SECONDS = 0.04;
 
 const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
 
-// Returns the nanoseconds per element, the part of them spent in the system, and the page faults.
+// Returns the nanoseconds per element, how many of these were spent in the system, and the number
+// of page faults.
 async function time(side, row, runs) {
     const list = [];
     for (let i = 0; i < runs; i++) {

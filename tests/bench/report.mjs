@@ -1,5 +1,5 @@
 // report.mjs - writes down what a benchmark printed: its section of tests/bench/README.md and, for
-// `make bench`, six rows in README.md. `make report` calls it after each benchmark.
+// `make bench`, six rows of the table in README.md. `make report` calls it after each benchmark.
 //
 //     node report.mjs NAME COMMAND < OUTPUT
 //
@@ -45,8 +45,8 @@ const sections = {
     },
 };
 
-// The rows of `make bench` that README.md shows, because a user of a mesh library would ask for
-// them first.
+// The rows of `make bench` that README.md shows, because a user of a mesh library would look for
+// these first.
 const chosen = [
     'build from arrays, triangles',
     'sum over one-rings',

@@ -48,13 +48,13 @@ const kernel = (name, order) => ({
     ],
 });
 
-// A row `of a list` tells our kernel which edges come next, as delaunay does. The peers have no
-// such call, so the row is compared with our own edits without it. When edits are made one after
-// another, each waits for memory: the links of a half-edge are in four arrays, so each random
-// half-edge costs four cache lines, where one record for all links would cost one. These arrays are
-// what makes traversal fast. A cache line takes 130 to 150 ns to arrive on the machine of these
-// figures, and 16 are fetched at a time.
-// `work` is what an edit takes in nanoseconds where all of the mesh is in the cache.
+// A row whose title ends in `of a list` tells our kernel which edges come next, as delaunay does.
+// The other libraries have no such call, so the row is compared with our own edits without this
+// call. When edits are made one after another, each waits for memory: the links of a half-edge are
+// in four arrays, so each random half-edge costs four cache lines, whereas it would cost one if all
+// its links were in one struct. These arrays are what makes traversal fast. A cache line takes 130
+// to 150 ns to arrive on the machine of these figures, and 16 are fetched at a time. `work` is what
+// an edit takes in nanoseconds where all of the mesh is in the cache.
 const waits = (deep, lines, work) => {
     const reads = 10 * Math.round(14 * Math.max(deep, lines / 16));
     return (
@@ -65,7 +65,7 @@ const waits = (deep, lines, work) => {
 };
 const whys = { split: waits(2, 26, 115), flip: waits(4, 40, 53), collapse: waits(4, 70, 141) };
 
-// From some point on CGAL collapses other edges than we do: cgal_edits.cc says why.
+// From some point on, CGAL collapses other edges than our kernel does: cgal_edits.cc says why.
 const edit = (title, ours, target, theirs = ours) => ({
     title,
     near: 0.01,
@@ -93,8 +93,8 @@ const file = (title, ours, target, more = {}) => ({
     ...more,
 });
 
-// The distances are in the unit of the coordinates, of which the torus is 8 wide: the farthest of a
-// million points on either surface from the other.
+// The distances are in the unit of the coordinates, in which the torus is 8 wide. The largest
+// distance is measured from a million points on each surface to the other surface.
 const error = (title, of, more) => ({
     title,
     of,
@@ -109,8 +109,8 @@ const farthest =
     'the farthest point is told within a few hundredths: 421 by 250,000 points a side, 441 by a ' +
     "million; CGAL's 439 and 425";
 
-// Rows of memory: the bytes that were allocated on the heap, or the maximum of resident memory less
-// what was resident before the row.
+// Rows of memory: the bytes that were allocated on the heap, or the peak of resident memory less
+// the resident memory before the row.
 const memory = (meter, title, ours, more) => ({
     title: `bytes a face ${title}`,
     ours,
@@ -136,8 +136,8 @@ const stored = (title, ours, unit, per, limit) => ({
     guard: true,
 });
 
-// Rows of our program alone: two threads compared with one thread; a speedup of a third is the
-// least that is worth a thread.
+// Rows of our program alone that compare two threads with one. The target is a speedup of a third,
+// the least for which a second thread is worth its cost.
 const scaling = (input, order, rows, why, more) => ({
     part: 'scaling',
     input,

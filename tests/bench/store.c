@@ -1,7 +1,7 @@
 /* Benchmark of durability: edits per second of one writer and of 64, on 64 meshes and on one; each
- * writer waits until its edit is durable before the next one. Measured in turn on one file system:
- * the bytes of such records written to a growing file with fdatasync after each; the store on
- * SQLite; the store in memory, where nothing has to become durable.
+ * writer waits until its edit is durable before the next one. Three ways are measured in turn on
+ * one file system: a growing file, to which the bytes of each edit are written with fdatasync after
+ * each; the store on SQLite; the store in memory, where nothing has to become durable.
  *
  *     build/tests/bench/store FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk to measure */
 #include "base/mem.h"
@@ -58,7 +58,8 @@ static void require(bool good, const char *what)
 
 /* --- counting records --- */
 
-/* The store's own journal, to which records are passed on after they were counted. */
+/* The store's own journal. The journal of this test counts the records and passes them on to this
+ * one. */
 static st_journal below;
 static atomic_size_t record_bytes, records;
 

@@ -44,8 +44,8 @@ static const char *program(void)
     return path != NULL ? path : "build/hedged";
 }
 
-/* A pipe or terminal: the descriptor to which the program writes, and the one from which the test
- * reads. */
+/* Two ends of a pipe or terminal: the program writes to the descriptor `writes`, and the test reads
+ * from the descriptor `reads`. */
 typedef struct outlet {
     int reads, writes;
 } outlet;

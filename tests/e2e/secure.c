@@ -28,7 +28,7 @@ typedef struct parcel {
     unsigned char bytes[RECORD];
     size_t at, end;
     bool ended; /* the sender has closed this direction */
-    bool told;  /* the receiver has been told that the sender has closed this direction */
+    bool told;  /* the receiver knows that the sender has closed this direction */
 } parcel;
 
 typedef struct relay {
@@ -37,7 +37,7 @@ typedef struct relay {
     gnutls_session_t session;
     parcel out, in;
     bool is_left; /* the test has closed its socket */
-    bool is_cut;  /* the daemon accepts no more bytes, so what the test writes is dropped */
+    bool is_cut;  /* the daemon accepts no more bytes, so what the test still writes is dropped */
 } relay;
 
 static bool comes_later(ssize_t code)

@@ -15,7 +15,7 @@ enum { CLIENTS = 4, REQUESTS = 300, MESHES = 3 };
 typedef struct visitor {
     const daemon_process *daemon;
     bool removes;
-    int strange; /* the first status that no client may get in this test */
+    int strange; /* the first status that is not allowed in this test */
 } visitor;
 
 static void *come_and_go(void *context)

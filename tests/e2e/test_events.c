@@ -229,8 +229,8 @@ static void a_copy_stays_equal_through_random_edits(void **state)
     c.listener = listener_open(d, EVENTS, NULL, 0);
     dump(c.client, &c.mesh);
     for (; done < edits; asked++) {
-        /* Random arguments are drawn from the copy, so the copy must have all changes here; at
-         * other times it may be behind the server. */
+        /* Random arguments of edits are drawn from the copy, so the copy must be up to date here;
+         * at other times it may be behind the server. */
         follow_to(&c, last);
         if (md_chance(&random, 1)) {
             cut(&c);
@@ -362,7 +362,7 @@ static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
     follow_to(&c, last);
     require_equal(c.client, &c.mesh);
     assert_true(c.applied > 0);
-    /* the mesh was fetched anew once, or again when the client fell behind again */
+    /* the client fetched the mesh anew, and once more each time it fell behind again */
     assert_true(c.anew > 0);
     last = post(c.client, "/v1/meshes/m/edits", POKE);
     follow_to(&c, last);

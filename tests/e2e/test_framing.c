@@ -22,7 +22,8 @@
 enum { DEEP = 100, MOST_ANSWERS = DEEP + 4, WHOLE = 1 << 30, WAIT_MILLIS = 60000 };
 
 #define GOOD "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n"
-/* A last, well-formed request, which closes the connection if the daemon still reads requests. */
+/* A last, well-formed request. It makes the daemon close the connection after its answer, if the
+ * daemon still reads requests. */
 #define LAST "GET /readyz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
 
 static daemon_process *server;

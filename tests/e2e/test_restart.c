@@ -60,8 +60,8 @@ static void send(const char *method, const char *path, const char *body, long st
     reply_done(reply_expect(status, client_send(http, method, path, NULL, body)));
 }
 
-/* Replaces the values in an answer that differ between two processes although the content is equal,
- * such as the bytes that a mesh takes in memory. */
+/* Replaces the values in an answer that may differ between two processes although the meshes are
+ * equal, such as the bytes that a mesh takes in memory. */
 static void blank(char *text)
 {
     for (char *at = strstr(text, "\"memory_"); at != NULL; at = strstr(at + 1, "\"memory_")) {
@@ -256,8 +256,8 @@ static void a_key_is_good_after_a_restart(void **state)
 }
 
 /* The Last-Event-ID of a listener is from before the restart: the listener must get the later
- * events from the history on the disk. If the mesh of that time was replaced by another one with
- * its id, the listener must be told to fetch the mesh anew. */
+ * events from the history on the disk. If its mesh has been replaced by another one with the same
+ * id, the listener must be told to fetch the mesh anew. */
 static void listeners_go_on_where_they_were(void **state)
 {
     (void)state;

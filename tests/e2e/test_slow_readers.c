@@ -103,8 +103,8 @@ static void end_quickly(slow_client *s, const char *whole, size_t length)
     free(in);
 }
 
-/* The slow clients are more than the workers. They read nothing between begin_slowly and
- * end_quickly; if they delayed the requests that are sent meanwhile, the test would never end. */
+/* There are more slow clients than workers. They read nothing between begin_slowly and end_quickly;
+ * if they delayed the requests that are sent meanwhile, the test would never end. */
 static void slow_downloads_delay_nobody(void **state)
 {
     (void)state;
@@ -209,8 +209,8 @@ static void a_reader_who_stops_is_closed_though_all_of_the_answer_was_sent(void 
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Returns the number of bytes that wait in the daemon's sockets for clients to read them, without
- * the kernel's own records. */
+/* Returns the number of bytes that wait in the daemon's sockets for clients to read them. Memory
+ * that the kernel uses to manage these bytes does not count. */
 static size_t waiting_bytes(const daemon_process *d)
 {
     char line[512];

@@ -338,8 +338,8 @@ static void cursors_tags_and_event_ids_go_on(void **state)
         listener_close(l);
         for (size_t i = 0; i < LISTS; i++) {
             char *again = page(lists[i][1], cursors[i]);
-            /* the list of meshes (0) also shows their use of memory, which differs after a
-             * restart */
+            /* the list of meshes, the first of these lists, also shows their use of memory, which
+             * differs after a restart */
             if (i > 0) {
                 assert_string_equal(again, pages[i]);
             }

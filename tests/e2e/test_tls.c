@@ -126,8 +126,8 @@ static void a_new_certificate_is_for_new_connections(void **state)
     free(daemon_wait_log(d, "new connections use the certificate", 1));
     s_client(d, "", said, sizeof said);
     assert_non_null(strstr(said, "subject=CN = after"));
-    /* The client `c` trusts only the old certificate. It keeps its old connection, on which the new
-     * certificate does not matter. */
+    /* The client `c` trusts only the old certificate. It keeps the connection that it opened before
+     * the change, so the new certificate does not matter there. */
     reply_done(reply_expect(200, client_get(c, "/livez")));
     client *other = client_new(d);
     client_trust(other, certificate);

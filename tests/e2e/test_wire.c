@@ -55,8 +55,8 @@ static void expect_unchanged(void)
     reply_free(&r);
 }
 
-/* Returns the request as it is for the present transport, because over TLS the daemon's own pages
- * have an https origin. The caller must free it. */
+/* Returns the request with the Origin that the daemon's own pages have in this run, which begins
+ * with https over TLS. The caller must free it. */
 static char *with_own_origin(const char *request)
 {
     static const char wanted[] = "Origin: http://localhost";

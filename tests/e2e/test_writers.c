@@ -13,8 +13,9 @@
 
 #include <cmocka.h>
 
-/* TOGETHER: two writers that send the same edits wait for each other after so many edits. So the
- * daemon does not forget the idempotency keys of the slower writer before it uses them. */
+/* TOGETHER: after this number of edits, two writers that send the same edits wait for each other.
+ * Otherwise the daemon might forget the idempotency keys of the faster writer before the slower
+ * writer uses them. */
 enum { WRITERS = 8, MESHES = 3, DEFAULT_EDITS = 400, TOGETHER = 500 };
 
 typedef enum condition { NONE, EXPECTED, IF_MATCH, KEYED } condition;

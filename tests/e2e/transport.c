@@ -19,7 +19,7 @@
 static struct {
     transport way;
     int is_known;
-    char folder[FOLDER_PATH]; /* "": the folder does not exist yet */
+    char folder[FOLDER_PATH]; /* "" if the folder does not exist yet */
     /* the process that removes the folder, which children of fork() must not do */
     pid_t owner;
     char certificate[FOLDER_PATH + 20], key[FOLDER_PATH + 20], listen[FOLDER_PATH + 20];

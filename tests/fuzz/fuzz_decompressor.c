@@ -1,7 +1,7 @@
-/* Compressed bodies: zstd if the bytes begin as its frames do, else gzip. Read whole and in pieces
- * they must decompress to the same bytes or be refused alike, never beyond the allowed ratio, and
- * to the bytes that zlib and libzstd make of them in one call. Any bytes that are compressed must
- * decompress to themselves. */
+/* Compressed bodies: they are read as zstd if they begin with its magic number, else as gzip.
+ * Reading a body whole and in pieces must give the same bytes or the same refusal, and never more
+ * bytes than the allowed ratio; zlib and libzstd, called once for the whole body, must give the
+ * same bytes. Any bytes that are compressed must decompress to themselves. */
 #include "fuzz/fuzz.h"
 #include "fuzz/pieces.h"
 
@@ -41,7 +41,8 @@ static int unfold(api_coding coding, fuzz_pieces pieces, unfolded *out)
         size_t used = 0;
         good = api_decompressor_feed(u, piece, n, &used, &problem);
         free(piece);
-        pieces.at -= n - used; /* the bytes of the piece that were not taken are fed again */
+        pieces.at -=
+            n - used; /* the next call gets the bytes of the piece that this call did not take */
     }
     good = good && api_decompressor_end(u, &problem);
     api_decompressor_free(u);
@@ -75,9 +76,10 @@ static void pack_and_unpack(api_coding coding, const uint8_t *bytes, size_t size
     free(packed);
 }
 
-/* If zlib or libzstd decodes the body in one call, the daemon must accept it, with the same bytes.
- * In one call zlib decodes one gzip member only, and libzstd accepts blocks larger than RFC 8878
- * allows: so gzip is not compared beyond the ratio, and zstd only if the daemon accepts it. */
+/* If zlib or libzstd decodes the body in one call, the daemon must accept it, too, and get the same
+ * bytes. There are two exceptions, which the caller leaves out: a gzip body that exceeds the
+ * allowed ratio, and a zstd body that the daemon refuses, because libzstd accepts blocks larger
+ * than RFC 8878 allows when it decodes in one call. */
 static void compare(api_coding coding, const uint8_t *bytes, size_t size, int code,
                     const unfolded *whole)
 {

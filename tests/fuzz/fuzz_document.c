@@ -100,8 +100,9 @@ static void write_and_read(const he_mesh *mesh, bool repaired, md_random *random
     FUZZ_REQUIRE(in != NULL, "%s: %s", problem.pointer, problem.detail);
     he_mesh *again = make(in, 0, &advised);
     assert_non_null(again);
-    /* he_mesh_equal takes columns with labels as equal only if they share one table of labels, so a
-     * mesh that was read anew is then compared by its document only. */
+    /* he_mesh_equal treats two attributes with labels (names of values) as equal only if they share
+     * one table of labels, which a mesh that was read again does not. Such meshes are compared only
+     * by their documents. */
     assert_true(repaired || has_labels(mesh) || he_mesh_equal(again, mesh));
     char *repeated = write_document(again, md_from(random, 1, 5000), &length_again);
     assert_int_equal(length_again, length);

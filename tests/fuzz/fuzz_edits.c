@@ -17,8 +17,8 @@ static void edit(api_bench *b, const char *id, const char *body, size_t size)
     (void)snprintf(target, sizeof target, "/v1/meshes/%s/undo", id);
     status = fuzz_service_send(b, &(bench_request){"POST", target, NULL, NULL, 0});
     he_mesh *undone = fuzz_service_mesh(b, id);
-    /* if the list was refused, or contained compact, which ends the history, undo answers 409 and
-     * changes nothing */
+    /* undo answers 409 and changes nothing if the list was refused, or if it contained `compact`,
+     * which ends the history */
     FUZZ_REQUIRE(status == 409 ? he_mesh_equal(undone, after)
                                : status == 200 && he_mesh_equal_live(undone, before),
                  "undo gives %d, and leads elsewhere", status);

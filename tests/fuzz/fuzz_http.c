@@ -76,8 +76,9 @@ static size_t find_fault(passed *p, const char *bytes, size_t size)
     return size;
 }
 
-/* Checks that the bytes as a traceparent header get a well-formed one in the answer: of the same
- * trace if they are well-formed themselves, else of another. */
+/* Takes the bytes as the request header traceparent and checks that the answer gets a well-formed
+ * one. It must continue the same trace if the bytes are well-formed, and else begin another
+ * trace. */
 static void check_trace(const uint8_t *input, size_t size)
 {
     static srv_spans spans = {.seed = 1, .next = 1};

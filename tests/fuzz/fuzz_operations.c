@@ -1,7 +1,7 @@
-/* Operations run one after another on a small mesh: the bytes choose the mesh, the rows of the
- * table of operations and their arguments, as a decoded request would. After each operation the
- * mesh must pass he_check. A refusal must be one that the row declares, and must change nothing.
- * Undo must lead back through all states, and redo forth again. */
+/* Operations run one after another on a small mesh: the bytes choose the mesh, the operations and
+ * their arguments, as a decoded request would. After each operation the mesh must pass he_check. A
+ * refusal must be one that the operation declares, and must change nothing. Undo must lead back
+ * through all states, and redo must lead forward again. */
 #include "fuzz/fuzz.h"
 
 #include "algo/shape.h"
@@ -106,8 +106,8 @@ static void draw_matrix(fuzz_tape *t, double matrix[16])
     matrix[15] = 1;
 }
 
-/* Draws the i-th argument of a call. `elements` is the length of a list that must have one point
- * for each element; 0: there is no such list. */
+/* Draws the i-th argument of a call. `elements` is the length of a list of elements for which one
+ * point each is needed, or 0 if there is no such list. */
 static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, const he_mesh *other,
                        size_t elements)
 {
@@ -168,8 +168,8 @@ static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, con
     }
 }
 
-/* Returns whether parameter i is given a value. Of a group of alternative parameters at most one
- * is, and exactly one if the group is required. */
+/* Returns whether parameter i gets a value. In a group of alternative parameters at most one gets a
+ * value, and exactly one if the group is required. */
 static bool is_wanted(fuzz_tape *t, const he_op *op, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];

@@ -1,7 +1,7 @@
-/* Parts of contents as a store compresses them (core/journal/part_packing.h). Any bytes must be
- * decompressed within the size of one part or be refused with a reason, and so must the same bytes
- * behind the header of a zstd frame of any length. Bytes that were compressed must come back
- * unchanged. */
+/* Parts of meshes as a store compresses them (core/journal/part_packing.h). Any bytes must be
+ * decompressed to at most the size of one part or be refused with a reason; the same must hold if
+ * the bytes follow the header of a zstd frame of any length. Bytes that were compressed must be
+ * unchanged after decompression. */
 #include "fuzz/fuzz.h"
 
 #include "journal/part_packing.h"

@@ -1,6 +1,6 @@
-/* A record as a store keeps it (core/journal/record_bytes.h). Few inputs have the correct checksum
- * by chance, so the bytes are read as they are and once more with the checksum corrected. A record
- * that can be read must be written again as the same bytes. */
+/* A record of the store, such as an edit, as bytes (core/journal/record_bytes.h). Few inputs have
+ * the correct checksum by chance, so the bytes are read as they are and once more with the checksum
+ * corrected. A record that can be read must be written again as the same bytes. */
 #include "fuzz/fuzz.h"
 
 #include "journal/record_bytes.h"
@@ -12,8 +12,8 @@ static void write_again(const st_frame *frame, const uint8_t *bytes, size_t size
 {
     unsigned char *again = malloc(ST_FRAME_HEAD + frame->record.body_size);
     st_record record = frame->record;
-    /* A dummy in place of a stage (content written in advance), which is only compared with
-     * NULL. */
+    /* A dummy for a stage (data of a mesh that was written in advance). The writer only compares
+     * the pointer with NULL. */
     record.stage = frame->in_parts ? (st_stage *)again : NULL;
     size_t written = st_frame_write(&record, again);
     FUZZ_REQUIRE(written <= ST_FRAME_HEAD + record.body_size, "a frame of %zu bytes", written);

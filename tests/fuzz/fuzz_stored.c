@@ -1,7 +1,7 @@
-/* Bytes of a mesh as a store keeps them (core/stored): the length of a content, the content, the
- * number of ids issued after an edit, the edit, as in the golden files of tests/unit/test_stored.c.
- * A refusal must have a reason and change nothing. What can be read must be writable, readable
- * again, and possible to undo. */
+/* Bytes of a mesh as a store keeps them (core/stored): the length of the encoded mesh, the mesh,
+ * the number of ids issued after an edit, and the edit, as in the golden files of
+ * tests/unit/test_stored.c. A refusal must have a reason and change nothing. What can be read must
+ * be writable and readable again, and the edit must be possible to undo. */
 #include "fuzz/fuzz.h"
 
 #include "mesh/check.h"

@@ -49,8 +49,9 @@ static uint32_t corners_of(const he_mesh *mesh)
     return 2 * he_mesh_edges(mesh) - he_mesh_boundary_halfedges(mesh);
 }
 
-/* The round of writing and reading from which on the files of a mesh must be equal: none; the first
- * one; or the second one, if the first may round positions and cut polygons. */
+/* How often a mesh must be written and read until further files equal each other. NEVER: they need
+ * not be equal; AT_ONCE: the second file equals the first; ROUNDED: the third file equals the
+ * second, because the first reading may round positions and cut polygons. */
 enum { NEVER, AT_ONCE, ROUNDED };
 
 /* Writes a mesh in one encoding of a format and reads it again: it must have the same size, except
@@ -72,8 +73,8 @@ static void write_and_read(const he_mesh *mesh, const char *format, const char *
             assert_int_equal(he_mesh_faces(again), he_mesh_faces(mesh));
             assert_int_equal(corners_of(again), corners_of(mesh));
         }
-        /* A mesh without faces can have a format's table of zero rows, of which the reader does not
-         * restore everything, so the second file is compared only if there are faces. */
+        /* A mesh without faces can have an empty table of the format, which the reader does not
+         * restore completely, so the second file is compared only if there are faces. */
         if (repeats == AT_ONCE && he_mesh_faces(mesh) > 0) {
             char *repeated = write_encoded(format, encoding, again, md_from(random, 1, 5000), NULL,
                                            &length_again);
@@ -104,7 +105,7 @@ static bool can_write(const he_mesh *mesh, const he_format *format, const char *
 }
 
 /* Writes the mesh in its own format and, at random, in the other formats. A text encoding keeps all
- * digits of a position; STL does so only if the mesh is as it was read. */
+ * digits of a position; STL keeps them only if the mesh was not changed after it was read. */
 static void write_all_formats(const he_mesh *mesh, const char *own, bool repaired,
                               md_random *random)
 {
@@ -124,8 +125,8 @@ static void write_all_formats(const he_mesh *mesh, const char *own, bool repaire
             continue;
         }
         bool varies = stl && (repaired || strcmp(encoding, "ascii") != 0);
-        /* A repair may leave labels (names of groups or materials) that no face has; these are gone
-         * after one round. */
+        /* A repair may leave labels (names of groups or materials) that no face uses. They are not
+         * written, so they are gone after the mesh was written and read once. */
         bool rounds = repaired || strcmp(row->name, "glb") == 0;
         int repeats = !mine || varies ? NEVER : rounds ? ROUNDED : AT_ONCE;
         write_and_read(mesh, row->name, encoding, repeats, random);
@@ -152,8 +153,9 @@ static void require_report(const he_report *report, size_t vertices, size_t face
     }
 }
 
-/* Reads the input again and applies a set of repairs. The mesh must then pass he_check; if it is
- * refused instead, returns the set of repairs that is now advised, 0 for none. */
+/* Reads the input again and applies a set of repairs. If the mesh is accepted, it must pass
+ * he_check. If it is refused, returns the set of repairs that the refusal advises, or 0 if it
+ * advises none. */
 static unsigned mend(subject *s, unsigned which)
 {
     he_repair_plan plan = {.which = which,

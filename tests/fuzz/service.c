@@ -3,7 +3,8 @@
 #include "fuzz/fuzz.h"
 #include "unit/fixture.h"
 
-/* The service's memory for undo and its largest upload, in bytes: small, as the inputs are. */
+/* The budget of the service for undo and the size of its largest upload, in bytes. They are small
+ * because the inputs are small. */
 enum { UNDO_BUDGET = 8 << 20, UPLOAD = 64 << 10 };
 
 static void create(api_bench *b, const char *target, const char *body)

@@ -129,7 +129,7 @@ static bool draw_face_add(md_draft *d)
             v[i] = md_pick(d, HE_VERTEX);
         }
         break;
-    case 1: /* the corners of an existing face, in the opposite order or in the same order */
+    case 1: /* the corners of an existing face, in the opposite or in the same order */
     {
         uint32_t f = md_live(d, HE_FACE);
         if (or_require(d->o, HE_FACE, f) != 0 || d->o->face[f].count > MD_LIST) {
@@ -142,7 +142,7 @@ static bool draw_face_add(md_draft *d)
         }
         break;
     }
-    case 2: /* as corners, vertices on the boundary or isolated ones */
+    case 2: /* vertices that are on the boundary or isolated are used as corners */
         n = md_from(d->r, 3, 4);
         for (uint32_t i = 0; i < n; i++) {
             v[i] = md_live(d, HE_VERTEX);
@@ -153,7 +153,8 @@ static bool draw_face_add(md_draft *d)
             }
         }
         break;
-    default: /* corners along a hole, closed by a new side or by new corners */
+    default: /* consecutive vertices along a hole are used as corners, so that the face fills a part
+                of the hole; another vertex may be added */
     {
         he_halfedge at = {h};
         uint32_t run = md_from(d->r, 2, 5);
@@ -488,8 +489,8 @@ static bool draw_transform(md_draft *d)
     arg->given = true;
     memcpy(arg->matrix, matrix, sizeof matrix);
     if (md_chance(d->r, 5)) {
-        /* The matrix makes all coordinates overflow except those of vertices near the plane x
-         * = 0. */
+        /* The matrix makes all coordinates overflow, except those of vertices near the plane x =
+         * 0. */
         bool overflows = false;
         for (uint32_t v = 0; v < d->o->vertices; v++) {
             overflows = overflows || (d->o->vertex[v].alive && d->o->vertex[v].at.x > 0.2);
@@ -669,12 +670,13 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
     if (he_mesh_faces(m) > 0 && he_mesh_boundary_halfedges(m) == 0 && md_chance(r, 10)) {
-        /* Dual is preferred on closed meshes, which are rare and do not stay closed. */
+        /* The operation `dual` is preferred on closed meshes, because these are rare and other
+         * edits soon open them. */
         choose(c, "dual");
     }
     he_op_defaults(c->op, c->args);
     const md_row *row = row_of(c->op->name);
-    /* A mesh with few faces is mostly spared from operations that make it smaller. */
+    /* If a mesh has few faces, operations that make it smaller are mostly skipped. */
     if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
         return false;
     }

@@ -265,9 +265,9 @@ static bool draw_plane_cut(md_draft *d)
            size.longest < OR_CORNERS;
 }
 
-/* The steps of plane_cut are operations by themselves: hedge runs each on a copy of the mesh, which
- * gives the ids and the links of holes, and the oracle runs it, too. Which elements are cut is
- * found here, independently. */
+/* plane_cut consists of steps that are operations by themselves. hedge runs each step on a copy of
+ * the mesh, from which the test takes the ids and the links of holes, and the oracle runs the step,
+ * too. Which elements the plane cuts is found here, without hedge. */
 typedef struct cutting {
     or_mesh *o;
     he_mesh *copy;
@@ -331,8 +331,8 @@ static uint64_t delete_side(cutting *c)
         if (refused != 0 || !o->vertex[v].alive || !away) {
             continue;
         }
-        /* All faces at this vertex are deleted, since a face that stays has no corner on the other
-         * side of the plane. */
+        /* After the cut each face lies on one side of the plane, so all faces at this vertex are
+         * deleted. */
         refused |= or_vertex_delete(o, v, false);
         if (refused == 0 && he_mesh_is_live(c->copy, HE_VERTEX, v) &&
             he_is_isolated(c->copy, (he_vertex){v})) {

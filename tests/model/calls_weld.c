@@ -6,7 +6,8 @@
 
 /* --- merging vertices --- */
 
-/* Draws the ends of two consecutive boundary edges, so that merging them makes the edges one. */
+/* Draws the two outer ends of two consecutive boundary edges. Merging these vertices makes one edge
+ * of the two edges. */
 static uint32_t draw_zip(md_draft *d, uint32_t v[2])
 {
     he_halfedge h = {md_boundary_halfedge(d)};
@@ -175,8 +176,9 @@ static bool draw_vertex_separate(md_draft *d)
     return md_chance(d->r, 30);
 }
 
-/* Finds the fans of faces that get a new vertex when the vertex v is separated, and the first
- * neighbour of v in each: all fans but the one that ends with the stored half-edge of v. */
+/* Finds the fans of faces that get a new vertex when the vertex v is separated: all fans but the
+ * one that ends with the stored half-edge of v. Writes the first neighbour of v in each of these
+ * fans. */
 static uint32_t leaving(const he_mesh *m, uint32_t v, uint32_t starts[OR_VERTICES])
 {
     uint32_t n = 0;

@@ -10,12 +10,13 @@
 typedef struct limit {
     const char *row;
     he_mesh *(*make)(void);
-    /* Name of the edit's first argument, an element with the id `id`; NULL: none. */
+    /* name of the edit's first argument, the element with the id `id`; NULL if it has none */
     const char *element;
     uint32_t id;
     const char *number;     /* name of the edit's second argument, whose value is 0.1 */
     const char *name;       /* value of its argument `name` */
-    he_mesh *(*mesh)(void); /* makes the edit's argument `mesh`; NULL: the edit has none */
+    he_mesh *(*mesh)(void); /* makes the mesh for the edit's argument `mesh`; NULL if the edit has
+                               no such argument */
 } limit;
 
 static he_mesh *all_materials(void)

@@ -25,8 +25,9 @@ static bool add(he_mesh *m, md_random *r, he_kind kind, const char *name)
     return true;
 }
 
-/* Adds attributes of numbers with three types and any rule. The oracle does not know what edits do
- * to them, but they must be undone, rolled back and reported like everything else. */
+/* Adds attributes of numbers with three types and a random interpolation rule. The oracle does not
+ * know what edits do to these attributes, but changes to them must be undone, rolled back and
+ * reported like all other changes. */
 static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
 {
     static const he_type types[HE_KIND_COUNT] = {[HE_VERTEX] = HE_DOUBLE,
@@ -60,8 +61,8 @@ static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
     return true;
 }
 
-/* Gives faces an attribute of numbers under the name `material`, which otherwise has the labels
- * that name materials. Does nothing if faces have an attribute of that name. */
+/* Gives faces an attribute of numbers under the name `material`. Usually the attribute of that name
+ * has labels, the names of materials. Does nothing if faces have an attribute of that name. */
 static bool add_clash(he_mesh *m)
 {
     if (he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE) != NULL) {

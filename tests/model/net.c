@@ -20,8 +20,8 @@ static bool same_bytes(const he_column *a, const he_column *b, uint32_t row)
     return memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) == 0;
 }
 
-/* Returns the label in the first component of a row; if `column` is NULL, the label of the other
- * column's default. */
+/* Returns the label that an element (the row `row`) has in the attribute `column`. If `column` is
+ * NULL, the element has the default label of the attribute `other`. */
 static const char *name_in(const he_column *column, const he_column *other, uint32_t row)
 {
     const he_column *from = column != NULL ? column : other;
@@ -116,7 +116,7 @@ static bool lives(const he_mesh *m, he_kind kind, uint32_t id)
     return id < he_mesh_issued(m, kind) && he_mesh_is_live(m, kind, id);
 }
 
-/* If `id` is the next one in the sorted list, passes over it and returns true. */
+/* If `id` is the next entry of the sorted list, steps over that entry and returns true. */
 static bool take(const he_ids *list, size_t *at, uint32_t id)
 {
     bool there = *at < list->count && list->ids[*at] == id;

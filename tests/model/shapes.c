@@ -125,7 +125,8 @@ static void drop_vertex(or_mesh *o, uint32_t v)
     }
 }
 
-/* Makes a closed mesh of genus 2: two tori of quads are joined at the rim of a missing face. */
+/* Makes a closed mesh of genus 2: two tori of quads, each with a missing face, are joined along the
+ * rims of the missing faces. */
 void md_fill_genus_2(or_mesh *o, md_random *r)
 {
     uint32_t torus[2];
@@ -203,8 +204,8 @@ void md_fill_bowties(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* A fan of triangles around one vertex: not quite all the way around, all the way around, or also
- * closed by a face with as many sides. */
+/* A fan of triangles around one vertex. It goes not quite all the way around, or all the way
+ * around; or its outer side is also closed by one large face. */
 void md_fill_fan_1000(or_mesh *o, md_random *r)
 {
     const uint32_t fan = 1000;

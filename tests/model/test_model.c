@@ -281,8 +281,9 @@ static void refused(world *w, uint64_t expected, he_status status, const he_erro
     he_mesh_free(before);
 }
 
-/* Returns whether the oracle has room for an edit: it makes at most some hundred elements, or some
- * for each corner of the longest face or hole and for each neighbour of a vertex. */
+/* Returns whether the oracle's tables have room for an edit. It is assumed to make at most some
+ * hundred elements, or some elements for each corner of the longest face or hole and for each
+ * neighbour of a vertex. */
 static bool has_room(const world *w)
 {
     const or_mesh *o = w->oracle;

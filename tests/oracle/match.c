@@ -88,7 +88,8 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Finds which edge survives an edge_join: either of the two may, and keeps its direction. */
+/* Finds which of the two joined edges survives an edge_join. hedge may choose either one; the
+ * surviving edge keeps its direction. */
 static bool adopt_joined(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
 {
     bool alive[2];
@@ -144,9 +145,10 @@ static bool adopt_edges(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Returns whether the corners i..k of a polygon are cut into triangles, and counts these. The
- * triangle left of k->i has its third corner j in between; then i..j and j..k must be cut, too.
- * Each directed side belongs to one face only, so the triangles are found without guessing. */
+/* Returns whether the part of a polygon with the corners i..k was cut into triangles, and counts
+ * these. The triangle on the left of the side k->i has a third corner j between i and k; the parts
+ * i..j and j..k must be cut into triangles, too. Each directed side belongs to one face only, so
+ * the triangles are found without trying. */
 static bool chain_is_cut(const or_mesh *o, const or_face *p, uint32_t i, uint32_t k,
                          uint32_t *triangles)
 {
@@ -177,10 +179,10 @@ static int side_of_part(const or_mesh *o, const or_face *f)
     return above == below ? 0 : above ? 1 : -1;
 }
 
-/* Returns whether a cut face was cut correctly; finds its parts from the part that keeps the id,
- * across diagonals. Each part must be on one side of the plane and its neighbours on the other, and
- * together they must have every side of the old face once. If there is one diagonal less than there
- * are parts, the parts form a disk. */
+/* Returns whether a face was cut correctly by the plane. Its parts are found by starting at the
+ * part that keeps the id and crossing diagonals. Each part must be on one side of the plane and its
+ * neighbours on the other side, and together they must have every side of the old face once. If
+ * there is one diagonal less than there are parts, the parts form a disk. */
 static bool parts_make_up(const or_mesh *o, uint32_t i, uint32_t first_new, uint32_t *made)
 {
     const or_face *was = &o->cut[i].was;

@@ -77,8 +77,8 @@ static around look_around(const or_mesh *o, uint32_t v, const bool cut[])
     return a;
 }
 
-/* Returns which part of the fan of face i keeps the vertex v: the part that has the first side of
- * the lowest cut edge. */
+/* Returns which part of the fan of face i keeps the vertex v: the part with the face on the left of
+ * the lowest cut edge (seen in the direction of half-edge 2e). */
 static uint32_t part_that_stays(const or_mesh *o, const around *a, uint32_t i, uint32_t v,
                                 const bool cut[])
 {
@@ -115,8 +115,8 @@ static void add_parts(const or_mesh *o, uint32_t v, const bool cut[], part *part
     }
 }
 
-/* Returns whether this edge gets the new vertex of the part. A cut edge becomes two, of which the
- * old one belongs to the part with its first side. */
+/* Returns whether the edge e gets the new vertex of the part `p`. A cut edge becomes two edges; the
+ * old one belongs to the part with the face on the left of half-edge 2e. */
 static bool goes_along(const or_mesh *o, const part *p, uint32_t e, const bool cut[])
 {
     uint32_t a = o->edge[e].a;
@@ -222,7 +222,7 @@ static bool is_beside(const or_mesh *o, uint32_t e, uint32_t v)
     return o->edge[e].a == v || o->edge[e].b == v;
 }
 
-/* Returns whether an element around a vertex that is merged into another is locked. */
+/* Returns whether a vertex that is merged into another one, or an edge or face at it, is locked. */
 static bool locked_at_end(const or_mesh *o, uint32_t goes, uint32_t stays, or_keep keep)
 {
     bool moves = keep != OR_A && !or_same_point(o->vertex[goes].at, o->vertex[stays].at);
@@ -251,8 +251,8 @@ uint64_t or_edge_weld(or_mesh *o, uint32_t ea, uint32_t eb, or_keep keep)
     if (refused != 0) {
         return refused;
     }
-    /* The faces of the two edges must run along the joined edge in opposite directions, so the ends
-     * of one are exchanged if they do not. */
+    /* The faces of the two edges must run along the joined edge in opposite directions. If they do
+     * not, the two ends of one edge are exchanged. */
     if (forward != backward) {
         uint32_t swap = goes[0];
         goes[0] = goes[1];

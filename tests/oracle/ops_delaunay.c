@@ -42,7 +42,7 @@ static double excess(const or_mesh *o, uint32_t e)
            angle_at(o, or_after(&o->face[g], a), a, b) - acos(-1);
 }
 
-/* Sets the entries of `left` for all sides of a face to `what`. */
+/* Stores `what` as the face on the left of each side of the face f. */
 static void say(or_mesh *o, uint32_t f, uint32_t what)
 {
     for (uint32_t i = 0; i < o->face[f].count; i++) {

@@ -100,8 +100,8 @@ uint64_t or_edge_join(or_mesh *o, uint32_t v)
     return 0;
 }
 
-/* Returns the corner after b in the face left of the side a->b; when that side is split, the
- * diagonal ends there. */
+/* Returns the corner after b in the face left of the side a->b. If that side is split, the new
+ * diagonal leads from the new vertex to this corner. */
 static uint32_t corner_beyond(const or_mesh *o, uint32_t a, uint32_t b)
 {
     uint32_t f = left_of(o, a, b);
@@ -260,7 +260,7 @@ static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves
 }
 
 /* Returns whether the point at the fraction t of the way between the vertices u and v differs from
- * v in any case, however it is rounded. */
+ * v, no matter how its coordinates are rounded. */
 static bool surely_off(double u, double v, double t)
 {
     double most = 8 * DBL_EPSILON * fmax(fabs(u), fabs(v)) + 8 * DBL_TRUE_MIN;
@@ -323,7 +323,8 @@ void or_draw_together(or_mesh *o, const or_collapse *c)
         if (edge->alive && (edge->a == u || edge->b == u)) {
             uint32_t other = edge->a == u ? edge->b : edge->a;
             if (o->joined[v][other] != OR_NONE) {
-                edge->alive = false; /* the vertex v has an edge to this neighbour of u already */
+                edge->alive =
+                    false; /* an edge connects the vertex v with this neighbour of u already */
             } else {
                 *(edge->a == u ? &edge->a : &edge->b) = v;
             }

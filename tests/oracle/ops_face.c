@@ -155,8 +155,8 @@ static bool is_side(const or_face *f, uint32_t a, uint32_t b)
     return or_after(f, a) == b || or_after(f, b) == a;
 }
 
-/* Returns whether the face f can have a diagonal between two vertices that an edge connects
- * already, or that a diagonal of the face g may connect, too. */
+/* Returns whether the face f can have a diagonal that would double an edge: its two ends are
+ * connected by an edge already, or by a possible diagonal of the face g. */
 static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
 {
     for (uint32_t i = 0; i < f->count; i++) {

@@ -45,9 +45,9 @@ static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
 }
 
-/* Tries all rotations of two loops of equal length against each other, except those in which two
- * edges would join the same two vertices. Returns the least sum of the squared lengths of the new
- * edges, infinite if all rotations are excluded. */
+/* Tries all ways to join two loops of equal length corner by corner (one loop is rotated against
+ * the other), except those in which two edges would join the same two vertices. Returns the least
+ * sum of the squared lengths of the new edges, or infinity if no way is left. */
 static double least_twist(const or_mesh *o, const uint32_t *a, const uint32_t *b, uint32_t n)
 {
     double least = INFINITY;
@@ -106,8 +106,8 @@ static bool is_side(const or_face *loop, uint32_t a, uint32_t b)
     return false;
 }
 
-/* Returns whether a face belongs to the strip between two loops: it has one side of each loop or,
- * if a triangle, of one loop, and its other sides connect the loops. */
+/* Returns whether a face belongs to the strip between two loops: it has one side of each loop, or,
+ * if it is a triangle, one side of one loop; its other sides connect the loops. */
 static bool is_in_strip(const or_mesh *o, const or_face *f)
 {
     const or_face *a = &o->bridge[0];
@@ -128,8 +128,8 @@ static bool is_in_strip(const or_mesh *o, const or_face *f)
                                 : f->count == 3 && sides[0] + sides[1] == 1;
 }
 
-/* hedge tries all rotations of two loops of equal length: returns whether no allowed rotation has
- * shorter connecting edges than hedge's. */
+/* hedge tries all ways to join two loops of equal length corner by corner. Returns whether no
+ * allowed way has shorter connecting edges than the one that hedge chose. */
 static bool is_least_twisted(const or_mesh *o)
 {
     const or_face *a = &o->bridge[0];
@@ -313,8 +313,8 @@ uint64_t or_loop_split(or_mesh *o, const uint32_t e[3])
     if (repeats(faces, 6)) {
         return OR_BIT(HE_SHARED_FACE);
     }
-    /* `beyond` and `around` hold, for each corner of the cycle, its neighbours and faces on the
-     * right of the cycle: counter-clockwise from the corner before it to the corner after it. */
+    /* `beyond` holds the neighbours and `around` the faces of each corner of the cycle on the right
+     * of the cycle, counter-clockwise from the corner before it to the corner after it. */
     uint32_t beyond[3][OR_VERTICES];
     uint32_t around[3][OR_VERTICES];
     uint32_t count[3];

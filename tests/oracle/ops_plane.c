@@ -19,8 +19,8 @@ static bool has_edge(const or_mesh *o, uint32_t v)
 }
 
 /* Returns hedge's default tolerance, 1e-9 of the longest side of the box around the vertices that
- * have edges. The model's meshes are not small relative to their coordinates, so rounding needs no
- * larger one. */
+ * have edges. hedge takes a larger one for small meshes far from the origin because of rounding,
+ * but the model has no such meshes. */
 static double tolerance_of(const or_mesh *o)
 {
     he_vec3 low = {INFINITY, INFINITY, INFINITY};
@@ -95,8 +95,8 @@ or_plane_size or_plane_measure(const or_mesh *o, const or_plane *plane)
     return size;
 }
 
-/* Finds where the plane meets the sides of a face: at vertices, or inside of edges, for which the
- * vertex to be made there is named by its edge. */
+/* Finds the points in which the plane meets the sides of a face. A point is a vertex, or lies
+ * inside an edge; then the edge stands for the vertex that the cut makes there. */
 static uint32_t meetings(const or_mesh *o, const or_face *f, uint32_t out[2 * OR_CORNERS])
 {
     uint32_t n = 0;
@@ -123,9 +123,9 @@ static bool holds(const uint32_t *list, uint32_t n, uint32_t x)
     return false;
 }
 
-/* Returns whether a diagonal of cut face i may connect two vertices that an edge, or a diagonal of
- * another cut face, connects already. If both faces have exactly two points in the plane, this is
- * certain. */
+/* Returns whether a diagonal of the cut face i may connect two vertices that an edge, or a diagonal
+ * of another cut face, connects already. Sets `*certain` if the plane meets each of these cut faces
+ * in only two points, so that no other diagonal is possible. */
 static bool can_double(const or_mesh *o, uint32_t i, bool *certain)
 {
     const or_face *f = &o->face[o->cut[i].id];

@@ -25,7 +25,7 @@ static bool is_listed(or_region region, uint32_t f)
     return false;
 }
 
-/* Returns the corner that is i places after the first one of a face in the region. */
+/* Returns the corner of the face f that comes i corners after the vertex region.start[f]. */
 static uint32_t corner(const or_mesh *o, or_region region, uint32_t f, uint32_t i)
 {
     const or_face *face = &o->face[f];
@@ -271,8 +271,8 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
                 o->vertex[v].near = true;
             }
         }
-        /* The new side faces belong to no listed face; `left` and `joined` are computed again to
-         * include them. */
+        /* The new side faces are in no part yet; `left` and `joined` are computed again to include
+         * these faces. */
         uint64_t wrong = or_derive(o);
         assert(wrong == 0);
         (void)wrong;
@@ -308,7 +308,8 @@ static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
     return sum;
 }
 
-/* Returns the vector from a vertex on the rim to the middle of the part's faces there. */
+/* Returns the vector from a vertex on the rim to the mean of the centroids of the part's faces at
+ * this vertex. */
 static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 from = o->vertex[v].at;

@@ -57,8 +57,8 @@ static bool would_go(const bool *gone, uint32_t f)
     return f == OR_NONE || gone[f];
 }
 
-/* Returns whether an element that is deleted together with the faces is locked; the vertex `alone`
- * is deleted, too. */
+/* Returns whether a deleted face, or an edge or vertex that is deleted together with the faces, is
+ * locked; the vertex `alone` is deleted, too. */
 static uint64_t locked_among(const or_mesh *o, const bool *gone, uint32_t alone, bool keep_isolated)
 {
     bool locked = alone != OR_NONE && o->vertex[alone].locked;
@@ -150,7 +150,7 @@ uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, 
     }
 
     /* Visits the sectors (the angles of faces at the vertex v) counter-clockwise from `left` to
-     * `right`, across the gap if it lies between them. */
+     * `right`. If the gap between two fans lies on the way, the visit continues after the gap. */
     uint32_t moved[OR_VERTICES];
     uint32_t count = 0;
     uint32_t x = left == OR_NONE ? fan_start(o, v) : left;

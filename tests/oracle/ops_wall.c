@@ -64,7 +64,8 @@ static double distance(he_vec3 a, he_vec3 b)
 }
 
 /* Finds the neighbours of the vertex v in the fan of faces that contains its neighbour w,
- * counter-clockwise from w; in the result, v itself stands for the hole. */
+ * counter-clockwise from w. Where the ring of neighbours crosses the hole, the result has v
+ * itself. */
 static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[OR_CORNERS])
 {
     uint32_t n = 0;
@@ -92,8 +93,8 @@ static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[
     return n;
 }
 
-/* In each face of a fan around the vertex v, replaces the corner v by the new vertices on the edges
- * to the corners before and after it, as far as these edges are cut. */
+/* Changes the faces of one fan around the vertex v. In each of them the corner v is replaced by the
+ * new vertices on the edges to the corners before and after v, if these edges are cut. */
 static void cut_faces(or_mesh *o, uint32_t v, const uint32_t cut[OR_VERTICES])
 {
     for (uint32_t f = 0; f < o->faces; f++) {

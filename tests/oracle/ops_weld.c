@@ -32,8 +32,8 @@ static bool repeats(const or_face *f)
     return false;
 }
 
-/* Returns why the faces cannot meet at their edges, as a set of refusals; faces in `skip` do not
- * count. */
+/* Returns why the faces cannot meet at their edges, as a set of refusals. Faces in `skip` are
+ * ignored. */
 static uint64_t clashes(const or_mesh *o, const bool *skip)
 {
     static uint8_t uses[OR_VERTICES][OR_VERTICES];
@@ -87,7 +87,8 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
     return refused;
 }
 
-/* If several edges get the same two ends, the lowest stays, unless it has no face left. */
+/* If several edges get the same two ends, only the edge with the lowest id stays. Edges that have
+ * no face left are deleted. */
 static void weld_edges(or_mesh *o, const uint32_t *to)
 {
     for (uint32_t e = 0; e < o->edges; e++) {

@@ -74,8 +74,8 @@ export class Mix {
         return list[this.below(list.length)];
     }
 
-    // Returns a mesh for the next step: the keeper more often than a guest, because it is undone to
-    // the first of its revisions.
+    // Returns a mesh for the next step. The keeper is chosen more often than a guest, because the
+    // keeper is undone to its first revision at the end of a round.
     mesh() {
         return this.guests.length === 0 || this.below(3) === 0 ? this.keeper : this.pick(this.guests);
     }
@@ -84,8 +84,8 @@ export class Mix {
         return `/v1/meshes/${mesh.id}${rest}`;
     }
 
-    // Notes what is known of a new mesh from its summary: the ids that it has issued are those
-    // below its counts.
+    // Notes the upper bounds of the ids of a new mesh: its summary has the counts of elements, and
+    // all its ids are below these counts.
     describe(id, summary) {
         const { counts: { vertices, edges, faces } = {}, revision } = summary ?? {};
         return { id, faces, revision, clean: true, issued: { vertices, edges, faces } };
@@ -423,8 +423,9 @@ export class Mix {
         }
     }
 
-    // Listens to a guest, because the queue of events goes on collecting for a while when its
-    // listeners are gone; the guest is deleted with its queue.
+    // Listens to a guest and edits it. A listener leaves a queue of events, which collects events
+    // for a while after the listener has gone; a guest is used because it is deleted together with
+    // its queue.
     async listen() {
         const mesh = this.guests[0];
         if (mesh !== undefined) {

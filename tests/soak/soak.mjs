@@ -47,12 +47,12 @@ const { values: options } = parseArgs({
 
 const STEPS = 60; // number of steps in a round
 const SAMPLES = 250; // milliseconds between two measurements of the memory under load
-// The memory for undo of a mesh: it is soon full, because undone and compacted entries stay in a
-// history.
+// The budget of a mesh for undo. It is so small that it is soon full, because undone edits and
+// `compact` leave entries in the history.
 const UNDO_BUDGET = '512K';
-// How far memory may rise and still count as flat: MiB, or a part of the level if that is more. In
-// a shorter run heaps still find their size, and the histories of the keepers still fill their
-// budgets.
+// How far memory may rise and still count as constant, in MiB, or as a share of the level if that
+// is more. In a shorter run the heaps still grow to their usual size, and the histories of the
+// keepers still fill their budgets.
 const STARTING = options.minutes === undefined ? 0.25 : 1;
 const BOUNDS =
     Number(options.minutes ?? 0) < 10
@@ -60,8 +60,8 @@ const BOUNDS =
         : { slope: { share: 0.01, least: 1 }, counted: { share: 0, least: 0.0625 } };
 const REST_ABOVE = 16; // MiB that memory at rest may be above its level after warming up
 const LOADED_SLOPE = { share: 0.1, least: 2 };
-// How often memory is read at most until it has fallen: the daemon frees what a client left behind
-// only a moment after the client disconnected.
+// How often memory is read at most while the test waits for it to fall: the daemon frees the memory
+// for a client only a moment after the client has disconnected.
 const MOST_LOOKS = 1000;
 const LEFT_BEHIND = 0.0625;
 // In a run of minutes the clients pause this often, for as long as the daemon needs to return freed
@@ -91,7 +91,7 @@ function sample() {
     loaded.push(daemon.memory().resident);
 }
 
-// Waits until no more memory is resident than at any earlier rest.
+// Waits until no more memory is resident than at the earlier rest with the least resident memory.
 async function settled() {
     const lowest = Math.min(...rests.map(({ resident }) => resident));
     const until = seconds() + MOST_REST;

@@ -16,10 +16,10 @@ const require = createRequire(new URL('../../web/package.json', import.meta.url)
 const { chromium } = require('playwright-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
-// A limit for tests that wait for something that never happens: a page is asked at most once a
-// second whether it is alive, and is closed after this many answers. Answers are counted and not
-// seconds, so that no test fails because a machine is slow or stands still for a while. If a page
-// does not answer at all, the program that runs the tests ends the test.
+// A limit for tests that wait for something that never happens. A page is asked at most once a
+// second whether it still works, and is closed after this many answers. Answers are counted and not
+// seconds, so that no test fails because a machine is slow or pauses for a while. If a page does
+// not answer at all, the program that runs the tests ends the test.
 const MOST_ANSWERS = 600;
 const APART = 1000;
 
@@ -105,7 +105,8 @@ export async function openPageIn(
     return page;
 }
 
-// Runs in the page: keeps the texts of success messages, which disappear after some seconds.
+// Runs in the page: keeps the texts of success messages, because the page shows them only for some
+// seconds.
 function keepTold() {
     window.told = [];
     new MutationObserver((changes) => {
@@ -117,7 +118,7 @@ function keepTold() {
     }).observe(document, { childList: true, subtree: true });
 }
 
-// Waits until the page has shown a success message, whether or not the message is still there.
+// Waits until the page has shown a success message; the message may have disappeared since.
 export function waitForTold(page, pattern) {
     return page.waitForFunction(
         ([source, flags]) => window.told.some((text) => new RegExp(source, flags).test(text)),
@@ -125,8 +126,8 @@ export function waitForTold(page, pattern) {
     );
 }
 
-// Waits for a frame of a revision with a selection such as 'face:3' and, if given, with the
-// materials of a revision.
+// Waits until the page has drawn the revision `revision` with a selection such as 'face:3' and, if
+// given, with the materials of a certain revision.
 export function waitForFrame(page, { mesh, revision, selection, materials }) {
     return page.waitForFunction(
         (wanted) => {
@@ -171,8 +172,8 @@ export async function checkAccessible(page, state, part = 'html') {
     assert.deepEqual(found, [], state);
 }
 
-// Returns functions that say where elements of a mesh are on the canvas. They are computed from the
-// numbers of the API and from a camera at the place where the page puts its own at first.
+// Returns functions that say where elements of a mesh are on the canvas. They compute this from the
+// API's numbers and from a camera in the position in which the page starts.
 export async function projector(page, daemon, mesh) {
     const geometry = unpack(await getGeometry(daemon, mesh));
     const { width, height } = await page.locator('#canvas').boundingBox();

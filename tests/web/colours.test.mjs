@@ -83,7 +83,7 @@ test('an OBJ file and its library show their colours and names', async (t) => {
     wanted.forEach((isIt, face) => {
         assert.ok(isIt === null || seen.get(face)(isIt) === 64, `face ${face}`);
     });
-    // half of the pixels behind the face of glass must be visible
+    // half of the pixels behind the transparent face must be visible
     assert.equal(seen.get(4)(isBackground), 32);
     assert.equal(seen.get(4)(isLight), 32);
     assert.deepEqual(await legend(page), [
@@ -99,8 +99,8 @@ test('an OBJ file and its library show their colours and names', async (t) => {
     assert.equal(red, 'rgb(231, 39, 39)'); // 0.8 and 0.02 in sRGB
     await checkAccessible(page, 'materials');
 
-    // a selected face must be drawn as selected, and show its material; a face of glass can be
-    // picked, too
+    // a selected face must be drawn as selected, and still show its material; a transparent face
+    // can be picked, too
     const project = await projector(page, daemon, mesh);
     const pick = async (face) => {
         const { vertices } = await get(daemon, `/${mesh}/faces/${face}`);

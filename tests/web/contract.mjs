@@ -13,7 +13,7 @@ const require = createRequire(new URL('../../web/package.json', import.meta.url)
 const Ajv = require('ajv/dist/2020').default;
 const addFormats = require('ajv-formats').default;
 
-// Headers that an answer may have only if the document lists them.
+// Headers that an answer may have only if the document lists these headers.
 const LISTED = [
     'etag', 'location', 'link', 'allow', 'retry-after', 'export-warnings', 'accept-encoding',
     'content-encoding',
@@ -145,7 +145,7 @@ export class Contract {
             }
             return path;
         });
-        // Paths with fixed segments are tried before those with variables in the same places.
+        // Paths without variables are tried before paths that have variables in the same segments.
         this.paths.sort((a, b) => variables(a) - variables(b));
     }
 
@@ -453,8 +453,9 @@ function besides(value, status, response, headers) {
     return null;
 }
 
-// Returns the body of a request to /query without the questions that the server refused: each of
-// these has a problem in its place in the answer, and may disagree with the schema.
+// Returns the body of a request to /query without the questions that the server refused. The answer
+// has a problem object in place of the answer to each such question, and the question may disagree
+// with the schema.
 function takenOf(bytes, { media, whole, bytes: answer }) {
     if (media !== 'application/json' || !whole) {
         return bytes;
@@ -502,7 +503,7 @@ function decode(text) {
 }
 
 // Returns whether a variable of a path may have this value. Only enumerations are checked here,
-// because they decide which path it is; other schemas are checked later.
+// because they decide which template the path matches; other schemas are checked later.
 function allowed({ schema }, value) {
     return schema.enum === undefined || schema.enum.includes(value);
 }

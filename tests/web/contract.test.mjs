@@ -49,7 +49,7 @@ async function ask(method, target, body, headers = {}) {
     };
 }
 
-// Returns a copy of a recorded request or answer, whose body is the result of `change(text)`.
+// Returns a copy of a recorded request or answer in which `change(text)` replaces the body.
 function rewrite(part, change) {
     const text = Buffer.from(part.body, 'base64').toString();
     const body = Buffer.from(change(text));

@@ -364,7 +364,7 @@ test('what is shown is in the address, and an address shows it again', async (t)
         path: `/${new URL(address).hash}`,
     });
     await waitForFrame(second, { mesh, revision: 1, selection: `face:${face.id}` });
-    // The cameras of the two pages may differ in the last digits of their numbers only.
+    // The cameras of the two pages may differ, but only in the last digits of their numbers.
     const [a, b] = [await readCanvas(page), await readCanvas(second)];
     const counts = [a.countOf(isChosen), b.countOf(isChosen)];
     assert.ok(counts[0] > 1000 && Math.abs(counts[0] - counts[1]) < counts[0] / 100, `${counts}`);

@@ -52,7 +52,8 @@ test('a field that is armed takes the next click, the selection stays', async (t
     await expectValue(page, 'edge', `${inner[3].id}`);
     assert.equal(await page.locator('[aria-pressed="true"]').count(), 0);
     await waitForFrame(page, { selection: 'face:0' });
-    // Elements that were clicked for a field must stay when another one is selected.
+    // Elements that were clicked for a field must stay in the field when another element is
+    // selected.
     await click(page, place.at(inner[1].vertices));
     await waitForFrame(page, { selection: `edge:${inner[1].id}` });
     assert.equal(await field(page, 'edge').inputValue(), `${inner[3].id}`);

@@ -12,8 +12,8 @@ import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 const EDITS = Number(process.env.EDITS ?? 1000);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Returns the arrays of an answer without spare capacity, so that applying changes must enlarge the
-// arrays.
+// Returns the arrays of an answer without unused space at their end, so that changes that add
+// elements must enlarge the arrays.
 function wholeOf(buffer) {
     const geometry = unpack(buffer);
     const { vertices, vertexCount, triangles, triangleCount } = geometry;
@@ -113,7 +113,8 @@ test('after random edits the patched arrays equal fresh ones', async (t) => {
 
 // --- without a daemon ---
 
-// Builds an answer of GET .../geometry?since= with these changed rows: [index, a, b, c, d].
+// Builds an answer of GET .../geometry?since= from its changed array entries, each [index, a, b, c,
+// d].
 function answer(vertices, triangles, { base = 1, layout = 9, counts = [3, 2] } = {}) {
     const bytes = [vertices, triangles].map(
         (rows) => 16 * Math.ceil(rows.length / 4) + 16 * rows.length,

@@ -49,8 +49,9 @@ test('all faces that are selected are drawn where they will be', () => {
     const { operation, lines } = drag(gesture, { ...view, height: 100 }, [0, -10]);
     assert.deepEqual(operation.faces, [0, 1, 2]);
     assert.equal(operation.region, true);
-    // Each of the ten outer edges has two lines, for a side face and for the edge's new position;
-    // the inner edge has one line, for its new position. A line has two ends of three coordinates.
+    // Each of the ten outer edges is drawn as two lines, one for a side face and one for the edge's
+    // new position. The inner edge is drawn as one line, for its new position. A line has two ends
+    // of three coordinates.
     assert.equal(lines.length, 3 * 2 * (2 * 10 + 1));
     const heights = new Set(lines.filter((_, i) => i % 3 === 2));
     assert.deepEqual([...heights], [0, operation.distance]);

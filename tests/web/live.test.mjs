@@ -22,8 +22,8 @@ const GRID = { name: 'grid', shape: 'grid', columns: 3, rows: 3 };
 const edit = (daemon, mesh, operation) => post(daemon, `/${mesh}/edits`, operation);
 const noteOf = (page, state) => page.locator(`#connection[data-state="${state}"]`);
 
-// Returns a list to which the URLs of all further requests of the page are added that contain a
-// text.
+// Returns a list to which the URL of each further request of the page is added, if it contains a
+// certain text.
 function requestsOf(page, text) {
     const found = [];
     page.on('request', (request) => {
@@ -210,7 +210,8 @@ test('an element that is gone is said, with a way to what it is part of', async 
     const context = await openMesh(t, GRID);
     const { daemon, mesh, page } = context;
     const gone = page.locator('#element-gone li');
-    // A collapse merges the selected vertex into another one; the page must offer to select that.
+    // A collapse merges the selected vertex into another one; the page must offer to select that
+    // other vertex.
     const { vertices } = await get(daemon, `/${mesh}/edges/5`);
     const made = await edit(daemon, mesh, {
         dry_run: true,

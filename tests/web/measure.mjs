@@ -90,7 +90,7 @@ async function measure(browser, daemon, side) {
     }
     await page.close();
     const { counts: after } = await get(daemon, `/${mesh}`);
-    // The last edit was made by the other client, so the undo must have taken back that edit.
+    // The newest edit was made by the other client, so the undo must have undone that edit.
     if (after.faces !== counts.faces + 3) {
         throw new Error(`${after.faces} faces after undo, not ${counts.faces + 3}`);
     }

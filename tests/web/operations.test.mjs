@@ -38,8 +38,8 @@ const groupOf = ({ name }) => GROUPS.find((group) => name.startsWith(`${group}_`
 for (const group of [...GROUPS, 'mesh']) {
     test(`each ${group} operation is filled, tried, applied and undone`, async (t) => {
         const daemon = await startDaemon(t);
-        // The page may try a form that is only half filled, and be refused: a single edge between
-        // inner vertices cannot be cut.
+        // The page may try an edit while the form is only half filled, and be refused: a single
+        // edge between inner vertices cannot be cut.
         const page = await openPage(t, daemon, { allowed: [/status of 422/] });
         for (const scenario of SCENARIOS.filter((one) => groupOf(one) === group)) {
             await goThrough({ daemon, page }, scenario);

@@ -43,8 +43,8 @@ function jsonOf(glb) {
     return JSON.parse(new TextDecoder().decode(new Uint8Array(glb, 20, length)));
 }
 
-// Returns a text for each triangle: its corners, beginning with the lowest index, because
-// compression may rotate the corners of a triangle.
+// Returns a text for each triangle, which lists its corners from the one with the lowest index on.
+// So the texts are equal even if compression rotated the corners of a triangle.
 function trianglesOf(index) {
     const list = [];
     for (let i = 0; i < index.length; i += 3) {

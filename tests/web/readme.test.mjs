@@ -51,8 +51,8 @@ function promised(code, mark) {
     return text;
 }
 
-// Returns the commands of a block, {line, promised} each; `promised` is the beginning of the answer
-// as a comment after the command gives it.
+// Returns the commands of a block, as {line, promised}; `promised` is the beginning of the answer,
+// which the page gives in a comment after the command.
 function commandsOf(block) {
     const lines = block.replaceAll('\\\n', '').split('\n');
     const commands = [];
@@ -219,8 +219,8 @@ test('each file, heading and make target they name is there', async () => {
     for (const [, target] of readme.matchAll(/`make ([a-z-]+)/g)) {
         assert.match(makefile, new RegExp(`^${target}:`, 'm'), target);
     }
-    // The table of commands must have each target of the Makefile, except those that only serve
-    // other targets. `make fresh` tries the commands of the table.
+    // The table of commands must have every target of the Makefile, except those that only serve
+    // other targets. `make fresh` runs the commands of the table.
     const [table] = /^\| command \|.*?\n\n/ms.exec(readme);
     const named = new Set([...table.matchAll(/`(?:make )?([a-z-]+)/g)].map(([, name]) => name));
     const parts = ['help', 'page', 'programs', 'ready', 'clean'];

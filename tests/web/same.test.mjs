@@ -15,8 +15,8 @@ import { openPage } from './visit.mjs';
 const EDITS = Number(process.env.EDITS ?? 300);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Runs in the page: keeps a copy of all data that is uploaded to 32-bit textures, so that the copy
-// equals what graphics memory has, and remembers from which arrays the data came.
+// Runs in the page: keeps a copy of all data that is uploaded to 32-bit textures, so that the
+// copies equal the textures in graphics memory, and remembers the arrays from which the data came.
 function keepTextures() {
     const { prototype } = WebGL2RenderingContext;
     const kept = new Map();
@@ -53,7 +53,8 @@ function keepTextures() {
     });
     hook('deleteTexture', (texture) => kept.delete(texture));
     // Each of the two formats has two textures: one with data of the mesh, one with data of the
-    // materials. The mesh's texture is the one that was uploaded from the mesh's array alone.
+    // materials. The test recognizes the mesh's texture because it was uploaded directly from the
+    // mesh's array.
     window.readTextures = ({ vertices, triangles }) => {
         const { RGBA32F, RGBA32UI } = WebGL2RenderingContext;
         const find = (wanted, { buffer }) => {

@@ -57,8 +57,9 @@ const face = (...corners) => ({ kind: 'face', ends: corners });
 const MIDDLE = face(5, 6, 10, 9);
 const HOLE = [{ op: 'face_delete', face: 4 }];
 
-// Each row has [operation, mesh, values by parameter, edits made before]. Values that are elements
-// are clicked, three numbers are a point, true ticks a checkbox, and text is typed or chosen.
+// Each row is [operation, mesh, values by parameter, edits made before]. Elements among the values
+// are clicked in the view, three numbers are typed as a point, true ticks a checkbox, and text is
+// typed or chosen.
 export const SCENARIOS = [
     ['vertex_add', GRID, { position: [0, 0, 1] }],
     ['vertex_move', GRID, { vertex: [vertex(5), vertex(6)], by: [0, 0, 0.25] }],
@@ -156,7 +157,7 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
     }
 }
 
-// Waits until a field contains `count` words: as many ids as were clicked, or one coordinate.
+// Waits until a field contains `count` words: one id for each click, or one coordinate.
 async function waitForWords(field, count) {
     const handle = await field.elementHandle();
     await field.page().waitForFunction(
@@ -178,7 +179,8 @@ async function placeOf({ daemon, mesh, place }, { kind, ends }) {
         vertices[(vertices.indexOf(ends[0]) + 1) % vertices.length] === ends[1];
     const own = beside.find(follows);
     const { x, y } = place.at((own ?? beside[0]).vertices);
-    // The click is moved into the face of the half-edge, away from the face on the other side.
+    // The click is moved into the half-edge's face, away from the face on the other side of the
+    // edge.
     const away = Math.hypot(x - middle.x, y - middle.y);
     const step = (own === undefined ? -5 : 5) / away;
     return { x: middle.x + step * (x - middle.x), y: middle.y + step * (y - middle.y) };

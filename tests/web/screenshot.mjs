@@ -11,7 +11,8 @@ import { setMode } from './page.mjs';
 const file = fileURLToPath(new URL('../../web/screenshot.png', import.meta.url));
 const MOST_BYTES = 100 * 1024;
 
-// Functions to call at the end. `run` stands for the context of a test, to which they are added.
+// `endings` are functions to call at the end. `run` takes the place of a test's context, which
+// collects such functions.
 const endings = [];
 const run = { after: (ending) => endings.unshift(ending) };
 try {
@@ -25,8 +26,8 @@ try {
     await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await setMode(page, 'Half-edge');
-    // The half-edge to select belongs to the face that is nearest to a place on the canvas where
-    // the near side of the torus is.
+    // A half-edge of the face nearest to a certain point on the canvas, where the near side of the
+    // torus is, is selected.
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     const projected = await projector(page, daemon, mesh);
     const distance = ({ vertices }) => {

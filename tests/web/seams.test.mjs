@@ -35,8 +35,8 @@ function cornersOfObj(text) {
     }))].sort();
 }
 
-// Returns the same as cornersOfObj() for a mesh of three.js, whose texture coordinate v points
-// down.
+// Returns the corners of a mesh of three.js in the form that cornersOfObj() returns; three.js has
+// texture coordinates whose v points down.
 function cornersOfThree(mesh) {
     const { position, uv } = mesh.geometry.attributes;
     return [...new Set(Array.from(mesh.geometry.index.array, (i) =>

@@ -14,7 +14,8 @@ import { Vector3 } from '../../web/node_modules/three/build/three.module.js';
 import { post, startDaemon } from './daemon.mjs';
 import { FileReader } from './file_reader.mjs';
 
-// Makes a tube that is bent to a ring, cut open along one circle in each direction for its texture.
+// Makes a tube that is bent to a ring. For its texture it has two seams, one around the ring and
+// one around the tube.
 function ring(around, across) {
     const lines = [];
     for (let i = 0; i < around * across; i++) {
@@ -190,7 +191,7 @@ async function check(t, name, bytes) {
         const edited = await facesIn(url, id);
         const others = faces.flatMap((_, f) => (touched.has(f) ? [] : [f]));
         checkSame(others.map((f) => edited[f]), others.map((f) => faces[f]), size, 'not touched');
-        // The side that was split has become two sides, and both must be seams.
+        // The split has made two sides of one, and both must be seams.
         const after = seamsOf(edited);
         assert.equal(after.sides.length, before.sides.length + 1);
         const about = new Set([...touched].flatMap((f) => faces[f].map(({ vertex }) => vertex)));

@@ -17,8 +17,8 @@ const OTHER_BYTES = 4 * 1024;
 // Headers that concern one connection only, so that a proxy must not pass them on.
 const OWN = new Set(['connection', 'keep-alive']);
 
-// Returns the headers to pass on, as an object: if they were a list, node would send a request
-// without a body as chunked.
+// Returns the headers to pass on, as an object: from a list of headers, node would make a chunked
+// request even if it has no body.
 function forwarded(rawHeaders) {
     const kept = {};
     for (let i = 0; i < rawHeaders.length; i += 2) {
@@ -82,7 +82,8 @@ export async function recorded(url) {
             answered.writeHead(upstream.statusCode, forwarded(upstream.rawHeaders));
             upstream.pipe(answered);
         });
-        // If the daemon closes its connection without an answer, the proxy does so, too.
+        // If the daemon closes its connection without an answer, the proxy closes the client's
+        // connection, too.
         onward.on('error', () => asked.socket.destroy());
         answered.on('close', () => onward.destroy());
         asked.pipe(onward);

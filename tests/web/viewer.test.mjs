@@ -170,8 +170,8 @@ test('polygons are drawn with their edges and without diagonals', async (t) => {
     assert.ok(!blank(square));
     assert.ok(square.countOf(isBackground) > square.count / 4);
     const place = await projector(page, daemon, mesh);
-    // The square consists of two triangles, whose common side, a diagonal, must not be drawn: all
-    // pixels around the middle must have the colour of the surface.
+    // The square consists of two triangles. Their common side is a diagonal that must not be drawn:
+    // all pixels around the middle must have the colour of the surface.
     const { x, y } = place.at([0, 1, 2, 3]);
     const fill = square.colour(x, y);
     assert.ok(isSurface(fill), `${fill}`);
@@ -362,7 +362,7 @@ test('a face is split from its middle, or between two corners', async (t) => {
     await waitForFrame(page, { mesh, revision: 3 });
     const { counts } = await checkStatistics(context);
     assert.deepEqual([counts.vertices, counts.edges, counts.faces], [5, 8, 4]);
-    // The page has fetched the new mesh, so its new vertex can be picked where it is.
+    // The page has fetched the mesh after the edit, so the new vertex can be picked where it is.
     await setMode(page, 'Vertex');
     const [made] = (await getAll(daemon, mesh, 'vertices')).slice(-1);
     await click(page, (await projector(page, daemon, mesh)).at([made.id]));

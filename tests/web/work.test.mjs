@@ -75,7 +75,7 @@ test('a long history is read on by a button', async (t) => {
     assert.deepEqual(revisions, Array.from({ length: 26 }, (_, i) => 26 - i));
 });
 
-// Makes the server's jobs look to the page as if they still ran. Returns a function that ends this.
+// Makes the page believe that the server's jobs still run. Returns a function that ends this.
 async function keepRunning(page) {
     let isHeld = true;
     await page.route('**/v1/jobs/*', async (route) => {
@@ -121,7 +121,8 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
 });
 
 test('an operation that is refused as a job says why', async (t) => {
-    // If the form is filled slowly, the page tries the edit before it is sent, and may be refused.
+    // If the form is filled slowly, the page tries the edit as a dry run before the user sends it,
+    // and the dry run may be refused.
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 400/] });
     await page.locator('#operation').selectOption('plane_split');
     await fillVector(page, 'point', [0, 0, 0]);
@@ -188,7 +189,8 @@ test('an upload is given up while it is sent and while it is read', async (t) =>
     await expectToast(page, /Cancelled/);
     assert.ok(await page.locator('#uploading').isHidden());
     assert.deepEqual((await get(daemon, '')).items, []);
-    // From here on the daemon answers, and the page must wait for the daemon's job.
+    // From here on the daemon answers the page's requests itself, so the page must wait for the
+    // daemon's job.
     await page.unrouteAll();
     await upload('whole.off');
     await waitForTold(page, /Read whole\.off.*3 vertices, 1 face/);

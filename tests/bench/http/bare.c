@@ -1,8 +1,8 @@
 /* The minimum that a server based on libmicrohttpd can do: it answers every request with the same
- * bytes. tests/bench/http.sh compares hedged with it.
+ * bytes. tests/bench/http.sh compares hedged with this server.
  *
- *     bare WORKERS BODY      prints the port it listens on, and ends when its standard input ends
- */
+ *     bare WORKERS BODY      prints the port it listens on, and ends when its standard input
+ * ends */
 #include <arpa/inet.h>
 #include <microhttpd.h>
 #include <netinet/in.h>

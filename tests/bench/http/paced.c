@@ -26,7 +26,7 @@ enum { MOST_CONNECTIONS = 256, ANSWER = 16 * 1024, REQUEST = 1024 };
 
 typedef struct line {
     int fd;
-    double due; /* when the request on its way was due; 0: none is on its way */
+    double due; /* when the request that is not answered yet was due; 0 if there is none */
     size_t length;
     char answer[ANSWER];
 } line;

@@ -44,8 +44,9 @@ static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_
     return found;
 }
 
-/* How edits are made. RECORDED: each delta is emptied after its edit, as by a store that passes it
- * on. OF_A_LIST: the kernel gets the edges as a list in advance, as from delaunay. */
+/* How edits are made. RECORDED: the mesh records each edit in a delta, which is emptied after the
+ * edit, as in a store that passes each delta on. OF_A_LIST: the kernel is told in advance which
+ * edges come next, as an algorithm such as delaunay can tell it. */
 enum { RECORDED = 1, OF_A_LIST = 2 };
 
 /* Tries the edit at `count` half-edges of a copy of the mesh; returns the copy. */

@@ -14,7 +14,8 @@ enum { SAMPLES = 1000000 };
 /* Sums of the distances over the points of one surface. */
 typedef struct sums {
     double squares, farthest;
-    uint32_t turned; /* points whose face is turned away from the face of the nearest point */
+    uint32_t turned; /* number of points whose face is turned away from the face at the nearest
+                        point of the other surface */
 } sums;
 
 /* Returns a pseudo-random number from 0 to 1; the sequence is the same in every run. */
@@ -92,8 +93,8 @@ static sums sample(const he_mesh *from, const he_bvh *tree, const he_mesh *to)
     return out;
 }
 
-/* Reads a mesh and gives each face vertices of its own, because the result of another program need
- * not be a manifold, which our mesh has to be. */
+/* Reads a mesh and gives each face vertices of its own. Our mesh structure accepts only manifolds,
+ * and the result of another program need not be a manifold while its faces share vertices. */
 static he_mesh *read_faces(const bench_side *side)
 {
     he_import import;

@@ -13,9 +13,9 @@
 
 enum { SPLITS = 300000, PIECE = 65536 };
 
-/* Splits edges all over a copy of the mesh and keeps a delta for each. With `undone` all splits are
- * undone afterwards, so that the measurement is of the memory that stays allocated. The row `split`
- * measures the growth of the mesh itself. */
+/* Splits edges all over a copy of the mesh and keeps the delta of each split for undo. With
+ * `undone` all splits are undone afterwards, so that the memory that stays allocated is measured.
+ * The growth of the mesh itself is measured by the row `split`. */
 static void keep_history(bench_side *side, bool undone, bench_result *out)
 {
     he_mesh *m;

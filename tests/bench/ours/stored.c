@@ -1,5 +1,5 @@
-/* Benchmark rows: a mesh and its edits as bytes (core/stored), with the size of an edit's record,
- * the time to apply many of them, and whole contents. */
+/* Benchmark rows: a mesh and its edits encoded as bytes (core/stored). They measure the size of an
+ * encoded edit, the time to apply many edits, and the encoding of whole meshes. */
 #include "bench/ours/ours.h"
 
 #include "edit/local/collapse.h"
@@ -134,7 +134,7 @@ static void stored_collapse(bench_side *side, bench_result *out)
     record(side, collapse, out);
 }
 
-/* Decodes edge splits and applies them to a copy of the mesh as it was before them. */
+/* Decodes edge splits and applies them to a copy of the mesh from before these splits. */
 static void stored_forward(bench_side *side, bench_result *out)
 {
     he_mesh *m;
@@ -160,8 +160,7 @@ static void stored_forward(bench_side *side, bench_result *out)
     he_mesh_free(m);
 }
 
-/* Returns a block as large as the mesh, to which has been written, so that its pages are
- * allocated. */
+/* Returns a block as large as the mesh. It has been written to, so that its pages are allocated. */
 static unsigned char *block_of(const he_mesh *m, size_t *size)
 {
     unsigned char *block = calloc(he_stored_content_bound(m), 1);

@@ -58,8 +58,8 @@ static void place(bench_input *in, uint32_t v, double x, double y, double z)
     in->positions[3 * v + 2] = (double)(float)z;
 }
 
-/* Adds a torus, shifted by `x`, to the input; `vertex` and `face` are the ids of the first vertex
- * and the first face that it gets. */
+/* Adds a torus, shifted by `x`, to the input. Its vertices get ids from `vertex` on, its faces get
+ * ids from `face` on. */
 static void fill_torus(bench_input *in, uint32_t side, uint32_t vertex, uint32_t face, double x)
 {
     const double turn = 6.283185307179586 / side;
@@ -170,8 +170,8 @@ bench_pick *bench_picks(const bench_input *input, uint32_t *count)
     for (uint32_t i = 0; i < halfedges && picked < *count; i++) {
         uint32_t f = order[i] / input->degree, k = order[i] % input->degree;
         const uint32_t *corners = input->corners + f * input->degree;
-        /* Each edge gives only one of its two half-edges, the one that leads to the larger
-         * vertex. */
+        /* Each edge gives only one of its two half-edges: the one whose target has the larger
+         * id. */
         if (corners[k] < corners[(k + 1) % input->degree]) {
             picks[picked++] = (bench_pick){f, k};
         }

@@ -31,7 +31,8 @@ static const char *const names[FILES] = {"hedge.db", "hedge.db-wal", "hedge.mark
 static struct {
     unsigned char *bytes[FILES]; /* the undamaged contents of the store's files */
     size_t sizes[FILES];
-    /* `total` is the number of places (bytes or bits); every `every`-th from `first` on is tried */
+    /* `total` is the number of places (bytes or bits) that can be damaged. Of these, the place
+     * `first` and every `every`-th one after it are tried. */
     size_t total, every, first;
     bool cuts;
 } plan;
@@ -74,7 +75,7 @@ static void describe(size_t place, char out[80])
 /* --- one place after the other --- */
 
 /* Writes the undamaged files of the store into a folder. The file "ballast" only reserves disk
- * space, so its contents do not matter. */
+ * space, so zeros are written in place of its contents. */
 static void lay_out(const char *folder)
 {
     char path[2 * FOLDER_PATH];

@@ -1,7 +1,8 @@
 /* faults.c - simulates a disk that fails, is slow or loses power. It is preloaded into a daemon
  * (LD_PRELOAD) and replaces the C library's functions for files.
  *
- * It counts calls on files below one folder only, and N is a number in this count, from 1.
+ * It counts only calls on files below one folder. N is the number of a call in this count; the
+ * first call has the number 1.
  *     FAULT_FOLDER=DIR   the folder, absolute and without symbolic links
  *     FAULT_WHEN=FILE    calls are only counted, and only fail, while this file exists
  *     FAULT_SYNC=N       the N-th fsync or fdatasync fails with EIO
