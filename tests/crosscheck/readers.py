@@ -478,7 +478,7 @@ KNOWN = [
     ('stl', 'daemon', 'it has no facets', 'unknown words and nothing else'),
     ('stl', 'reference', 'bad-syntax|short-vertex', 'white space is free in a text'),
     ('off', 'daemon', 'comes after the last face', 'a count that lies may hide faces'),
-    ('off', 'daemon', 'the three counts|is not what the header declares|ends after',
+    ('off', 'daemon', 'the three counts|does not match what the header declares|ends after',
      'numbers that no header announces belong to the next line'),
     ('obj', 'daemon', 'cannot begin a line', 'it may have been the end of a face'),
     ('obj', 'daemon', 'numbers and needs [13]|is not a number', 'a line without its values'),
@@ -505,7 +505,7 @@ KNOWN = [
     ('glb gltf', 'daemon', r'(accessors|bufferViews|buffers|scene|scenes|meshes|nodes)/?',
      'it is no valid glTF, also where the reference looks away'),
     ('glb', 'reference', 'unaligned-chunk', 'it is read, with a note'),
-    ('ply', 'daemon', 'no properties|name of two|given twice|too many', 'a header that is wrong'),
+    ('ply', 'daemon', 'no properties|name of two|given twice|is an extra word', 'a header that is wrong'),
     ('ply', 'daemon', 'rows that is more than a mesh can have', 'of rows without properties the reference reads any'),
 ]
 
