@@ -11,16 +11,18 @@ void he_bevel_clear(he_bevel *bevel)
     he_ids_clear(&bevel->edges);
 }
 
-/* One end of the edge that is bevelled. */
+/* One end of the edge that is bevelled. The edges that meet the bevelled edge there are cut: each
+ * gets a new vertex near this end. */
 typedef struct bevel_end {
     he_halfedge along; /* the half-edge of the bevelled edge that begins at this end */
-    /* The other half-edges that leave this end in the fan of the bevelled edge, counter-clockwise
-     * from `along`. */
+    /* The half-edges, except `along`, that leave this end in the fan of faces that contains the
+     * bevelled edge, counter-clockwise from `along`. */
     he_ids ring;
-    /* The index in `ring` of the first half-edge after the hole in the fan; 0 if the end is
-     * interior, so that there is no hole. */
+    /* If this end is on the boundary, the index in `ring` of the first half-edge after the hole; 0
+     * if this end is an interior vertex. */
     size_t gap;
-    /* The new vertex on the edge of ring[0]; new vertex `first` + i is on the edge of ring[i]. */
+    /* The id of the new vertex on the edge of ring[0]; the new vertex on the edge of ring[i] has
+     * the id `first` + i. */
     uint32_t first;
 } bevel_end;
 
@@ -34,9 +36,9 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
         if (!he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* This half-edge ends the fan: counter-clockwise after it come a hole or other fans. The
-         * walk continues at the beginning of the fan, which is found by turning clockwise from the
-         * bevelled edge. */
+        /* Half-edge h is the last one of its fan: counter-clockwise after it come a hole or other
+         * fans. The walk continues at the first half-edge of the fan, which is found by turning
+         * clockwise from the bevelled edge. */
         out->gap = out->ring.count;
         h = along;
         while (!he_is_boundary_halfedge(m, he_twin(h))) {
@@ -123,9 +125,9 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
         need.edges += ends[i].gap > 0;
         need.deleted_vertices += ends[i].gap == 0;
     }
-    /* These links are written: for each cut edge its origin and two links; for each of the two
-     * faces beside the bevelled edge two links and a stored half-edge; for a hole two more links.
-     */
+    /* An upper bound of the links written: three for each cut edge (its origin, next and prev),
+     * three at each of the two faces beside the bevelled edge (next, prev and the stored
+     * half-edge), and two more at each hole. */
     need.links = 3 * cuts + 2 * (3 + 2 + HE_SETTLE_LINKS);
     need.attributes = cuts;
     need.lineage = need.vertices + need.edges + 1;
@@ -136,7 +138,8 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
     return status == HE_OK ? he_reserve(m, need, err) : status;
 }
 
-/* The new face that replaces the edge, while its sides are linked one by one. */
+/* The new face that replaces the bevelled edge, while its sides are linked one after the other:
+ * `first` and `last` are the first and the latest side, and `edges` lists all of them. */
 typedef struct new_face {
     he_face face;
     he_halfedge first, last;
@@ -155,7 +158,7 @@ static void add_side(he_mesh *m, new_face *rim, he_halfedge h)
     rim->last = h;
 }
 
-/* Makes an edge and returns its half-edge 2e, which runs along the new face. */
+/* Makes a side of the new face and returns its half-edge 2e, which belongs to that face. */
 static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
 {
     he_halfedge h = he_edge_halfedge(he_new_edge(m), 0);
@@ -175,8 +178,8 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
     return (he_vertex){end->first + (uint32_t)i};
 }
 
-/* Returns where edge i at this end of the bevelled edge is cut, as a fraction of the length of edge
- * i: 0 at this end, 1 at the other end of edge i. */
+/* Returns the fraction of its length at which the edge of ring[i] is cut: 0 at the bevelled edge, 1
+ * at the far end. */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
     return he_bevel_part(m, at(end, i), width);
@@ -196,9 +199,9 @@ static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)
     }
 }
 
-/* Makes one of the two long sides of the new face. It takes the place of `h` in the face left of
- * `h`, and runs from cut 0 at the origin of `h` to the last cut at the target. Returns the
- * half-edge that runs along the new face. */
+/* Makes a long side of the new face: the edge that replaces the bevelled edge in the face left of
+ * h. It joins the first new vertex near the origin of h to the last new vertex near the target of
+ * h. Returns its half-edge that belongs to the new face. */
 static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *from,
                                   const bevel_end *to, double width)
 {
@@ -216,9 +219,9 @@ static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *fr
     return in;
 }
 
-/* Makes the two sides of the new face that border the hole at an end on the boundary: from the cut
- * at index `gap` - 1 to the end itself, and on to the next cut. The half-edge `corner` leaves the
- * cut at `gap` - 1 inside the face before it. */
+/* Makes the two sides of the new face that border a hole, if an end v of the bevelled edge is on
+ * the boundary. They join the last new vertex before the hole to v, and v to the first new vertex
+ * after the hole. Half-edge `corner` leaves the last new vertex before the hole. */
 static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new_face *rim)
 {
     he_vertex v = he_origin(m, end->along);
@@ -240,8 +243,8 @@ static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new
     add_side(m, rim, in);
 }
 
-/* Makes the sides of the new face between the cuts at one end. The half-edge `corner` leaves cut 0
- * inside the face beside the bevelled edge. */
+/* Makes the sides of the new face that join the new vertices near one end of the bevelled edge.
+ * `corner` is a half-edge of a long side of the new face; it leaves the first of these vertices. */
 static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_halfedge corner,
                              new_face *rim)
 {
@@ -270,8 +273,9 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
             he_attributes_copy(m, HE_HALFEDGE, in.i, h.i);
         }
         he_set_origin(m, h, cut_at(end, i));
-        /* The vertex at the first cut after the hole must store a boundary half-edge: that of the
-         * stub, the new edge from the end to this cut. */
+        /* The first new vertex after the hole must store a boundary half-edge (invariant I8 of
+         * mesh.h). This is a half-edge of the new edge that joins it to the end of the bevelled
+         * edge. */
         bool stub = end->gap > 0 && i == end->gap;
         he_halfedge stored = stub ? he_next(m, he_twin(h)) : h;
         he_set_vertex_halfedge(m, cut_at(end, i), stored);

@@ -36,9 +36,9 @@ static he_status check(const he_mesh *m, he_vertex v, double width, he_error *er
     return check_locks(m, v, err);
 }
 
-/* Makes the new edge that cuts the face of h off the vertex v: between the cut of h and the cut of
- * the next half-edge counter-clockwise. Both half-edges still leave v. Returns the half-edge of the
- * new edge that has no face yet. */
+/* Makes the edge that cuts the corner at the bevelled vertex off the face of h. Half-edges h and
+ * `following` leave the vertex along this face and are cut at the fractions t and s of their
+ * lengths. The caller sets the ends of the new edge. Returns its half-edge that has no face yet. */
 static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, double t, double s)
 {
     he_halfedge in = he_twin(following), out = he_edge_halfedge(he_new_edge(m), 0);
@@ -51,7 +51,8 @@ static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, 
     return out;
 }
 
-/* Moves vertex w, which may be v itself, to the point where half-edge h, which leaves v, is cut. */
+/* Moves vertex w to the point at fraction t of the length of half-edge h, which leaves vertex v; w
+ * may be v itself. */
 static void move(he_mesh *m, he_vertex w, he_vertex v, he_halfedge h, double t)
 {
     he_vertex far = he_target(m, h);
@@ -78,8 +79,8 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
     he_vertex w = v;
     he_face f = he_new_face(m);
     do {
-        /* After the last edge at v comes the first again. The end of the first edge at v has not
-         * moved yet, because v moves last. */
+        /* After the last edge at v, the first edge follows again, and its fraction is known. Vertex
+         * v moves after this loop, because the loop computes points from the position of v. */
         he_halfedge following = he_swing_ccw(m, h);
         double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);

@@ -12,17 +12,19 @@ void he_bridge_clear(he_bridge *bridge)
     he_ids_clear(&bridge->faces);
 }
 
-/* The plan of a strip between two loops. Corner i of the first loop is the origin of a[i]; corner j
- * of the second is the target of b[j]. The second loop is listed backwards, because the two loops
- * run in opposite directions along the strip. */
+/* The plan of a strip of faces between two boundary loops. The arrays a and b list the half-edges
+ * of the loops: corner i of the first loop is the origin of a[i], corner j of the second loop is
+ * the target of b[j]. The second loop is listed backwards, because the two loops run in opposite
+ * directions along the strip. */
 typedef struct plan {
     const he_mesh *m;
     he_ids a, b;
-    /* The edges between the loops, as pairs of a corner of the first loop and one of the second. */
+    /* The new edges between the loops, called rungs. Each is a pair of numbers: a corner of the
+     * first loop and a corner of the second loop. */
     he_ids rungs;
-    he_idmap corners; /* the vertices of the first loop, then those of the second */
+    he_idmap corners; /* all vertices of the first loop, followed by those of the second */
     bool repeats;     /* true if a loop passes a vertex twice */
-    double scale;     /* a power of two that brings all coordinates within [-1, 1] */
+    double scale;     /* a power of two; multiplied by it, all coordinates lie in [-1, 1] */
 } plan;
 
 static void clear(plan *p)
@@ -114,7 +116,8 @@ static void find_scale(plan *p)
 
 /* --- rungs: the edges between the two loops --- */
 
-/* Returns the squared distance between corner i of the first loop and corner j of the second. */
+/* Returns the squared distance, in scaled coordinates, between corner i of the first loop and
+ * corner j of the second loop. */
 static double apart(const plan *p, uint32_t i, uint32_t j)
 {
     he_vec3 x = he_vec3_scale(he_position(p->m, corner_of_a(p, i)), p->scale);
@@ -135,11 +138,11 @@ static double twist(const plan *p, uint32_t s)
     return sum;
 }
 
-/* While triangles are made, i of the n edges of one loop and j of the m edges of the other are
- * used. Returns true if neither of these two sides of the strip is half a loop or more ahead of the
- * other. Each loop has at least three corners, so the side that is behind can always advance. And
- * no two rungs join the same two corners: for that, one side would have to go around its whole loop
- * while the other does not advance. */
+/* The strip is made face by face. So far it has used i of the n edges of one loop and j of the m
+ * edges of the other loop. Returns true if the fractions i / n and j / m differ by less than 1/2.
+ * While this holds, a loop that is behind can always advance, because each loop has at least three
+ * edges. It also ensures that no two rungs join one pair of corners: that would need a whole round
+ * on one loop while the other loop does not advance. */
 static bool is_abreast(uint64_t i, uint64_t n, uint64_t j, uint64_t m)
 {
     uint64_t x = i * m, y = j * n;
@@ -159,8 +162,8 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
            apart(p, (i + 1) % n, (s + j) % m) <= apart(p, i % n, (s + j + 1) % m);
 }
 
-/* Computes the rungs, the edges from one loop to the other, for the pairing of corner 0 of the
- * first loop with corner s of the second. The caller has reserved memory for them. */
+/* Computes the rungs (the new edges between the loops) if corner 0 of the first loop is paired with
+ * corner s of the second loop. The caller has reserved memory for the list of rungs. */
 static void make_rungs(plan *p, uint32_t s)
 {
     uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
@@ -182,9 +185,9 @@ static he_status refuse_rung(const plan *p, uint32_t i, uint32_t j, he_error *er
                    u.i, v.i);
 }
 
-/* Refuses a pairing in which two rungs join the same two vertices, which is possible if a loop
- * passes a vertex twice. `first` and `next` are buffers for linked lists of the rungs at each
- * vertex of the first loop. */
+/* Refuses a pairing of corners in which two rungs (new edges) would join one pair of vertices. This
+ * is possible if a loop passes a vertex twice. `first` and `next` are buffers for linked lists of
+ * the rungs at each vertex of the first loop. */
 static he_status compare_rungs(const plan *p, uint32_t *first, uint32_t *next, he_error *err)
 {
     he_ids ends = {0};
@@ -243,9 +246,10 @@ static he_status check_rungs(const plan *p, he_error *err)
 
 /* --- the pairing of corners --- */
 
-/* Marks in `passed` each pairing in which a rung would join two vertices that an edge already
- * joins; such a pairing is skipped. It must be called only if no loop passes a vertex twice, so
- * that corners are numbered like vertices. */
+/* Pairing s joins each corner i of the first loop to corner i + s of the second loop. If an edge
+ * already joins two such corners, pairing s is impossible, and this function marks it in `passed`.
+ * It may be called only if the loops are equally long and no loop passes a vertex twice: the index
+ * of a vertex in p->corners is then the number of its corner. */
 static void pass_over_joined(const plan *p, uint64_t *passed)
 {
     uint32_t n = (uint32_t)p->a.count;
@@ -261,9 +265,9 @@ static void pass_over_joined(const plan *p, uint64_t *passed)
     }
 }
 
-/* Returns the pairing of corners with the smallest twist (the sum of squared distances, see
- * bridge.h) of those that are not marked in `passed`; `count` if all are marked. `passed` may be
- * NULL, if none is marked. */
+/* Returns the pairing of corners with the smallest twist (the sum of squared distances between
+ * paired corners, see bridge.h) that is not marked in `passed`, or `count` if all pairings are
+ * marked. If `passed` is NULL, no pairing is marked. */
 static uint32_t least_twisted(const double *twists, uint32_t count, const uint64_t *passed)
 {
     uint32_t best = count;
@@ -303,7 +307,8 @@ static he_status try_pairings(plan *p, const double *twists, uint64_t *passed, h
 static he_status choose_rungs(plan *p, he_error *err)
 {
     size_t n = p->a.count, m = p->b.count;
-    /* A hole of two half-edges would have two edges between the same two vertices. */
+    /* A loop of two half-edges would consist of two edges that join one pair of vertices, which
+     * invariant I10 of mesh.h forbids. */
     assert(n >= 3 && m >= 3);
     he_status status = he_ids_reserve(&p->rungs, 2 * (n + m), err);
     if (status != HE_OK) {
@@ -327,7 +332,8 @@ static he_status choose_rungs(plan *p, he_error *err)
 
 /* --- writing --- */
 
-/* Makes the face between rung number `at` and the next one, which differ in at least one end. */
+/* Makes the face of the strip between rung `at` and the next rung. The face is a triangle if the
+ * two rungs have a common end, else a quad. */
 static he_face close_face(he_mesh *m, const plan *p, size_t at, const he_ids *edges)
 {
     size_t count = p->rungs.count / 2, after = at + 1 == count ? 0 : at + 1;
@@ -368,8 +374,8 @@ static void commit(he_mesh *m, const plan *p, he_bridge *made)
     for (size_t k = 0; k < count; k++) {
         made->faces.ids[made->faces.count++] = close_face(m, p, k, &made->edges).i;
     }
-    /* he_ring_settle is called once for each vertex and not for each rung: it walks around the
-     * vertex, which would be slow at a vertex with many rungs. */
+    /* he_ring_settle() walks around a vertex, so it is called once for each vertex. Calling it for
+     * each rung would be slow at a vertex with many rungs. */
     for (size_t k = 0; k < p->corners.ids.count; k++) {
         he_vertex v = {p->corners.ids.ids[k]};
         he_ring_settle(m, v, he_vertex_halfedge(m, v));

@@ -11,16 +11,17 @@ void he_walls_clear(he_walls *walls)
     he_ids_clear(&walls->faces);
 }
 
-/* An end of the edges that are extruded: the indices in plan.chain of the half-edge that arrives
- * there and of the one that leaves; HE_NONE if a chain begins or ends there. */
+/* A vertex at an end of extruded edges. `in` is the index in plan.chain of the half-edge that
+ * arrives at the vertex, `out` the index of the half-edge that leaves it. An index is HE_NONE if
+ * plan.chain has no such half-edge. */
 typedef struct joint {
     uint32_t in, out;
 } joint;
 
 typedef struct plan {
     size_t count;
-    he_ids chain; /* the boundary half-edge of each given edge, in the order given */
-    he_ids ends;  /* the vertices at the ends of the given edges, in rising order */
+    he_ids chain; /* the boundary half-edge of each edge to extrude, in the caller's order */
+    he_ids ends;  /* the vertices at the ends of these edges, by rising id */
     joint *joints;
 } plan;
 
@@ -36,7 +37,7 @@ static he_halfedge at(const plan *p, uint32_t i)
     return (he_halfedge){p->chain.ids[i]};
 }
 
-/* Returns the index of vertex v in the plan's list of the edges' ends, which contains it. */
+/* Returns the index of vertex v in p->ends, which must contain v. */
 static size_t place_of(const plan *p, he_vertex v)
 {
     size_t low = 0, high = p->ends.count - 1;
@@ -165,20 +166,21 @@ static he_status reserve(he_mesh *m, const plan *p, he_walls *made, he_error *er
     return status == HE_OK ? he_reserve(m, need, err) : status;
 }
 
-/* The lowest ids of the new elements: the copy of vertex i is vertex `vertex` + i, the edge to it
- * is `side` + i, and the copy of edge i of the chain is `far` + i. */
+/* The lowest ids of the new elements. Vertex i of plan.ends is copied to vertex `vertex` + i, and
+ * edge `side` + i joins it to its copy. Edge i of plan.chain is copied to edge `far` + i. */
 typedef struct fresh {
     uint32_t vertex, side, far;
 } fresh;
 
-/* Returns half-edge 2e of the new edge from vertex i of the plan to its copy. */
+/* Returns the half-edge that runs from vertex i of plan.ends to its copy: half-edge 2e of a new
+ * edge. */
 static he_halfedge side_at(const fresh *new, size_t i)
 {
     return he_edge_halfedge((he_edge){new->side + (uint32_t)i}, 0);
 }
 
-/* Returns the half-edge inside the new quad that belongs to the copy of edge i. Its twin runs along
- * the boundary, as the original edge did before. */
+/* Returns the half-edge of the copy of edge i that belongs to a new quad. Its twin is on the
+ * boundary, where the extruded edge was before. */
 static he_halfedge far_at(const fresh *new, uint32_t i)
 {
     return he_edge_halfedge((he_edge){new->far + i}, 0);
@@ -222,8 +224,9 @@ static he_face make_wall(he_mesh *m, const plan *p, const fresh *new, uint32_t i
     for (unsigned k = 0; k < 4; k++) {
         he_link(m, loop[k], loop[(k + 1) % 4]);
         he_set_face(m, loop[k], f);
-        /* The first and the last corner of the quad are at the origin of h and at the copy of that
-         * vertex. */
+        /* Corners 0 and 3 of the quad are at the origin of h and at the copy of that vertex,
+         * corners 1 and 2 at the target of h and at its copy. A copy gets the attributes of the
+         * corner that the face beside h has at the original vertex. */
         he_attributes_copy(m, HE_HALFEDGE, loop[k].i, k % 3 == 0 ? he_next(m, inner).i : inner.i);
     }
     he_set_face_halfedge(m, f, h);

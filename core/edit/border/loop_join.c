@@ -6,14 +6,15 @@
 #include "mesh/marks.h"
 #include "query/idmap.h"
 
-/* The plan of a join: half-edge a[i] is joined to b[i]. The first loop runs forwards, the second
- * backwards, so vertex i of the first loop is the origin of a[i], and of the second the target of
- * b[i]. */
+/* The plan of a join of two loops: half-edge a[i] is joined to b[i]. The first loop is listed
+ * forwards, the second backwards. So vertex i of the first loop is the origin of a[i], and vertex i
+ * of the second loop is the target of b[i]. */
 typedef struct plan {
     he_mesh *m;
     he_ids a, b;
     uint32_t n;
-    he_idmap vertices; /* the n vertices of the second loop, then the n of the first */
+    /* the n vertices of the second loop, followed by the n vertices of the first */
+    he_idmap vertices;
 } plan;
 
 static void clear(plan *p)
@@ -43,7 +44,7 @@ static he_vertex goes(const plan *p, uint32_t i)
     return (he_vertex){p->vertices.ids.ids[i]};
 }
 
-/* Returns the vertex into which v is merged; v itself if it is merged into none. */
+/* Returns the vertex into which the join merges v, or v itself if it is not merged. */
 static he_vertex becomes(const plan *p, he_vertex v)
 {
     uint32_t i = he_idmap_find(&p->vertices, v.i);
@@ -115,11 +116,11 @@ static he_status check_sides(const plan *p, he_error *err)
     return HE_OK;
 }
 
-/* --- faces and edges that would become one --- */
+/* --- checks that no face or edge becomes invalid --- */
 
-/* Adds the faces at the origin of `first` to the set `seen`, except the face of `own`, the
- * half-edge of the loop that leaves this vertex. With `again`, a face that is in the set already is
- * refused. */
+/* Adds the faces around the origin of `first` to the set `seen`. It leaves out the face of
+ * half-edge `own`, which belongs to a joined loop. If `again` is true, it refuses a face that is
+ * already in the set. */
 static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first, bool again,
                               he_idmap *seen, he_error *err)
 {
@@ -155,8 +156,8 @@ static he_status check_faces(const plan *p, uint32_t i, he_error *err)
     return status;
 }
 
-/* Adds the neighbours of the origin of `first` to the set `seen`, as they will be after the loops
- * are joined. */
+/* Adds the neighbours of the origin of `first` to the set `seen`, as they will be after the join.
+ * It leaves out the half-edges in `skip`, and refuses a neighbour that is already in the set. */
 static he_status gather_neighbours(const plan *p, he_halfedge first, const he_halfedge skip[2],
                                    he_idmap *seen, he_error *err)
 {
@@ -181,8 +182,8 @@ static he_status gather_neighbours(const plan *p, he_halfedge first, const he_ha
     return HE_OK;
 }
 
-/* Checks that no two edges would join the same two vertices. The edges of the second loop do not
- * count, because they are merged into those of the first. */
+/* Checks that after the join no two edges at vertex i of the loops join one pair of vertices. The
+ * edges of the second loop are left out, because they are merged into edges of the first loop. */
 static he_status check_neighbours(const plan *p, uint32_t i, he_error *err)
 {
     he_idmap seen = {.log2 = 0};
@@ -245,16 +246,15 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
 {
     he_halfedge h = first;
     do {
-        /* Turning about a vertex reads only links, and this loop changes only origins, so it may
-         * change them on the way. */
+        /* he_swing_ccw() reads no origins, so this walk may change them. */
         he_set_origin(m, h, to);
         h = he_swing_ccw(m, h);
     } while (h.i != first.i);
 }
 
-/* Links a[i] to the half-edges before and after the twin of b[i], in place of that twin. If one of
- * these two neighbours is itself the twin of b[i - 1] or b[i + 1], a[i] is linked to a[i - 1] or
- * a[i + 1] instead. */
+/* Replaces the twin of b[i] by a[i] in the loop of that twin. If the half-edge before or after this
+ * twin is the twin of b[i - 1] or b[i + 1], that half-edge is replaced, too, so a[i] is linked to
+ * its replacement a[i - 1] or a[i + 1]. */
 static void sew_side(const plan *p, uint32_t i)
 {
     he_mesh *m = p->m;
@@ -330,8 +330,8 @@ static he_status check(plan *p, he_halfedge a, he_halfedge b, he_error *err)
     return status == HE_OK ? check_marks(p, err) : status;
 }
 
-/* Performs the join. Values that merged vertices would lose are first moved to corners; if anything
- * fails, they are moved back. */
+/* Performs the join. First moves the attribute values that merged vertices would lose to corners;
+ * if the join fails, moves them back. */
 static he_status write(plan *p, uint64_t *moved, he_error *err)
 {
     const uint32_t *ids = p->vertices.ids.ids;

@@ -3,7 +3,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Returns the half-edge of e that leaves v, or HE_NONE if v is no end of e. */
+/* Returns the half-edge of edge e that leaves vertex v, or HE_NONE if v is no end of e. */
 static he_halfedge leaving(const he_mesh *m, he_edge e, he_vertex v)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -13,8 +13,9 @@ static he_halfedge leaving(const he_mesh *m, he_edge e, he_vertex v)
     return he_target(m, h).i == v.i ? he_twin(h) : (he_halfedge){HE_NONE};
 }
 
-/* Sorts the three edges into a cycle of half-edges: cycle[0] is half-edge 2a of the first edge, and
- * each half-edge ends where the next begins. */
+/* Arranges half-edges of the three edges as a cycle, in which each half-edge ends where the next
+ * one begins. cycle[0] is the half-edge with the even id of edges[0]. Refuses if there is no such
+ * cycle. */
 static he_status find_cycle(const he_mesh *m, const he_edge edges[3], he_halfedge cycle[3],
                             he_error *err)
 {
@@ -47,8 +48,8 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
     return HE_OK;
 }
 
-/* Returns the first half-edge, counter-clockwise, that leaves the origin of cycle[i] on the right
- * of the cycle, between the edge of the cycle that arrives there and the one that leaves. */
+/* Returns a half-edge that leaves the origin of cycle[i] on the right side of the cycle: the first
+ * one counter-clockwise after the edge along which the cycle arrives at this vertex. */
 static he_halfedge first_on_right(const he_mesh *m, const he_halfedge cycle[3], unsigned i)
 {
     return he_swing_ccw(m, he_twin(cycle[(i + 2) % 3]));
@@ -100,8 +101,8 @@ static he_status check(const he_mesh *m, const he_edge edges[3], he_halfedge cyc
     return status == HE_OK ? check_locks(m, cycle, err) : status;
 }
 
-/* Makes `to` the origin of all half-edges that leave the origin of cycle[i] on the right of the
- * cycle. */
+/* Makes vertex `to` the origin of all half-edges that leave the origin of cycle[i] on the right
+ * side of the cycle. */
 static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_vertex to)
 {
     for (he_halfedge h = first_on_right(m, cycle, i); h.i != cycle[i].i; h = he_swing_ccw(m, h)) {
@@ -109,8 +110,8 @@ static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_ve
     }
 }
 
-/* Puts `outer` in the place of `twin`, the twin of a half-edge of the cycle; `twin` will belong to
- * the face that caps the cut. */
+/* Replaces half-edge `twin` by `outer` in the loop of its face. `twin` is the twin of a half-edge
+ * of the cycle; the caller then makes it a side of the face that caps the hole. */
 static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 {
     he_face f = he_face_of(m, twin);
@@ -125,7 +126,8 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
 {
-    /* The half-edges of the new edges along the new cap. They run in the direction of the cycle. */
+    /* The half-edges of the new edges that belong to the second cap. They run in the direction of
+     * the cycle. */
     he_halfedge inner[3];
     for (unsigned i = 0; i < 3; i++) {
         he_vertex u = he_origin(m, cycle[i]);
@@ -141,8 +143,8 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_attributes_copy(m, HE_EDGE, made->edges[i].i, e.i);
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
-    /* The half-edges on the right of the cycle are found by walking around its vertices, so their
-     * origins are changed before any other link at these vertices. */
+    /* The half-edges on the right side of the cycle are found by walking around its vertices. Their
+     * origins must be changed before other links are, because the walk reads those links. */
     for (unsigned i = 0; i < 3; i++) {
         move_right(m, cycle, i, made->vertices[i]);
     }
@@ -182,9 +184,9 @@ he_status he_loop_split(he_mesh *m, he_edge a, he_edge b, he_edge c, he_loop_par
     }
     he_reservation need = {.vertices = 3, .edges = 3, .faces = 2, .lineage = 6};
     for (unsigned i = 0; i < 3; i++) {
-        /* These links are written at each vertex: the origins of half-edges that leave it, two
-         * links of neighbours, the stored half-edge of a face, three links of the cap, and the
-         * half-edge that the vertex stores. */
+        /* Links written for each vertex of the cycle: the origins of half-edges that leave it, the
+         * next and prev links of two neighbours, the stored half-edge of a face, three links of a
+         * cap, and the half-edge that the vertex stores. */
         need.links += (size_t)he_vertex_degree(m, he_origin(m, cycle[i])) + 7;
     }
     status = he_reserve(m, need, err);

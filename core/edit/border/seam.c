@@ -11,11 +11,11 @@ void he_seam_clear(he_seam *seam)
 }
 
 typedef struct plan {
-    he_ids cuts;  /* the edges to cut, in rising order: new edge i comes from cuts[i] */
-    he_ids ends;  /* the vertices at the ends of these edges, in rising order */
-    he_ids parts; /* the first half-edge of each part of a fan that gets a new vertex */
+    he_ids cuts;  /* the edges to cut, by rising id: new edge i is the copy of cuts[i] */
+    he_ids ends;  /* the vertices at the ends of the cut edges, by rising id */
+    he_ids parts; /* the first half-edge of each part of a fan of faces that gets a new vertex */
     size_t moved; /* number of half-edges, old and new, that will leave the new vertices */
-    /* A bit for each cut edge: set if at one of its ends the fan is closed and has no other cut
+    /* A bit for each cut edge: set if the edge has an interior end at which it is the only cut
      * edge. */
     uint64_t *once;
     bool marked;
@@ -30,8 +30,8 @@ static void clear_plan(plan *p)
     he_mem_free(p->once);
 }
 
-/* Returns the index of edge e in the list of the edges to cut; the length of the list if e is not
- * in it. */
+/* Returns the index of edge e in the list of the edges to cut, or the length of this list if e is
+ * not in it. */
 static size_t find_cut(const plan *p, he_edge e)
 {
     size_t low = 0, high = p->cuts.count;
@@ -51,15 +51,16 @@ static bool is_cut(const plan *p, he_halfedge h)
     return find_cut(p, he_edge_of(h)) < p->cuts.count;
 }
 
-/* Returns true if the side of a cut edge that has the face left of h keeps the edge's id; the other
- * side gets a new id. */
+/* A cut edge becomes two edges, one of which keeps the id. Returns true if this is the edge that
+ * stays at the face left of h. */
 static bool keeps_id(he_halfedge h)
 {
     return h.i % 2 == 0;
 }
 
-/* Refuses if a face or edge is locked in a part of a fan that gets a new vertex. The part runs from
- * half-edge `first` to half-edge `end`, which is on the next cut edge or on the boundary. */
+/* Refuses if a face or an edge is locked in a part of a fan that gets a new vertex. The part
+ * reaches counter-clockwise from half-edge `first` to half-edge `end`, which lies on the next cut
+ * edge or on the boundary. */
 static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge end,
                             he_error *err)
 {
@@ -70,8 +71,8 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_swing_ccw(m, h);
-        /* If the edge of h is cut, this part of the fan may lie on the side that gets a new edge; a
-         * lock of the old edge does not matter then. */
+        /* If the edge of h is cut, this part of the fan may be on the side that gets the new edge.
+         * A lock of the old edge does not matter then. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);
         }
@@ -90,8 +91,8 @@ static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfe
     return status != HE_OK ? status : he_ids_add(&p->parts, first.i, err);
 }
 
-/* Counts the cut edges of the fan that begins at `first`; *lowest is set to the fan's half-edge of
- * the cut edge with the lowest id. */
+/* Counts the cut edges of the fan that begins at `first`. Sets *lowest to the half-edge that leaves
+ * the fan's vertex along the cut edge with the lowest id. */
 static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge *lowest)
 {
     uint32_t count = 0;
@@ -106,8 +107,8 @@ static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, h
     return count;
 }
 
-/* Plans which parts a fan falls into. `first` is the half-edge with which the fan begins; in a
- * closed fan it is a half-edge of a cut edge. */
+/* Plans into which parts the cuts divide a fan. `first` is the half-edge with which the fan begins;
+ * in a closed fan it must be a half-edge of a cut edge. */
 static he_status plan_fan(const he_mesh *m, plan *p, he_halfedge first, he_error *err)
 {
     he_halfedge lowest = {HE_NONE};
@@ -199,8 +200,8 @@ static he_status plan_cut(const he_mesh *m, const uint32_t *edges, size_t count,
 
 enum { OPEN_LINKS = 8 + 2 * HE_SETTLE_LINKS, PART_LINKS = 4 + HE_SETTLE_LINKS };
 
-/* Splits edge e into two edges: half-edge 2e + 1 leaves its face and a half-edge of a new edge
- * takes its place. Between the two edges is a hole of two sides. */
+/* Splits edge e into two edges with a hole of two sides between them: in the loop of its face,
+ * half-edge 2e + 1 is replaced by a half-edge of the new edge. */
 static he_edge open_edge(he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0), t = he_twin(h);
@@ -227,8 +228,8 @@ static he_edge open_edge(he_mesh *m, he_edge e)
     return made;
 }
 
-/* Gives a new vertex, at the position of the old one, to the part of a fan that begins with
- * `first`. */
+/* Gives a new vertex to the part of a fan that begins with `first`. The new vertex is at the
+ * position of the old one. */
 static he_vertex split_fan(he_mesh *m, he_halfedge first)
 {
     he_vertex v = he_origin(m, first), w = he_new_vertex(m);

@@ -1,4 +1,4 @@
-/* seam_weld.c - edge_weld of seam.h. */
+/* seam_weld.c - implements edge_weld of seam.h, which merges two boundary edges. */
 #include "edit/border/seam.h"
 #include "edit/local/cut.h"
 #include "edit/piece/keep.h"
@@ -6,15 +6,15 @@
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
 
-/* An end of edge a (`stays`), and the end of edge b that is merged into it (`goes`); they are the
- * same vertex if the edges share this end. `in` is the boundary half-edge of one of the two edges
- * that arrives at this end, `out` the boundary half-edge of the other edge that leaves this end. */
+/* Two vertices that a weld of edges a and b merges: `goes`, an end of b, is merged into `stays`, an
+ * end of a. If the edges share this end, `goes` is equal to `stays`. Each edge has one boundary
+ * half-edge: `in` is the one that arrives at this end, `out` the one that leaves it. */
 typedef struct pair {
     he_vertex stays, goes;
     he_halfedge in, out;
 } pair;
 
-/* Returns the half-edge of a boundary edge that has no face. */
+/* Returns the boundary half-edge of edge e, which is the one without a face. */
 static he_halfedge outer(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -31,8 +31,8 @@ static he_status require_boundary(const he_mesh *m, he_edge e, he_error *err)
     return status;
 }
 
-/* Checks that two vertices can be merged: no face may have both as corners, and no vertex may be a
- * neighbour of both, except the other end of the edges a and b. */
+/* Checks that the two vertices of `end` can be merged: no face may have both as corners, and no
+ * vertex may be a neighbour of both, unless the edges a and b lead to it. */
 static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_edge b, he_error *err)
 {
     he_vertex v = end->stays, w = end->goes;
@@ -127,7 +127,7 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     return status;
 }
 
-/* Moves all edges and faces at vertex `goes` to vertex `stays`. */
+/* Moves all edges and faces at vertex end->goes to vertex end->stays. */
 static void merge(he_mesh *m, const pair *end, he_keep keep)
 {
     he_halfedge first = he_vertex_halfedge(m, end->goes), h = first;

@@ -8,8 +8,8 @@ void he_bisect_reservation(he_reservation *need)
 {
     need->vertices++;
     need->edges++;
-    /* These links are written: those of the neighbours and of both old half-edges, the half-edges
-     * stored by the target and by two faces, and the origin of half-edge 2e + 1. */
+    /* A bisection writes at most seven links of existing elements: four next and prev links, one
+     * origin, and the half-edges that a vertex and a face store. 16 is a safe upper bound. */
     need->links += 16;
     need->attributes += 2;
     need->lineage++;
@@ -47,7 +47,8 @@ he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t)
         he_attributes_between(m, HE_HALFEDGE, on.i, h.i, next.i, t);
     }
     if (right.i != HE_NONE) {
-        /* Half-edge `off` now leaves the corner at vertex b, which half-edge `back` left before. */
+        /* The attributes of a corner are stored with the half-edge that leaves it. The corner at
+         * vertex b is now left by half-edge `off` instead of `back`, so its attributes move. */
         he_attributes_move(m, HE_HALFEDGE, off.i, back.i);
         he_attributes_between(m, HE_HALFEDGE, back.i, he_next(m, back).i, off.i, t);
     }
@@ -144,8 +145,8 @@ he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err)
         kept = gone;
         gone = swap;
     }
-    /* `kept` runs from v to a, and `gone` from v to b. Afterwards `kept` runs from b to a: in its
-     * loop it stands for itself and for twin(gone), which was before it. */
+    /* Half-edge `kept` runs from v to a, and `gone` from v to b. After the join, `kept` runs from b
+     * to a. It replaces two consecutive half-edges of its loop: twin(gone) and `kept` itself. */
     he_halfedge to_v = he_twin(gone), in = he_twin(kept);
     he_vertex b = he_target(m, gone);
     he_face right = he_face_of(m, gone), left = he_face_of(m, kept);

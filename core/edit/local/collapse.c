@@ -20,18 +20,20 @@ static he_vertex opposite(const he_mesh *m, he_halfedge h)
 
 enum { SMALL_RING = 24, BLOCK = 8 };
 
-/* The half-edges that leave a vertex of low degree, and their targets. Both arrays are padded with
- * HE_NONE to whole blocks, so that they can be compared block by block. */
+/* The half-edges that leave a vertex of low degree, and their targets. The array `target` is padded
+ * with HE_NONE to a multiple of BLOCK entries, so that is_in() can compare BLOCK entries at a
+ * time. */
 typedef struct ring {
     uint32_t count, out[SMALL_RING], target[SMALL_RING];
 } ring;
 
-/* The state of two walks around a vertex, which start at one half-edge and go in opposite
- * directions. */
+/* The state of two walks around one vertex: `up` is the next half-edge of the counter-clockwise
+ * walk, `down` the next one of the clockwise walk. `open` is false as soon as the walks have
+ * met. */
 typedef struct hands {
     he_halfedge up, down;
-    /* The number of entries of the ring that each walk has written: `ups` at the front of the
-     * array, `downs` at its back. */
+    /* The counter-clockwise walk has written `ups` entries at the front of the ring's arrays, the
+     * clockwise walk has written `downs` entries at their back. */
     uint32_t ups, downs;
     bool open;
 } hands;
@@ -42,8 +44,8 @@ static void put(const he_mesh *m, ring *r, uint32_t place, he_halfedge h)
     r->target[place] = he_target(m, h).i;
 }
 
-/* Advances each of the two walks by one half-edge. Returns false if the vertex has too many
- * half-edges for the arrays. */
+/* Advances each of the two walks by one half-edge. Returns false if more half-edges leave the
+ * vertex than the arrays of a ring can hold. */
 static bool turn(const he_mesh *m, hands *at, ring *r)
 {
     if (at->ups + at->downs + 2 > SMALL_RING) {
@@ -60,8 +62,8 @@ static bool turn(const he_mesh *m, hands *at, ring *r)
     return true;
 }
 
-/* Puts the half-edges that the two walks have gathered in counter-clockwise order, starting at
- * h. */
+/* Puts the half-edges that the two walks have gathered into counter-clockwise order: moves the
+ * entries at the back of the arrays directly behind those at the front. Pads the array `target`. */
 static void close_ring(const hands *at, ring *r)
 {
     r->count = at->ups;
@@ -74,9 +76,9 @@ static void close_ring(const hands *at, ring *r)
     }
 }
 
-/* Gathers the half-edges around both ends of h. Each step of a walk waits for memory, so four walks
- * advance together: one in each direction around each end. Returns false if an end has too many
- * half-edges for the arrays. */
+/* Gathers the half-edges that leave each end of h. A step of a walk waits for memory. Four walks,
+ * in two directions around two vertices, therefore advance in turn, so that their waits overlap.
+ * Returns false if more half-edges leave an end of h than the arrays of a ring can hold. */
 static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
 {
     ring *const rings[2] = {of_u, of_v};
@@ -108,8 +110,9 @@ static bool is_in(const ring *r, uint32_t vertex)
     return found;
 }
 
-/* Checks the link condition's parts L1 and L4 (collapse.h) for half-edge k, which leaves u. `of_v`
- * is the ring of v; if it is NULL, the half-edges around v are searched. */
+/* Checks parts L1 and L4 of the link condition (see collapse.h) for half-edge k, which leaves the
+ * origin of h. `of_v` lists the half-edges that leave the target of h; if it is NULL, this function
+ * walks around the target. `c` and `d` are the opposite corners of the triangles beside h. */
 static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k, const ring *of_v,
                                  he_vertex c, he_vertex d, he_error *err)
 {
@@ -120,8 +123,8 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
                       "the edge's ends share a neighbour that is not a corner of the edge's faces",
                       "vertex", w.i);
     }
-    /* All corners of a triangle at u are neighbours of u, so the check of L1 includes that of
-     * L4. */
+    /* If k runs along a triangle, all corners of that triangle are neighbours of the origin of h,
+     * so part L4 follows from part L1. */
     if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
         return HE_OK;
     }
@@ -203,7 +206,9 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
     return status;
 }
 
-/* Checks the locks (marks.h) of every element at u: all of them are deleted or moved to v. */
+/* The collapse deletes the origin of h and deletes or moves all edges and faces around it, so none
+ * of them may be locked (see marks.h). If `moves` is true, the target of h moves and may not be
+ * locked either. */
 static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
                              he_error *err)
 {
@@ -215,8 +220,8 @@ static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedg
     return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
 }
 
-/* Counts the feature edges at the origin of h. *which is set to one of these feature edges, if
- * possible to another one than the edge of h. */
+/* Counts the feature edges at the origin of h. Sets *which to one of them, preferably not to the
+ * edge of h. */
 static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
                                he_edge *which)
 {
@@ -232,7 +237,7 @@ static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfe
     return count;
 }
 
-/* Checks the rules F1 to F4 for feature edges, which marks.h lists. */
+/* Checks rules F1 to F4 of marks.h, which protect feature edges from a collapse. */
 static he_status check_features(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
                                 he_error *err)
 {
@@ -278,8 +283,9 @@ static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_
     return status != HE_OK ? status : check_features(m, &marks, h, moves, err);
 }
 
-/* Merges the two sides that the triangle left of h still has: `kept` takes the place of `outer`,
- * the twin of `gone`, and `gone` is deleted. */
+/* Closes a face from which the collapse has removed one of three sides: `kept` and `gone` are its
+ * last two half-edges, and both join the vertices of one pair. The face and the edge of `gone` are
+ * deleted; `kept` replaces twin(gone) in the face on the far side of that edge. */
 static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
 {
     he_halfedge outer = he_twin(gone);
@@ -305,7 +311,7 @@ static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
     he_delete_face(m, f);
 }
 
-/* Takes half-edge h out of the loop of the face left of h. */
+/* Removes half-edge h from its loop. */
 static void unlink_side(he_mesh *m, he_halfedge h)
 {
     he_face f = he_face_of(m, h);
@@ -344,8 +350,9 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     if (!interior) {
         he_ring_settle(m, v, after);
     } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
-        /* v is an interior vertex, which may store any of its half-edges (invariant I8 of mesh.h),
-         * so the search for a boundary half-edge, which may take long, is not needed. */
+        /* v is an interior vertex, which may store any half-edge that leaves it (invariant I8 of
+         * mesh.h). he_ring_settle(), which may walk around the whole vertex, is therefore not
+         * needed. */
         he_set_vertex_halfedge(m, v, after);
     }
 }

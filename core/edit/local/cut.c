@@ -8,8 +8,9 @@ void he_cut_reservation(uint32_t corners, he_reservation *need)
     need->edges++;
     need->faces++;
     need->links +=
-        /* These links are written: the face of each corner that gets another face, four links
-         * between neighbours, and one stored half-edge. */
+        /* An upper bound of the links written in existing elements: the face of each half-edge that
+         * moves to the new face, four next and prev links, and the half-edge that the old face
+         * stores. */
         (size_t)corners + 5;
     need->lineage++;
 }
@@ -116,9 +117,9 @@ he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he_halfedge to,
     return HE_OK;
 }
 
-/* Returns a corner that face(h) and the face `other` have in common, except the ends of h; HE_NONE
- * if there is none. Walks around each corner, so it takes at most time linear in the half-edges of
- * the mesh. */
+/* Returns a vertex, other than the ends of h, that is a corner of face(h) and also of the face
+ * `other`; HE_NONE if there is none. The function walks around each corner of face(h), which takes
+ * at most time linear in the half-edges of the mesh. */
 static he_vertex shared_corner(const he_mesh *m, he_halfedge h, he_face other)
 {
     he_halfedge x = he_next(m, he_next(m, h));

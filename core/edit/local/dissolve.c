@@ -4,7 +4,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Lists the vertices around the face that results when all faces at v are merged. */
+/* Lists the vertices around the face that results when all faces around vertex v are merged. */
 static he_status find_ring(const he_mesh *m, he_vertex v, he_ids *ring, he_error *err)
 {
     he_status status = HE_OK;
@@ -77,8 +77,9 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
     if (stored.i == first.i || stored.i == he_prev(m, first).i) {
         he_set_face_halfedge(m, f, he_next(m, first));
     }
-    double taken = 0; /* number of faces that are merged into the face f */
-    /* The edges at v keep their links until they are deleted, so turning about v still works. */
+    double taken = 0; /* number of faces merged into face f so far */
+    /* The edges at v keep their links until they are deleted, so he_swing_ccw() still visits them
+     * all. */
     do {
         he_halfedge next = he_swing_ccw(m, k), back = he_twin(k), out = he_next(m, k);
         he_vertex a = he_target(m, k);

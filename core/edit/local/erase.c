@@ -10,14 +10,15 @@ static bool edge_would_die(const he_mesh *m, he_halfedge h)
     return he_is_boundary_halfedge(m, he_twin(h));
 }
 
-/* Adds what erasing face f writes to `need`. If other faces are deleted, too (`alone` is false),
- * the faces beside f may be deleted before f, so each edge of f may be deleted with f. */
+/* Adds to `need` the memory for deleting face f. An edge is deleted with the last of its faces. If
+ * other faces are deleted before f (`alone` is false), every edge of f may be deleted with f. */
 static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *need)
 {
     he_halfedge first = he_face_halfedge(m, f), h = first;
     do {
-        /* This counts two links for each corner: the face and a stored half-edge; and for each edge
-         * that is deleted two pairs of links and two stored half-edges. */
+        /* Two links are written for each corner: the face of its half-edge and the half-edge that
+         * its vertex stores. Six more are written for each deleted edge: two pairs of next and prev
+         * links, and the half-edges that its two ends store. */
         need->links += 2;
         if (!alone || edge_would_die(m, h)) {
             need->links += 6;
@@ -29,8 +30,9 @@ static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *ne
     need->deleted_faces++;
 }
 
-/* Takes an edge without faces out of the rings of its ends. An end that keeps other half-edges then
- * stores the boundary half-edge that followed the edge in the loop of the hole. */
+/* Deletes an edge that has no faces left, and links its neighbours in the loops of holes to each
+ * other. If an end of the edge stored a half-edge of the edge, this end now stores the next
+ * half-edge that leaves it, or HE_NONE if there is none. */
 static void erase_edge(he_mesh *m, he_edge e)
 {
     for (unsigned side = 0; side < 2; side++) {
@@ -62,9 +64,9 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     } while (h.i != first.i);
     he_delete_face(m, f);
 
-    /* Erasing an edge relinks its neighbours in the loop, so the walk remembers the next half-edge,
-     * which is not deleted before it is visited. The end of the loop is found by counting, because
-     * the first half-edge may be deleted by then. */
+    /* Deleting an edge relinks its neighbours in the loop, so the next half-edge is read before. It
+     * is not deleted before it is visited. The loop ends by a count of its corners, because the
+     * first half-edge may be deleted when the walk comes back to it. */
     uint32_t corners = he_loop_length(m, first);
     for (uint32_t i = 0; i < corners; i++) {
         he_halfedge next = he_next(m, h);
@@ -82,8 +84,8 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     }
 }
 
-/* Checks that no element is locked that would be deleted with face f. The vertex of a corner is
- * deleted if f is its last face. */
+/* Refuses if a locked element would be deleted with face f. A vertex is deleted with f if f is its
+ * only face and the caller wants isolated vertices to be deleted. */
 static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover leftover, he_error *err)
 {
     he_marks marks;
@@ -106,8 +108,8 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Returns true if there is a hole to the left of h, or a face of the set `faces`, which are the
- * faces to be deleted. */
+/* Returns true if half-edge h will have no face: either it has none now, or its face is in `faces`,
+ * the set of the faces to be deleted. */
 static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);
@@ -126,8 +128,8 @@ static bool origin_goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
     return true;
 }
 
-/* Checks that no element is locked that is deleted with the given faces. Each locked vertex at a
- * corner is visited once. */
+/* Refuses if a locked element would be deleted with the given faces. A locked vertex may be a
+ * corner of many of these faces, but the function walks around it only once. */
 static he_status check_star_locks(const he_mesh *m, const he_idmap *faces, he_leftover leftover,
                                   he_error *err)
 {
@@ -188,8 +190,8 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
     if (count == 1) {
         return erase_one(m, (he_face){faces[0]}, leftover, err);
     }
-    /* With which face an edge is deleted depends on the order of the faces, so memory is reserved
-     * for each face separately: a single reservation would have to count every edge twice. */
+    /* An edge between two faces of the list is deleted with the later face. Memory is reserved for
+     * one face at a time: a single reservation for all faces would count each such edge twice. */
     he_bracket bracket;
     status = he_edit_begin(m, &bracket, err);
     if (status != HE_OK) {
@@ -221,8 +223,7 @@ he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count, he_lef
     for (size_t i = 0; i < 2 * count && status == HE_OK; i++) {
         he_halfedge h = he_edge_halfedge((he_edge){edges[i / 2]}, i % 2);
         status = he_progress_at(m->progress, i, 2 * count, err);
-        /* The edge may be deleted already, together with a face beside an earlier edge of the
-         * list. */
+        /* This edge may already have been deleted together with a face of an earlier edge. */
         if (status == HE_OK && he_edge_is_live(m, he_edge_of(h)) &&
             !he_is_boundary_halfedge(m, h)) {
             status = erase_one(m, he_face_of(m, h), leftover, err);

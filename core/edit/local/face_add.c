@@ -3,8 +3,8 @@
 #include "edit/piece/list.h"
 #include "edit/piece/ring.h"
 
-/* Finds the boundary half-edge that runs from vertex a to vertex b; HE_NONE if no edge joins a and
- * b. */
+/* Finds the boundary half-edge that runs from vertex a to vertex b. Sets *out to HE_NONE if no edge
+ * joins a and b. Refuses if the half-edge from a to b has a face. */
 static he_status find_side(const he_mesh *m, he_vertex a, he_vertex b, uint32_t *out, he_error *err)
 {
     he_halfedge h = he_find_halfedge(m, a, b);
@@ -35,8 +35,8 @@ static he_status check_corner(const he_mesh *m, uint32_t in, uint32_t out, he_er
                    v, he_vertex_fans(m, (he_vertex){v}) - 1);
 }
 
-/* Checks the vertices of the new face and fills sides[i] with the existing half-edge from
- * vertices[i] to the next vertex, or HE_NONE. */
+/* Checks the vertices of the new face. Fills sides[i] with the existing half-edge from vertices[i]
+ * to the next vertex of the face, or with HE_NONE if there is no such half-edge. */
 static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides,
                        he_error *err)
 {
@@ -62,8 +62,8 @@ static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uin
     return HE_OK;
 }
 
-/* Links two consecutive sides of the new face at vertex v. Either side may be a new half-edge that
- * has no links yet. Writes only links at this vertex. */
+/* Links two consecutive sides of the new face: `in` arrives at vertex v, `out` leaves v. Each of
+ * the two may be a new half-edge that has no links yet. Links at other vertices are not written. */
 static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out,
                         bool out_is_new)
 {
@@ -88,8 +88,7 @@ static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new,
     }
 }
 
-/* Makes v store a boundary half-edge if its fan is still open, as invariant I8 of mesh.h
- * demands. */
+/* Makes vertex v store a boundary half-edge, as invariant I8 of mesh.h demands, if one leaves v. */
 static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out)
 {
     he_halfedge stored = he_vertex_halfedge(m, v);
@@ -109,7 +108,7 @@ static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_n
 static void commit(he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides, he_face *out,
                    he_ids *edges)
 {
-    /* Half-edges with this id or a higher one are sides that this call makes. */
+    /* The half-edges with ids from `old` up are made by this call. */
     uint32_t old = 2 * m->c.edges.issued;
     for (size_t i = 0; i < n; i++) {
         if (sides[i] == HE_NONE) {

@@ -3,8 +3,9 @@
 #include "edit/local/collapse.h"
 #include "mesh/write.h"
 
-/* Returns the next half-edge to collapse: it runs from the corner after `a` in face f to `a`,
- * outside f. If f is deleted already, it runs from `last` to `a`. */
+/* Returns the next half-edge to collapse. It runs from the corner of face f that follows vertex `a`
+ * to `a`, and its face is the neighbour of f. If f is deleted already, the half-edge runs from
+ * vertex `last` to `a`. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {
@@ -17,8 +18,9 @@ static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex
     return he_twin(h);
 }
 
-/* Refuses a face whose collapse would take too much work. Every collapse of a side visits again the
- * loops of all faces around its ends, and at one end the faces of all corners merged before. */
+/* Refuses a face whose collapse would take too much work. The sides of the face are collapsed one
+ * by one. Each collapse visits all faces around the two ends of the side, and one end has gathered
+ * the faces of all corners that were merged before. */
 static he_status check_work(const he_mesh *m, he_face f, uint32_t n, he_error *err)
 {
     uint64_t steps = 0, most = HE_FACE_COLLAPSE_STEPS / n;
@@ -63,8 +65,8 @@ he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *e
         return status;
     }
     for (uint32_t k = 1; status == HE_OK && k < n; k++) {
-        /* The weight of vertex a, which is the mean of k corners by now, against the next corner
-         * that is merged into it. */
+        /* Vertex a is at the mean of the first k corners. A collapse with this weight moves it to
+         * the mean of the first k + 1 corners. */
         double t = (double)k / (k + 1);
         status = he_edge_collapse(m, next_side(m, f, a, last), t, NULL, NULL, err);
     }

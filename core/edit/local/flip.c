@@ -3,9 +3,9 @@
 #include "edit/local/cut.h"
 #include "mesh/marks.h"
 
-/* Checks that the origin of h, which loses edge e, keeps at least three edges or is on the
- * boundary. Three steps around the vertex decide whether its degree is at least 4. A walk around
- * the whole vertex would be slow at a vertex with many edges. */
+/* Checks that the origin of h, which loses one edge by the flip, keeps at least three edges or is
+ * on the boundary. Three steps around the vertex decide whether its degree is at least 4; a walk
+ * around the whole vertex would be slow at a vertex with many edges. */
 static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_halfedge second = he_swing_ccw(m, he_swing_ccw(m, h));
@@ -61,16 +61,17 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    /* Half-edge twin(next(h)) leaves c inside face(h). The search for an edge from c to d walks in
-     * both directions around c, so starting there it soon finds edges on both sides of that
-     * face. */
+    /* The search for an edge from c to d walks in both directions around c. It starts at
+     * twin(next(h)), which leaves c along a side of face(h), so it soon visits the edges on both
+     * sides of that face. */
     he_halfedge joined = he_find_halfedge_from(m, he_twin(he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
                        "edge %u already joins vertices %u and %u", he_edge_of(joined).i, c.i, d.i);
     }
     he_face f = he_face_of(m, h), g = he_face_of(m, t);
-    /* A triangle has only the corners a, b and c, so d is none of them. */
+    /* Edge e joins vertices a and b. If face f is a triangle, its corners are a, b and c, so d is
+     * not among them. */
     if (!he_is_triangle(m, h) && he_face_corner(m, f, d).i != HE_NONE) {
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i, "face %u would use vertex %u twice",
                        f.i, d.i);
@@ -82,8 +83,8 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     return check_marks(m, e, err);
 }
 
-/* Moves the origin of h to the next corner of the face of twin(h); the face of h loses the old
- * corner. `side` is the half-edge that follows twin(h), and moves into face(h). */
+/* Moves the origin of h from its vertex a to the next corner of the face of twin(h), which loses
+ * the corner at a. `side` is the half-edge that follows twin(h); it moves into the face of h. */
 static void turn_end(he_mesh *m, he_halfedge h, he_halfedge side)
 {
     he_vertex a = he_origin(m, h);

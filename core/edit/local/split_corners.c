@@ -29,8 +29,8 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
     return HE_OK;
 }
 
-/* Links h into a corner: between the half-edge `enters`, which arrives at the vertex, and the
- * half-edge that followed `enters` in its loop. */
+/* Inserts half-edge h into a loop, between half-edge `enters` and the half-edge that follows
+ * `enters`. Half-edge h gets the face of `enters` and the attributes of the corner between them. */
 static void into_corner(he_mesh *m, he_halfedge enters, he_halfedge h)
 {
     he_halfedge leaves = he_next(m, enters);

@@ -3,9 +3,9 @@
 #include "edit/piece/point.h"
 #include "edit/piece/ring.h"
 
-/* Where vertex v is cut: along the half-edges v -> left and v -> right, of which one is HE_NONE if
- * the caller gave a null vertex. The `count` half-edges counter-clockwise from `first` will leave
- * the new vertex u. */
+/* Says where vertex v is split: along the half-edges `left` and `right`, which leave v. One of them
+ * is HE_NONE if the caller named the boundary instead of a vertex. After the split, `count`
+ * half-edges, counter-clockwise from `first`, leave the new vertex u. */
 typedef struct cut {
     he_halfedge left, right;
     he_halfedge first;
@@ -67,9 +67,9 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
     if (status != HE_OK) {
         return status;
     }
-    /* If `left` or `right` is null, it stands for the hole at v. Counter-clockwise, the hole lies
-     * between the last half-edge of the fan, which is the boundary half-edge that v stores, and the
-     * first. */
+    /* A null `left` or `right` stands for the hole at v. Counter-clockwise around v, the fan ends
+     * with the boundary half-edge that v stores. Then comes the hole, then the first half-edge of
+     * the fan. */
     he_halfedge hole = he_vertex_halfedge(m, v);
     he_halfedge end = c.right.i != HE_NONE ? c.right : he_swing_ccw(m, hole);
     he_halfedge h = he_swing_ccw(m, c.left.i != HE_NONE ? c.left : hole);
@@ -97,7 +97,7 @@ static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
     return h;
 }
 
-/* Puts the new half-edge `made` in the place of `old` in the loop of `old`. */
+/* Replaces half-edge `old` by the new half-edge `made` in the loop of `old`. */
 static void replace(he_mesh *m, he_halfedge old, he_halfedge made)
 {
     he_face f = he_face_of(m, old);
@@ -123,8 +123,8 @@ static he_face new_triangle(he_mesh *m, he_halfedge a, he_halfedge b, he_halfedg
     return f;
 }
 
-/* Links the new boundary half-edge h into the loop of a hole at v: directly before `hole`, which
- * leaves v. */
+/* Inserts the new boundary half-edge h into the loop of a hole, directly before half-edge
+ * `hole`. */
 static void into_hole(he_mesh *m, he_halfedge h, he_halfedge hole)
 {
     he_link(m, he_prev(m, hole), h);

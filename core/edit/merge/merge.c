@@ -77,8 +77,9 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
     he_status status = check_faces(p, &marks, err);
     for (uint32_t i = 0; status == HE_OK && i < p->group.count; i++) {
         he_vertex v = {p->group.ids[i]};
-        /* The function moves() is not called for a vertex that is merged into another one, because
-         * it visits all vertices that are merged into the same vertex. */
+        /* moves() walks through all vertices that are merged into a vertex. It is called only for
+         * the vertices that stay, because many calls for one list of merged vertices would be
+         * slow. */
         if (goes_into_another(p, v) || moves(p, i)) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }
@@ -112,8 +113,8 @@ static he_status reserve(he_merge_plan *p, he_error *err)
     return he_reserve(p->m, need, err);
 }
 
-/* Moves the corners of a face from deleted half-edges to those that take their place. Each link is
- * read before it is overwritten. */
+/* Replaces each half-edge of a face that is merged into another half-edge by that half-edge, which
+ * also gets the values of its corner. Each link is read before it is overwritten. */
 static void relink_face(const he_merge_plan *p, he_face f)
 {
     he_mesh *m = p->m;
@@ -211,8 +212,8 @@ static void commit(const he_merge_plan *p)
     write_vertices(p);
 }
 
-/* Performs the merge. Values that merged vertices would lose are first moved to corners; if
- * anything fails, they are moved back. */
+/* Performs the merge. First moves the attribute values that merged vertices would lose to corners;
+ * if the merge fails, moves them back. */
 static he_status write(he_merge_plan *p, uint64_t *moved, he_error *err)
 {
     const he_keep_pairs pairs = {p->how->gone, p->how->into, p->how->count};

@@ -3,7 +3,8 @@
 #include "base/word_hash.h"
 #include "edit/piece/list.h"
 
-/* Returns the last half-edge before h in its loop whose ends are not merged into one vertex. */
+/* Walks backwards from h in its loop. Returns the first half-edge whose ends are not merged into
+ * one vertex. */
 static he_halfedge before(const he_merge_plan *p, he_halfedge h)
 {
     do {
@@ -12,8 +13,8 @@ static he_halfedge before(const he_merge_plan *p, he_halfedge h)
     return h;
 }
 
-/* Returns the old half-edge whose face h will have after the merge; HE_NONE if h will be a boundary
- * half-edge. */
+/* Returns the half-edge whose present face will be left of h after the merge. Returns HE_NONE if h
+ * will be a boundary half-edge. */
 static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
@@ -23,8 +24,7 @@ static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
 
-/* Returns the half-edge that he_swing_ccw(h) will return after the merge; h must have a face
- * then. */
+/* Returns what he_swing_ccw(h) will return after the merge. Half-edge h must have a face then. */
 static he_halfedge swing(const he_merge_plan *p, he_halfedge h)
 {
     return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
@@ -65,8 +65,8 @@ he_status he_merge_find_group(he_merge_plan *p, he_error *err)
         p->rep[i] = p->group.ids[i];
         p->next[i] = HE_NONE;
     }
-    /* Each vertex is put at the front of its list, so going backwards leaves each list in the
-     * caller's order. */
+    /* The loop inserts each vertex directly after the head of its list. It runs backwards, so that
+     * each list has the caller's order in the end. */
     for (size_t i = how->count; i-- > 0;) {
         uint32_t gone = he_merge_index(&p->group, how->gone[i]),
                  into = he_merge_index(&p->group, how->into[i]);
@@ -97,8 +97,8 @@ he_status he_merge_find_rings(he_merge_plan *p, he_error *err)
     return status == HE_OK ? he_ids_sort(&p->faces, err) : status;
 }
 
-/* Counts the corners that face i keeps. If the face is deleted, all its edges are added to the
- * plan. */
+/* Counts the corners that face i of the plan keeps. A face that keeps fewer than three is deleted,
+ * and all its edges are added to the plan. */
 static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -122,7 +122,7 @@ static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
     return status;
 }
 
-/* Checks that face i does not pass a vertex twice after the merge, unless it is deleted. */
+/* Checks that face i of the plan, which stays, does not pass a vertex twice after the merge. */
 static he_status check_corners(const he_merge_plan *p, size_t i, he_ids *corners, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -177,8 +177,8 @@ static size_t slot_of(const he_merge_plan *p, uint32_t a, uint32_t b)
     return (size_t)(h >> 32) & (p->slot_count - 1);
 }
 
-/* Records in the plan that edge i stays, or that it is merged into an edge that will have the same
- * two ends. */
+/* Decides what becomes of edge i of the plan. If its ends become one vertex, it is deleted. If an
+ * earlier edge will join its two vertices, it is merged into that edge. Otherwise it stays. */
 static void enter(he_merge_plan *p, uint32_t i)
 {
     he_halfedge h = {2 * p->edges.ids[i]};
@@ -226,8 +226,8 @@ he_status he_merge_pair_edges(he_merge_plan *p, he_error *err)
 
 /* --- the faces beside the edges that stay --- */
 
-/* Returns true if the faces of the old half-edges a and b will be equal: starting at a and b, they
- * will pass the same vertices in the same order. */
+/* Returns true if the faces of half-edges a and b will be equal after the merge: a walk from a
+ * around its face then visits the half-edges that a walk from b visits, in that order. */
 static bool is_same_face(const he_merge_plan *p, he_halfedge a, he_halfedge b)
 {
     he_halfedge h = a, k = b;
@@ -258,8 +258,8 @@ static void occupy_face(const he_merge_plan *p, size_t i)
 {
     he_halfedge first = he_face_halfedge(p->m, (he_face){p->faces.ids[i]});
     first = he_merge_shrinks(p, first) ? he_merge_after(p, first) : first;
-    /* If the face equals another one, each of its half-edges is merged into one of the other face,
-     * so testing one half-edge suffices. */
+    /* If this face will be equal to an earlier face, each of its half-edges is merged into a
+     * half-edge of that face. Testing one half-edge therefore suffices. */
     uint32_t at = he_merge_index(&p->edges, he_edge_of(he_merge_heir(p, first)).i);
     if (at != HE_NONE && p->fates[at].occupant[he_merge_heir(p, first).i & 1] != HE_NONE) {
         he_halfedge other = {p->fates[at].occupant[he_merge_heir(p, first).i & 1]};
@@ -291,8 +291,8 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
         he_merge_fate *f = &p->fates[i];
         uint32_t e = p->edges.ids[i];
         for (unsigned side = 0; f->into == e && side < 2; side++) {
-            /* The face beside a deleted face may have no merged vertex and not be in the plan yet,
-             * so it is added. */
+            /* A face beside a deleted face may have no merged vertex, so that it is not in the
+             * plan. Such a face stays, and its half-edge h is counted here. */
             he_halfedge h = he_edge_halfedge((he_edge){e}, side);
             if (!he_is_boundary_halfedge(m, h) &&
                 he_merge_index(&p->faces, he_face_of(m, h).i) == HE_NONE) {
@@ -336,8 +336,8 @@ static he_status find_rim(he_merge_plan *p, he_error *err)
     return status;
 }
 
-/* Lists the half-edges that will leave vertex v after the merge; the links between the fans of v
- * may change. */
+/* Lists the half-edges that will leave vertex v after the merge, not necessarily in their order
+ * around v. */
 static he_status find_ring(const he_merge_plan *p, he_vertex v, he_ids *ring, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -366,8 +366,9 @@ static bool is_boundary(const he_merge_plan *p, he_halfedge h)
     return occupant_of(p, h).i == HE_NONE;
 }
 
-/* Links the fans of the i-th vertex of the list `rim` with each other, and chooses the half-edge
- * that the vertex will store. */
+/* Plans how the fans of vertex i of the list `rim` are linked to each other after the merge, and
+ * which half-edge this vertex will store. `ring` lists the half-edges that will leave the
+ * vertex. */
 static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_error *err)
 {
     he_vertex v = {p->rim.ids[i]};
@@ -381,8 +382,9 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         if (is_boundary(p, h) || !is_boundary(p, he_twin(h))) {
             continue;
         }
-        /* A new fan begins here: its boundary half-edge that arrives at the vertex is linked to the
-         * boundary half-edge that ends the previous fan. */
+        /* Half-edge h begins a fan. Its twin is a boundary half-edge that arrives at the vertex.
+         * The next of this twin will be `out`, the boundary half-edge with which the previous fan
+         * ends. */
         if (out.i != HE_NONE) {
             status = he_ids_add(&p->holes, he_twin(h).i, err);
             if (status == HE_OK) {

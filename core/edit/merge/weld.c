@@ -33,8 +33,8 @@ he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_
     return status;
 }
 
-/* Finds the vertices that are merged (`gone`) and for each of them the vertex into which it is
- * merged (`to`). */
+/* Finds all vertices to be merged: vertex gone[i] is no farther than `tolerance` from vertex to[i],
+ * into which it will be merged. */
 static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he_ids *to,
                             he_error *err)
 {

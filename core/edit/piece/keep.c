@@ -13,8 +13,9 @@ static bool has_corners(const he_mesh *m, uint32_t v)
     return he_vertex_halfedge(m, (he_vertex){v}).i != HE_NONE;
 }
 
-/* Returns true if vertex `gone`, which is merged into vertex `into`, has a different value of the
- * attribute. If the attribute's rule is `default`, the default counts as no value. */
+/* Returns true if vertex `gone`, which is merged into vertex `into`, has a value of the attribute
+ * that would be lost because `into` has a different value. If the attribute's rule is `default`, a
+ * vertex with the default value has no value to lose. */
 static bool differs(const he_column *column, uint32_t gone, uint32_t into)
 {
     const unsigned char *value = he_column_value(column, gone);
@@ -43,7 +44,7 @@ static uint64_t count_all(const he_mesh *m, const he_keep_pairs *pairs)
     return count;
 }
 
-/* Returns true if a vertex without corners has a value of the attribute that is not the default. */
+/* Returns true if an isolated vertex has a value of the attribute that is not the default. */
 static bool is_needed(const he_mesh *m, const he_column *column)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
@@ -55,8 +56,8 @@ static bool is_needed(const he_mesh *m, const he_column *column)
     return false;
 }
 
-/* Returns true if all corners at vertex v have the value of v already, so that the value of v is
- * not lost if v is merged. */
+/* Returns true if each corner at vertex v has, in the attribute `corners`, the value that v has in
+ * the attribute `column`. The value of v is then not lost when v is merged. */
 static bool says_so(const he_mesh *m, const he_column *corners, const he_column *column, uint32_t v)
 {
     he_halfedge first = he_vertex_halfedge(m, (he_vertex){v}), h = first;
@@ -139,8 +140,8 @@ static he_status keep_column(he_mesh *m, const he_column *column, const he_keep_
 static he_status keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
 {
     he_status status = HE_OK;
-    /* The columns that this loop adds are columns of corners, which the loop skips, so it does not
-     * process them. */
+    /* keep_column() may add columns to the array that this loop walks through. They belong to
+     * corners, so is_value() rejects them and the loop skips them. */
     for (size_t slot = 0; slot < m->c.column_count && status == HE_OK; slot++) {
         const he_column *column = m->c.columns[slot];
         if (is_value(column) && count_differing(m, column, pairs) > 0) {

@@ -2,9 +2,10 @@
 
 #include "query/idmap.h"
 
-/* Up to SHORT_LIST ids are compared pairwise, which needs no memory. A longer list uses a bit set
- * from the lowest id to the highest, unless that range is more than SPARSE_LIST times the length of
- * the list: a hash table is then faster than clearing the bits. */
+/* In a list of up to SHORT_LIST ids, repeated ids are found by comparing each pair of ids, which
+ * needs no memory. A longer list uses a bit set over the range from the lowest id to the highest.
+ * If that range is more than SPARSE_LIST times the length of the list, a hash table is used
+ * instead, because clearing the bits would take longer. */
 enum { SHORT_LIST = 32, SPARSE_LIST = 256 };
 
 static size_t short_repeat(const uint32_t *ids, size_t count)

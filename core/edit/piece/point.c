@@ -2,7 +2,7 @@
 
 #include <float.h>
 
-/* Returns scale / n times the sum of the corners' positions, where n is the number of corners. */
+/* Returns the sum of the positions of the corners of a loop, each multiplied by `scale`. */
 static he_vec3 sum_corners(const he_mesh *m, he_halfedge h, double scale)
 {
     he_vec3 sum = {0, 0, 0};
@@ -24,8 +24,8 @@ he_vec3 he_loop_mean(const he_mesh *m, he_halfedge h)
     if (he_point_is_finite(sum)) {
         return (he_vec3){sum.x / n, sum.y / n, sum.z / n};
     }
-    /* The plain sum is more exact, so it is tried first. If it overflows, half of the mean is
-     * computed, which cannot overflow. */
+    /* The sum of the unscaled positions is more exact, so it is tried first. If it overflows, half
+     * of the mean is computed from scaled positions, which cannot overflow. */
     sum = sum_corners(m, h, 0.5 / n);
     he_vec3 mean = {2 * sum.x, 2 * sum.y, 2 * sum.z};
     mean.x = fmin(fmax(mean.x, -DBL_MAX), DBL_MAX);

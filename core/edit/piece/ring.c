@@ -3,7 +3,7 @@
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving)
 {
     he_halfedge stored = he_vertex_halfedge(m, v);
-    /* The origin of a deleted half-edge is HE_DEAD, so this test also finds out whether the stored
+    /* The origin of a deleted half-edge is HE_DEAD, so `leaves` is also false if the stored
      * half-edge was deleted. */
     bool leaves = stored.i < HE_DEAD && he_origin(m, stored).i == v.i;
     if (leaves && he_is_boundary_halfedge(m, stored)) {

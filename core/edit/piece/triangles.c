@@ -33,8 +33,8 @@ void he_triangles_reservation(const he_triangles *plan, bool keep, he_reservatio
     need->lineage += n - 3;
 }
 
-/* Cuts a triangle off the part of the loop that is not filled yet: makes the diagonal that is its
- * third side. */
+/* Makes the diagonal that cuts the triangle of three corners off the part of the loop that is not
+ * filled yet. Returns the diagonal's half-edge inside this triangle. */
 static he_halfedge cut_off(he_mesh *m, he_triangles *plan, const uint32_t *corners, bool keep,
                            he_ids *edges)
 {

@@ -4,14 +4,14 @@
 
 #include <assert.h>
 
-/* A corner in the plane. */
+/* A corner of a face that lies in the cutting plane. */
 typedef struct he_line_crossing {
-    double along; /* position of a corner along the line in which the face meets the plane */
-    uint32_t at;  /* index of that corner in the loop of the face */
+    double along; /* its position along the line in which the face meets the plane */
+    uint32_t at;  /* its index in the loop of the face */
 } he_line_crossing;
 
-/* Bits for the sides of the plane on which a part of the face has corners. A bit multiplied with
- * BESIDE is a side on which the part must have corners, because a part beside it is on the opposite
+/* Bits that say on which sides of the plane a part of a face has corners. The bits times BESIDE say
+ * on which sides the part must have corners, because a neighbouring part is on the opposite
  * side. */
 enum { ABOVE = 1, BELOW = 2, BOTH = 3, BESIDE = 4 };
 
@@ -43,7 +43,7 @@ static void sift(he_line_crossing *heap, size_t count, size_t i)
     heap[i] = moved;
 }
 
-/* Sorts the corners along the line by heapsort (J. W. J. Williams, 1964), which needs no extra
+/* Sorts corners by their position along the line. Heapsort (J. W. J. Williams, 1964) needs no extra
  * memory and is fast whatever the order of the input. */
 static void sort(he_line_crossing *line, size_t count)
 {
@@ -64,8 +64,9 @@ static he_vec3 place(const he_mesh *m, const he_sides *sides, const he_chords *c
     return he_vec3_scale(he_position(m, v), sides->scale);
 }
 
-/* Sorts the corners that lie in the plane by the direction from the first corner to the one
- * farthest from it. If the corners are on a line, this is their order along the line. */
+/* Sorts the corners of a face that lie in the plane by their position along an axis, which points
+ * from the first of them to the one farthest from it. If the corners lie on a line, this is their
+ * order along the line. */
 static void order_along_line(const he_mesh *m, const he_sides *sides, he_chords *c, size_t count)
 {
     he_vec3 first = place(m, sides, c, c->line[0].at), axis = {0, 0, 0};
@@ -94,8 +95,8 @@ static void forget_partners(he_chords *c)
     }
 }
 
-/* Makes a chord join corners a and b, which are then called partners. A corner has at most two
- * partners, its neighbours on the line. */
+/* Records a chord between corners a and b, which become partners. A corner has at most two
+ * partners: its neighbours on the line. */
 static void join(he_chords *c, uint32_t a, uint32_t b)
 {
     c->partners.ids[2 * (size_t)a + (c->partners.ids[2 * (size_t)a] != HE_NONE)] = b;
@@ -118,8 +119,9 @@ static void join_along_line(const he_mesh *m, const he_sides *sides, he_chords *
     }
 }
 
-/* Plans chords in another way: each cuts off a sequence of successive corners that are on the other
- * side of the plane than the first corner outside the plane. */
+/* Plans chords for a face in which the chords along the line fail (see chords.h). Let S be the side
+ * of the plane on which the first corner outside the plane lies. Each chord planned here cuts off a
+ * sequence of successive corners that lie on the side opposite to S. */
 static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     uint32_t first = 0, in_plane = HE_NONE, start = HE_NONE, end = HE_NONE;
@@ -148,9 +150,9 @@ static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords 
 
 /* --- checking that chords nest like brackets --- */
 
-/* The list `open` starts with the sides of the part that is outside all chords. For each chord that
- * has begun and not ended, CHORD numbers follow: the indices of its two ends, and the sides of the
- * part inside the chord. */
+/* The list `open` begins with one number: the side bits (see above) of the part of the face outside
+ * all chords. Then come CHORD numbers for each chord that has begun but not ended: the indices of
+ * its two corners, and the side bits of the part of the face inside the chord. */
 enum { CHORD = 3 };
 
 static bool is_one_sided(uint32_t part)
@@ -159,8 +161,8 @@ static bool is_one_sided(uint32_t part)
     return (has == ABOVE || has == BELOW) && (has | must) != BOTH;
 }
 
-/* Ends the chords that end at corner i, from the innermost outwards. Returns false if the part
- * inside one of them has corners on both sides of the plane. */
+/* Ends the chords that end at corner i, from the innermost outwards. Returns false if the part of
+ * the face inside one of them is not on the side of the plane on which it must be. */
 static bool close_at(he_chords *c, uint32_t i)
 {
     he_ids *open = &c->open;
@@ -177,8 +179,8 @@ static bool close_at(he_chords *c, uint32_t i)
     return true;
 }
 
-/* Begins the chord from corner i to corner `end`. Returns false if the chord joins neighbours or
- * crosses a chord that has begun and not ended. */
+/* Begins the chord from corner i to corner `end`. Returns false if the chord joins neighbouring
+ * corners or crosses a chord that has begun but not ended. */
 static bool open_at(he_chords *c, uint32_t i, uint32_t end)
 {
     he_ids *open = &c->open;
@@ -192,8 +194,8 @@ static bool open_at(he_chords *c, uint32_t i, uint32_t end)
     return true;
 }
 
-/* Lists the chords in the order in which they end. Returns false if they do not satisfy what the
- * head of chords.h promises. */
+/* Lists the chords in the order in which they end. Returns false if the chords break one of the
+ * rules that the head of chords.h states. */
 static bool list_pairs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     c->pairs.count = 0;

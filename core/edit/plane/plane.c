@@ -4,12 +4,12 @@
 
 #include <float.h>
 
-/* TOLERANCE is the default tolerance, relative to the size of the mesh. NOISE is the rounding error
- * of distances, relative to the coordinates along the normal. */
+/* TOLERANCE is the default tolerance, relative to the size of the mesh. NOISE bounds the rounding
+ * error of a distance from the plane, relative to the size of the coordinates. */
 static const double TOLERANCE = 1e-9, NOISE = 0x1p-48;
 
-/* The largest exponent of the factor that scales coordinates. A power of two with a larger exponent
- * is no double, so coordinates that would need one are scaled less. */
+/* Coordinates are scaled by a power of two with at most this exponent. Very small coordinates would
+ * need a larger power, which may exceed the range of a double, so they are scaled less. */
 enum { MOST_EXPONENT = 1000 };
 
 static he_status check(const he_plane *plane, he_error *err)
@@ -39,8 +39,8 @@ static he_vec3 unit_of(he_vec3 normal)
     return (he_vec3){n.x / length, n.y / length, n.z / length};
 }
 
-/* Returns true if v has edges. Isolated vertices are not cut, so they do not count for the size of
- * the mesh. */
+/* Returns true if vertex v has edges. A vertex without edges is not cut, so it does not count for
+ * the size of the mesh. */
 static bool is_cut(const he_mesh *m, uint32_t v)
 {
     return m->c.vertex_halfedge[v] < HE_DEAD;
@@ -59,15 +59,16 @@ static double find_scale(const he_mesh *m, he_vec3 point)
     return ldexp(1, -exponent < MOST_EXPONENT ? -exponent : MOST_EXPONENT);
 }
 
-/* Returns the sum of the absolute values of the terms of the dot product of n and p, which bounds
- * the rounding error of the product. */
+/* Returns the sum of the absolute values of the terms of the dot product of n and p. The rounding
+ * error of the dot product is at most a small multiple of this sum. */
 static double weigh(he_vec3 n, he_vec3 p)
 {
     return fabs(n.x * p.x) + fabs(n.y * p.y) + fabs(n.z * p.z);
 }
 
-/* Returns the distance of a vertex from the plane. The vertex may be isolated and much farther away
- * than the vertices that determine the scale. */
+/* Returns the distance of point p from the plane, times `scale`. The point may be an isolated
+ * vertex, which is much farther away than the vertices that determine the scale. A result that
+ * would overflow is clamped to the range of a double. */
 static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
 {
     he_vec3 near = he_vec3_scale(p, scale);
@@ -82,8 +83,8 @@ static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
     return fmax(fmin(far, DBL_MAX), -DBL_MAX);
 }
 
-/* Computes the distances of all vertices from the plane, and the default tolerance, both times the
- * scale. */
+/* Computes the distances of all vertices from the plane, and the default tolerance. All results are
+ * multiplied by sides->scale. */
 static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides,
                          double *tolerance, he_error *err)
 {

@@ -20,13 +20,14 @@ typedef struct cutter {
     const he_plane *plane;
     int away;        /* the side that is cut off: 1 above, -1 below */
     uint64_t *going; /* a bit for each face: set if the face will be deleted */
-    he_ids faces;    /* list of these faces */
-    he_ids rim;      /* half-edges of the deleted faces whose twins belong to faces that stay */
+    he_ids faces;    /* the ids of the faces that will be deleted */
+    he_ids rim;      /* the half-edges of faces to delete whose twins belong to faces that stay */
     he_cut_parts made;
 } cutter;
 
-/* Returns the side of the plane on which face f lies. After the split all corners of a face are on
- * one side or in the plane. */
+/* Returns 1 if face f lies above the plane, -1 if it lies below. The faces have been split, so none
+ * has corners on both sides of the plane. A face in the plane counts as below if it faces up, else
+ * as above. */
 static int side_of_face(const cutter *c, he_face f)
 {
     he_halfedge first = he_face_halfedge(c->m, f), h = first;
@@ -119,7 +120,7 @@ static he_status cap_loops(cutter *c, he_error *err)
         he_filled filled = {.vertex = {HE_NONE}};
         status = he_progress_at(c->m->progress, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
-            continue; /* the half-edge is on a loop that a face closes (caps) already */
+            continue; /* an earlier round has closed the loop of this half-edge by a face */
         }
         status = check_loop(c, h, err);
         if (status == HE_OK) {
@@ -153,11 +154,11 @@ static he_status erase(cutter *c, he_error *err)
 
 static he_status cut(cutter *c, bool cap, he_error *err)
 {
-    /* Each step reports its own progress from 0 to 1, so each gets a part of the progress of the
-     * whole edit. */
+    /* Each step reports its own progress from 0 to 1. `to` is the part of the whole edit that is
+     * done when the step ends. */
     const struct {
         he_status (*run)(cutter *c, he_error *err);
-        /* Name of the step for progress reports; NULL if the step reports names of its own. */
+        /* The name of the step in progress reports; NULL if the step itself names its progress. */
         const char *phase;
         double to;
         bool wanted;
@@ -192,8 +193,8 @@ he_status he_plane_cut(he_mesh *m, const he_plane *plane, he_cut_side keep, bool
     cutter c = {.m = m, .plane = plane};
     he_bracket bracket;
     c.away = keep == HE_CUT_ABOVE ? -1 : 1;
-    /* The vertices are measured before the split; the vertices that the split makes then count as
-     * in the plane. */
+    /* Distances from the plane are measured before the faces are split. A vertex that the split
+     * makes has no measured distance, so it counts as lying in the plane. */
     he_status status = he_sides_find(m, plane, &c.sides, err);
     if (status == HE_OK) {
         status = he_edit_begin(m, &bracket, err);

@@ -17,7 +17,8 @@ void he_plane_parts_clear(he_plane_parts *parts)
 typedef struct splitter {
     he_mesh *m;
     he_sides sides;
-    uint64_t *chosen; /* a bit for each face: set if the face is to be split; NULL: all faces are */
+    /* a bit for each face: set if the plane may split it; NULL: the plane may split all faces */
+    uint64_t *chosen;
     he_chords chords;
     he_plane_parts made;
 } splitter;
@@ -107,9 +108,9 @@ static uint32_t steps_between(const he_mesh *m, he_halfedge from, he_halfedge to
     return n;
 }
 
-/* Splits the face along the chord from corner a to corner b. The chords whose corners lie between a
- * and b are made before, so only one part of the face is left between a and b. In this way all
- * chords of a face together visit each corner once. */
+/* Splits a face along the chord from corner a to corner b. Chords whose corners lie between a and b
+ * must have been made before: each has shortened the way from a to b. Counting the steps of this
+ * way for all chords of a face therefore takes time linear in its corners. */
 static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
 {
     he_mesh *m = s->m;
@@ -180,8 +181,9 @@ he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *face
     if (status != HE_OK) {
         goto out;
     }
-    /* Faces are split after edges, so that their sides have the new vertices, and one after
-     * another, so that each split sees the diagonals of the faces split before. */
+    /* Faces are split after edges, because diagonals end at the new vertices of edges. Faces are
+     * split one after the other, because no diagonal may join two vertices that an earlier diagonal
+     * joins. */
     status = he_progress_phase(m->progress, "splitting edges", 0.5, err);
     if (status == HE_OK) {
         status = split_edges(&s, err);

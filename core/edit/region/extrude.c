@@ -3,9 +3,10 @@
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 
-/* Finds the normal of a region: the direction of the sum of its faces' vector areas. They are
- * divided by the largest one, so that nothing overflows. If they nearly cancel each other out, the
- * rest is rounding noise without a direction, and the function returns false. */
+/* Finds the normal of a region: the direction of the sum of the vector areas of its faces. Each
+ * vector area is divided by the largest area, so that the sum cannot overflow. If the vector areas
+ * nearly cancel out, their sum is rounding noise without a direction, and the function returns
+ * false. */
 static bool find_direction(const he_mesh *m, const he_region *r, he_vec3 *out)
 {
     const double noise = 1e-12;

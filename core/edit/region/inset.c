@@ -3,18 +3,18 @@
 #include "edit/piece/point.h"
 #include "geometry/geometry.h"
 
-/* How the corners on the rim of a region move, and buffers for the corners of one face. Time runs
- * from 0 to 1 during the motion. */
+/* Describes how the corners on the rim of a region move while time runs from 0 to 1, and has
+ * buffers for the corners of one face. */
 typedef struct motion {
-    he_vec3 *path;  /* displacement of each corner on the rim at time 1 */
-    he_vec3 *at;    /* positions of the corners of one face */
-    he_vec3 *moves; /* displacements at time 1 of the corners of that face */
-    /* The mean of the corners of each face of the region or, if sides move in parallel, the normal
-     * of each face. */
+    he_vec3 *path;  /* the displacement of each corner on the rim until time 1 */
+    he_vec3 *at;    /* buffer: the positions of the corners of one face */
+    he_vec3 *moves; /* buffer: the displacements of the corners of one face until time 1 */
+    /* One vector for each face of the region: the mean of its corners or, if sides move in
+     * parallel, its normal. */
     he_vec3 *of;
-    /* The first time at which a corner hits a side, a side has no length or a corner flips. */
+    /* The first time at which a corner hits a side, a side has no length, or a corner flips. */
     double end;
-    uint64_t budget; /* steps of work that may still be done */
+    uint64_t budget; /* the number of steps of work that may still be done */
 } motion;
 
 static void motion_clear(motion *p)
@@ -50,7 +50,9 @@ static uint32_t index_of(const he_mesh *m, const he_region *r, uint32_t h)
 
 /* --- displacements of the corners on the rim --- */
 
-/* Sets the motion of each corner on the rim: towards the mean of the means of its faces. */
+/* Lets each corner on the rim move towards a point, by the fraction `factor` of the way. The point
+ * is the mean of the centres of the faces at the corner; a centre is the mean of the corners of a
+ * face. */
 static void aim_at_means(const he_mesh *m, const he_region *r, double factor, motion *p)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -70,7 +72,7 @@ static void aim_at_means(const he_mesh *m, const he_region *r, double factor, mo
 }
 
 /* Returns the displacement of a corner whose two sides move inwards by 1. `a` and `b` are the unit
- * vectors in which they move. */
+ * vectors in whose directions the two sides move. */
 static he_vec3 miter(he_vec3 a, he_vec3 b)
 {
     const double sharpest = 0.125;
@@ -81,8 +83,8 @@ static he_vec3 miter(he_vec3 a, he_vec3 b)
     return he_vec3_scale(sum, 1 / fmax(0.5 * he_vec3_dot(sum, sum), sharpest));
 }
 
-/* Returns the unit vector that points into the face at a right angle to a half-edge of the rim;
- * zero if the half-edge has no length. */
+/* Returns the unit vector that is perpendicular to a half-edge of the rim and points into its face,
+ * or zero if the half-edge has no length. */
 static he_vec3 inwards(const he_mesh *m, const he_region *r, const motion *p, uint32_t rim)
 {
     he_halfedge h = {rim};
@@ -106,7 +108,8 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
                            r->faces.ids.ids[index]);
         }
     }
-    /* The half-edge that arrives at a rim corner is the rim half-edge of the corner before. */
+    /* p->path[i] is the motion of the origin of rim half-edge i. This loop sets the motion of the
+     * target of each rim half-edge, from which the rim half-edge with the index `after` leaves. */
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         uint32_t after = he_idmap_find(&r->corners, he_target(m, h).i);
@@ -129,8 +132,8 @@ typedef struct quadratic {
     double c0, c1, c2;
 } quadratic;
 
-/* Returns the smallest positive root of a polynomial with c0 > 0, infinity if there is none. A
- * double root counts even if rounding errors have removed it. */
+/* Returns the smallest positive root of a polynomial with c0 > 0, or infinity if it has none. A
+ * double root is found even if rounding errors make the discriminant slightly negative. */
 static double first_root(quadratic p)
 {
     const double noise = 1e-9;
@@ -154,8 +157,8 @@ static corner corner_of(const motion *p, size_t i)
     return (corner){p->at[i], p->moves[i]};
 }
 
-/* Returns twice the area of the triangle a, b, c, projected along the normal, as a polynomial of
- * time. */
+/* Returns twice the signed area of the triangle of three moving corners, projected along the
+ * normal, as a polynomial in time. */
 static quadratic turn(corner a, corner b, corner c, he_vec3 normal)
 {
     he_vec3 x = he_vec3_sub(b.at, a.at), y = he_vec3_sub(c.at, b.at);
@@ -173,8 +176,8 @@ static void watch_side(motion *p, corner a, corner b)
     happens(p, length / he_vec3_dot(he_vec3_sub(a.moves, b.moves), along));
 }
 
-/* Finds the time at which corner c hits the side a-b from inside, between its ends, and ends the
- * motion there if it comes first. */
+/* Finds the time at which corner c, coming from inside the face, hits the side from a to b. The
+ * motion then ends at this time, unless it ends earlier. */
 static void watch_hit(motion *p, corner a, corner b, corner c, he_vec3 normal)
 {
     quadratic area = turn(a, b, c, normal);
@@ -217,8 +220,8 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
             happens(p, first_root(area));
             continue;
         }
-        /* The corner b is reflex (its angle is above pi), so it is tested against every side of the
-         * face that does not end at b. */
+        /* Corner b is reflex (its angle is above pi), so it may hit any side of the face that does
+         * not end at b. */
         if (p->budget < n) {
             return he_fail(
                 err, HE_LIMIT, HE_FACE, f.i,
@@ -263,8 +266,8 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
 /* --- interpolated values of new vertices --- */
 
 /* Finds the point of a triangle that is nearest to the point `way`, up to rounding. The sides `a`
- * and `b` and the vector `way` start at the same corner; the point found is *x times a plus *y
- * times b, with *x and *y at least 0 and together at most 1. Returns the squared distance. */
+ * and `b` and the vector `way` start at one corner. The result is *x times a plus *y times b, where
+ * *x and *y are at least 0 and their sum is at most 1. Returns the squared distance. */
 static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, double *y)
 {
     double aa = he_vec3_dot(a, a), ab = he_vec3_dot(a, b), bb = he_vec3_dot(b, b);
@@ -290,9 +293,9 @@ static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, dou
     return he_vec3_dot(missing, missing);
 }
 
-/* Finds which of the two triangles at the origin of h is nearer to the new position `to`: each is
- * made of the mean of the face of h, that origin and a neighbouring corner. If the triangle is
- * nearer than *least, it decides the mixture *out. */
+/* Looks at two triangles, each made of the origin of h, a corner beside it, and the mean of the
+ * face of h. If one of them is nearer to the new position `to` than *least, *out becomes the
+ * mixture of its three points and *least its squared distance. */
 static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
                         he_region_mix *out, double *least)
 {

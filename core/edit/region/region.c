@@ -5,8 +5,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The most links that are written for one half-edge of the rim: its own, those of its old
- * neighbours, and those of the new face and of the vertex. */
+/* An upper bound of the links that are written for one half-edge of the rim: its own links, those
+ * of its neighbours in the loop, and the half-edges that its face and its origin store. */
 enum { RIM_LINKS = 11 };
 
 static void region_clear(he_region *r)
@@ -30,7 +30,7 @@ static bool is_inside(const he_region *r, he_face f)
     return f.i != HE_NONE && he_idmap_find(&r->faces, f.i) != HE_NONE;
 }
 
-/* Adds to the region all listed faces that are connected to it across edges. */
+/* Adds to region r all faces of the set `listed` that are connected to r across edges. */
 static he_status spread(const he_mesh *m, he_region *r, const he_idmap *listed, he_error *err)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -89,8 +89,8 @@ static he_status find_rim(const he_mesh *m, he_region *r, he_error *err)
     return HE_OK;
 }
 
-/* Finds the half-edges inside the region that leave corners of the rim, other than the rim
- * half-edges. */
+/* Lists in r->inner the half-edges inside the region that leave vertices of the rim. The half-edges
+ * of the rim itself are not listed. */
 static he_status find_inner(const he_mesh *m, he_region *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -180,7 +180,7 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
 
 /* --- COMMIT: writing --- */
 
-/* The first new id of each kind of element; half-edge i of the rim gets vertex `vertex` + i, edges
+/* The lowest new id of each kind of element. Half-edge i of the rim gets vertex `vertex` + i, edges
  * `edge` + 2i and `edge` + 2i + 1, and face `face` + i. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
@@ -215,8 +215,9 @@ static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to, const h
     }
 }
 
-/* Puts a new half-edge in the place of half-edge i of the rim in its face. The neighbours of i on
- * the rim are replaced by other calls, so only links to half-edges that stay are read. */
+/* Replaces half-edge i of the rim by a new half-edge in the loop of its face. A neighbour in this
+ * loop may also be on the rim. Another call replaces it, so the new half-edge is linked to its
+ * replacement. */
 static void replace_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]}, t = above(n, i);
@@ -247,8 +248,9 @@ static void carry_corners(he_mesh *m, const he_region *r, const fresh *n, size_t
     he_attributes_copy(m, HE_HALFEDGE, he_twin(above(n, i)).i, he_next(m, h).i);
 }
 
-/* Links the four half-edges of the new quad at half-edge i of the rim: along the rim half-edge, up
- * at its target, back above it, and down at its origin. */
+/* Links the four half-edges of the new quad at half-edge i of the rim, in this order: the rim
+ * half-edge, the edge from its target to a new vertex, the edge between two new vertices, and the
+ * edge from a new vertex to its origin. */
 static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]};
@@ -264,8 +266,9 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
     he_set_face_halfedge(m, q, h);
 }
 
-/* Computes the values of the new vertices from `first` to `last`, all mixed from corners of the
- * same face. While it works, the row of vertex `last` holds the mean of these corners. */
+/* Computes the attribute values of the new vertices from `first` to `last`. All are mixtures of the
+ * corners of one face. Until the values of vertex `last` are computed, this vertex holds the mean
+ * of these corners. */
 static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
                         size_t last, he_ids *corners)
 {
@@ -331,7 +334,7 @@ static void commit(he_mesh *m, const he_region *r, const he_vec3 *to, const he_r
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         he_vertex v = he_origin(m, h);
-        /* If the vertex stores a boundary half-edge, that still leaves it; any other half-edge may
+        /* A boundary half-edge that v stored still leaves v. Any other half-edge that v stored may
          * now leave the new vertex. */
         if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
             he_set_vertex_halfedge(m, v, h);
@@ -370,8 +373,8 @@ static he_status add_parts(const he_mesh *m, const he_region *r, he_region_parts
     return status;
 }
 
-/* Computes how the values of the new vertices are mixed, and reserves memory in `corners` for the
- * corners of a face. `*out` stays NULL if no values are mixed. */
+/* Computes how the attribute values of the new vertices are mixed. *out stays NULL if none are
+ * mixed. Reserves memory in `corners` for the corners of the largest face. */
 static he_status mix(const he_mesh *m, const he_region *r, he_region_place place, const he_vec3 *to,
                      he_region_mix **out, he_ids *corners, he_error *err)
 {
@@ -391,7 +394,8 @@ static he_status mix(const he_mesh *m, const he_region *r, he_region_place place
     return status == HE_OK ? place.mix(m, r, to, *out, err) : status;
 }
 
-/* Detaches one region. On entry `r` has the faces of the region; on return it is cleared. */
+/* Detaches one region. On entry `r` lists only the faces of the region; on return `r` is
+ * cleared. */
 static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_region_parts *out,
                           he_error *err)
 {
@@ -449,8 +453,8 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
     return status;
 }
 
-/* Detaches the regions one after another. Each is found from the first listed face that is in no
- * region yet. */
+/* Detaches the regions one after another. Each region starts with the first listed face that is in
+ * no earlier region. */
 static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_region_place place,
                           he_region_parts *out, he_error *err)
 {

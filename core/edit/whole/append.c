@@ -3,12 +3,12 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* The column of this mesh to which a column of the other mesh is appended, and how that other
- * column's values are mapped. */
+/* Says to which attribute column of this mesh the values of a column of the other mesh are
+ * appended, and how they are mapped. */
 typedef struct target {
     size_t slot;
-    /* The index in this mesh's column of each label (name of a value) of the other mesh's column;
-     * NULL: indices of labels stay as they are. */
+    /* Maps the index that a label (name of a value) has in the other mesh's column to its index in
+     * this mesh's column; NULL: indices stay as they are. */
     uint32_t *label;
 } target;
 
@@ -57,12 +57,12 @@ static he_status no_memory(const he_column *column, he_error *err)
 
 /* --- materials --- */
 
-/* Materials of the other mesh that get another name in this mesh, and the slots that they have in
- * this mesh. */
+/* The materials of the other mesh that get another name in this mesh. */
 typedef struct renames {
-    /* The names of these materials in the other mesh; NULL: no material is renamed. */
+    /* the names of these materials in the other mesh; NULL: no material is renamed */
     he_labels *from;
-    he_ids slots; /* for each of these names, the slot of the material in this mesh's table */
+    /* slots.ids[i] is the entry of material from[i] in this mesh's table of materials */
+    he_ids slots;
 } renames;
 
 static void renames_clear(renames *r)
@@ -92,9 +92,9 @@ static bool is_label(const he_mesh *m, const char *name)
            he_labels_find(column->labels, name, strlen(name), &index);
 }
 
-/* Chooses the name that a material of the other mesh gets in this one: its own, unless a different
- * material of this mesh has that name; then NAME_2, NAME_3 and so on, the first that is free in
- * both meshes or belongs to an equal material. */
+/* Chooses the name that a material of the other mesh gets in this mesh. It keeps its own name,
+ * unless a different material of this mesh has that name. Then it gets the first of the names
+ * NAME_2, NAME_3 and so on that is free in both meshes or belongs to an equal material. */
 static void choose_name(const he_mesh *m, const he_mesh *other, const he_material *row,
                         char name[HE_MATERIAL_NAME + 1])
 {
@@ -137,7 +137,7 @@ static he_status merge_material(he_mesh *m, const he_mesh *other, he_material *r
     return status == HE_OK && !same ? rename_material(r, row, slot, err) : status;
 }
 
-/* Appends the other mesh's materials that this mesh lacks. */
+/* Adds to this mesh the materials of the other mesh that it lacks. */
 static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, he_error *err)
 {
     const he_materials *theirs = &other->c.materials;
@@ -152,8 +152,8 @@ static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, h
 
 /* --- labels --- */
 
-/* Returns the label of this mesh that corresponds to a label of the other mesh: the name of its
- * material may differ. */
+/* Returns the label of this mesh that corresponds to a label of the other mesh. The two labels
+ * differ if the label is the name of a material that was renamed. */
 static const char *name_here(const he_mesh *m, const he_column *theirs, const renames *r,
                              const char *text)
 {
@@ -186,8 +186,8 @@ static he_status add_theirs(const he_mesh *m, he_labels *to, const he_column *th
     return status;
 }
 
-/* Makes the list of labels of both columns, those of `own` (which may be NULL) first. out->label
- * gets the index of each label of `theirs` in that list. */
+/* Makes a list of the labels of columns `own` (which may be NULL) and `theirs`, beginning with
+ * those of `own`. out->label gets the index of each label of `theirs` in that list. */
 static he_status make_labels(const he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_labels **labels, he_error *err)
 {
@@ -208,8 +208,8 @@ static he_status make_labels(const he_mesh *m, const he_column *own, const he_co
     return HE_OK;
 }
 
-/* Replaces `own` by a column with the labels of both columns, unless `own` has all labels
- * already. */
+/* Adds the labels of column `theirs` to column `own` of this mesh: replaces `own` by a copy that
+ * has all labels, unless `own` has them already. */
 static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_error *err)
 {
@@ -233,8 +233,8 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
     return status;
 }
 
-/* Replaces the index of a label in the other mesh by the index of that label in this mesh. An index
- * without a label stays as it is. */
+/* Replaces indices of labels in the other mesh by the indices of these labels in this mesh. An
+ * index without a label stays as it is. */
 static void map_labels(const he_column *theirs, const target *to, unsigned char *value)
 {
     for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
@@ -249,8 +249,8 @@ static void map_labels(const he_column *theirs, const target *to, unsigned char 
 
 /* --- columns --- */
 
-/* Adds a column like `theirs` to this mesh, with the default in all rows; if its domain is the mesh
- * itself, it has the value of `theirs`. */
+/* Adds a column like `theirs` to this mesh. All elements of this mesh get its default value. If the
+ * attribute belongs to a mesh as a whole, this mesh gets the value that the other mesh has. */
 static he_status add_column(he_mesh *m, const he_column *theirs, const renames *r, target *out,
                             he_error *err)
 {
@@ -313,7 +313,7 @@ static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uin
 
 /* --- COMMIT: writing --- */
 
-/* The id that each element of the other mesh gets in this mesh, for each kind of element. */
+/* Maps the ids of the other mesh's elements to the ids that they get in this mesh. */
 typedef struct maps {
     uint32_t *vertex, *edge, *face;
 } maps;

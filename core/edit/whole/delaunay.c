@@ -17,22 +17,23 @@ typedef struct flipper {
     size_t room, head, waiting;
     uint64_t *queued; /* a bit for each edge: set if the edge is in the queue */
     he_ids stuck;     /* edges that he_edge_flip has refused */
-    size_t stuck_at;  /* number of flips when the edges in `stuck` were last tried */
+    /* the number of flips that were done when the edges in `stuck` were last tried */
+    size_t stuck_at;
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
-    uint64_t work; /* work since progress was last reported */
-    /* `from`: number of records in the delta before this edit; `fold_at`: number of records at
-     * which all records of one word are next folded into one. */
+    uint64_t work; /* the amount of work since progress was last reported */
+    /* `from`: the number of records in the delta (the log of writes, for undo) before this edit.
+     * `fold_at`: the number of records at which records are next merged. */
     size_t from, fold_at;
 } flipper;
 
-/* When the delta has this many records for each edge, they are folded: all records of one word
- * become one. */
+/* When this edit has written this many records for each edge of the mesh, all records of one link
+ * are merged into one record. */
 enum { RECORDS_OF_EDGE = 4 };
 
-/* The amount of work after which progress is reported. Testing an edge counts as WORK_OF_EDGE
- * units, because it takes as long as so many steps around a vertex. */
+/* Progress is reported after WORK_PER_LOOK units of work. A step around a vertex is one unit;
+ * testing an edge takes as long as WORK_OF_EDGE such steps. */
 enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_PROGRESS_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)
@@ -52,13 +53,14 @@ static he_edge dequeue(flipper *q)
     return (he_edge){e};
 }
 
-/* Returns the i-th edge in the queue; HE_NONE if the queue is shorter. */
+/* Returns the i-th edge in the queue, or HE_NONE if the queue is shorter. */
 static he_edge waiting_at(const flipper *q, size_t i)
 {
     return (he_edge){i < q->waiting ? q->queue[(q->head + i) % q->room] : HE_NONE};
 }
 
-/* Returns true if marks (marks.h) forbid to flip the edge, which is not on the boundary. */
+/* Returns true if marks (locked or feature elements, see marks.h) forbid flipping edge e, which
+ * must not be on the boundary. */
 static bool is_held(const flipper *q, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -80,8 +82,8 @@ static bool is_crooked(const flipper *q, he_edge e)
     return alpha + beta > PI + HE_DELAUNAY_EPSILON;
 }
 
-/* Returns the number of steps that he_edge_flip will take to search for an edge between the
- * opposite corners. */
+/* Returns the number of steps that he_edge_flip() will take to search for an edge between the
+ * corners opposite to edge e. */
 static uint32_t search_steps(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -95,8 +97,8 @@ static uint32_t search_steps(const he_mesh *m, he_edge e)
     return n;
 }
 
-/* Folds the records of repeated flips of one edge into one. This keeps their number proportional to
- * the size of the mesh, not to the number of flips. */
+/* If the delta has many records, merges all records of one link into one record. The number of
+ * records is then proportional to the size of the mesh, not to the number of flips. */
 static he_status fold(flipper *q, he_error *err)
 {
     he_delta *delta = q->m->delta;
@@ -139,8 +141,8 @@ static he_status flip(flipper *q, he_edge e, he_error *err)
     return fold(q, err);
 }
 
-/* Reports progress. Flips spread to other edges, so the total work is not known: the ratio of work
- * done to work in the queue is an estimate. */
+/* Reports progress from time to time. Flips put more edges into the queue, so the total work is not
+ * known; the ratio of tested edges to tested and waiting edges is an estimate. */
 static he_status look(flipper *q, he_error *err)
 {
     q->work += WORK_OF_EDGE;
@@ -174,8 +176,8 @@ static he_status empty_queue(flipper *q, he_error *err)
     return status;
 }
 
-/* Puts the edges that could not be flipped back into the queue, because flips of other edges may
- * have made it possible to flip them. */
+/* Puts the edges whose flips were refused back into the queue, because flips of other edges may
+ * have made their flips possible. */
 static void try_again(flipper *q)
 {
     if (q->flips.count > q->stuck_at) {

@@ -4,11 +4,11 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The new element that stands for each live element: vertex[f] for face f, edge[e] for edge e,
- * face[v] for vertex v. */
+/* The ids of the dual mesh: face f becomes vertex[f], edge e becomes edge[e], and vertex v becomes
+ * face[v]. */
 typedef struct rows {
     uint32_t *vertex, *edge, *face;
-    /* Number of ids of each kind that were issued before the edit. */
+    /* the numbers of ids of each kind that were issued before the edit */
     uint32_t vertices, edges, faces;
 } rows;
 
@@ -43,8 +43,9 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Checks that no two faces share two edges. Each face marks its neighbours with its own id; a
- * neighbour that has this mark already shares a second edge. */
+/* Checks that no two faces share two edges. For each edge, a face writes its own id into the entry
+ * of the neighbour across that edge. If the entry has this id already, the two faces share a second
+ * edge. */
 static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error *err)
 {
     for (uint32_t i = 0; i < m->c.faces.issued; i++) {
@@ -84,8 +85,8 @@ static he_status check_locks(const he_mesh *m, he_error *err)
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         uint32_t issued = he_mesh_issued(m, kinds[k]);
         for (uint32_t i = 0; i < issued; i++) {
-            /* Deleted elements are skipped: their rows hold the default of the attribute, which may
-             * mean locked. */
+            /* A deleted element has the default value of the attribute `locked`, which may be true,
+             * so deleted elements are skipped. */
             if (he_is_locked(&marks, kinds[k], i) && he_mesh_is_live(m, kinds[k], i)) {
                 return he_require_unlocked(&marks, kinds[k], i, err);
             }
@@ -133,9 +134,8 @@ static void make_rows(he_mesh *m, rows *r)
     }
 }
 
-/* Returns the dual half-edge of h, which belongs to the new edge that stands for the edge of h: it
- * runs from the face right of h to the face left of it, along the new face that stands for the
- * origin of h. */
+/* Returns the dual half-edge of h. It runs from the new vertex of the face right of h to the new
+ * vertex of the face left of h, and belongs to the new face of the origin of h. */
 static he_halfedge star(const rows *r, he_halfedge h)
 {
     return (he_halfedge){2 * r->edge[h.i >> 1] + (h.i & 1)};
@@ -195,7 +195,7 @@ he_status he_dual(he_mesh *m, he_error *err)
     r.face = he_mem_array(NULL, r.vertices + 1u, sizeof *r.face);
     he_status status = HE_OK;
     if (r.vertex == NULL || r.edge == NULL || r.face == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the rows of the dual");
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the dual mesh");
     }
     if (status == HE_OK) {
         status = he_progress_phase(m->progress, "checking", 0.4, err);

@@ -4,7 +4,8 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* Finds the attribute `material` of the faces; NULL if there is none. */
+/* Finds the attribute `material` of faces. Sets *out to NULL if the mesh does not have it, and
+ * refuses if its values are not of the required type. */
 static he_status find_column(const he_mesh *m, const he_column **out, he_error *err)
 {
     *out = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
@@ -18,8 +19,8 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
                          (*out)->labels != NULL ? " with labels" : "");
 }
 
-/* Makes a column with these labels and the values of `column`; if `column` is NULL, no face has a
- * material. */
+/* Makes a column of the attribute `material` with the given labels and the values of `column`. If
+ * `column` is NULL, no face has a material in the new column. */
 static he_status column_with(const he_mesh *m, const he_column *column, he_labels *labels,
                              he_column **out, he_error *err)
 {
@@ -38,9 +39,10 @@ static he_status column_with(const he_mesh *m, const he_column *column, he_label
     return status;
 }
 
-/* Makes a list of labels from those of the column (NULL has none), with `from` replaced by `to`, or
- * with `to` appended if `from` is NULL. If `from` and `to` are both labels, they become one.
- * new_index[i], unless it is NULL, gets the new index of label i. */
+/* Makes a list of the labels of the column (none if the column is NULL). In the list, `from` is
+ * replaced by `to`, so if the column has labels `from` and `to`, they become one. If `from` is
+ * NULL, `to` is appended instead. new_index[i] gets the new index of label i, unless new_index is
+ * NULL. */
 static he_status make_labels(const he_column *column, const char *from, const char *to,
                              he_labels *out, uint32_t *new_index, he_error *err)
 {
@@ -73,8 +75,8 @@ static void change_indices(he_column *column, const uint32_t *new_index)
     memcpy(column->fallback, &new_index[index], sizeof index);
 }
 
-/* Replaces the column by one with the labels that make_labels makes: `from` becomes `to`, or `to`
- * is appended. */
+/* Replaces the column by a copy in which label `from` is replaced by `to`. If `from` is NULL, `to`
+ * is appended to the labels instead. */
 static he_status put_labels(he_mesh *m, const he_column *column, const char *from, const char *to,
                             uint32_t *new_index, he_error *err)
 {
@@ -124,8 +126,8 @@ static he_status give(he_mesh *m, const char *name, const he_material_change *ch
     return he_attribute_write(m, column, change->faces, change->face_count, &index, true, err);
 }
 
-/* Renames a material in the labels of the faces. The new name must be unused, and the old name must
- * be used. */
+/* Renames a material in the labels of the attribute `material`. Refuses if the new name is in use,
+ * or if no material has the old name. */
 static he_status rename_label(he_mesh *m, const char *name, bool has_row, const char *to,
                               he_error *err)
 {
@@ -135,8 +137,8 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     if (status != HE_OK) {
         return status;
     }
-    /* "" is no name of a material, so it cannot be renamed: all faces without a material would get
-     * one. */
+    /* The empty label means that a face has no material. Renaming it would give a material to all
+     * such faces. */
     if (*name == '\0') {
         return he_fail_plain(err, HE_BAD_VALUE,
                              "a material without a name does not exist and cannot be renamed");
@@ -195,8 +197,8 @@ static bool only_gives(const he_material_change *change)
            change->emission == NULL && change->two_sided == NULL;
 }
 
-/* Makes the listed faces have no material. If the attribute does not exist, they have none
- * already. */
+/* Removes the material from the listed faces. If the mesh has no attribute `material`, no face has
+ * a material, so only the list is checked. */
 static he_status give_none(he_mesh *m, const he_material_change *change, he_error *err)
 {
     const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);

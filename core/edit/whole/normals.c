@@ -10,9 +10,9 @@ static bool is_normal(const he_column *column)
            he_is_normal_column(column);
 }
 
-/* Computes the cofactors of the linear part of the map, with the sign that makes them a positive
- * multiple of its inverse transpose. The entries of the map are first scaled to at most 1, so that
- * nothing overflows; the length of the result does not matter. */
+/* Computes the matrix that transforms normals: a positive multiple of the inverse transpose of the
+ * map's linear part, made of its cofactors. Its entries are divided by the largest one first, so
+ * that nothing overflows. Returns false if the linear part is zero or the identity. */
 static bool find_cofactors(const double matrix[16], double k[9])
 {
     double a[9], largest = 0, off = 0;
@@ -57,8 +57,8 @@ static void turn_row(const he_normals *n, size_t slot, uint32_t row)
         const double *k = n->k + 3 * i;
         w[i] = k[0] * (v[0] / largest) + k[1] * (v[1] / largest) + k[2] * (v[2] / largest);
     }
-    /* The result is scaled to a largest component of 1 before its length is computed, because
-     * squares of the result of a very flat map would underflow. */
+    /* A map that flattens the mesh makes very small components, whose squares would underflow. They
+     * are therefore scaled up to at most 1 before the length is computed. */
     largest = fmax(fabs(w[0]), fmax(fabs(w[1]), fabs(w[2])));
     if (!(largest > 0)) {
         return;
@@ -86,8 +86,8 @@ static bool is_mapped(const he_normals *n, he_face f)
     return true;
 }
 
-/* Counts the rows of one column of normals that the map changes; if `commit` is set, it also
- * transforms them. */
+/* Counts the normals in one attribute column that the map changes. If `commit` is true, the
+ * function also transforms them. */
 static size_t each_row(const he_normals *n, size_t slot, bool commit)
 {
     const he_mesh *m = n->m;
@@ -114,8 +114,8 @@ static size_t each_row(const he_normals *n, size_t slot, bool commit)
         }
         while (h.i != HE_NONE) {
             he_face f = he_face_of(m, h);
-            /* The row of a face is transformed once: when the loop over half-edges reaches the one
-             * that the face stores. */
+            /* The normal of a face must be transformed only once: when the walk around the vertices
+             * reaches the half-edge that the face stores. */
             bool turns = domain == HE_HALFEDGE ||
                          (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i && is_mapped(n, f));
             rows += turns;

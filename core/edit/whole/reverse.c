@@ -15,8 +15,8 @@ static void part_clear(part *p)
     he_ids_clear(&p->faces);
 }
 
-/* Puts all faces and edges, and all vertices with a face, into the lists of what is reversed;
- * isolated vertices have nothing to reverse. */
+/* Lists all elements that are reversed if the whole mesh is: all faces and edges, and all vertices
+ * that have faces. */
 static he_status take_all(const he_mesh *m, part *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -39,8 +39,8 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
     return status;
 }
 
-/* Puts the faces that the caller listed into the lists of what is reversed, with the vertices and
- * edges of these faces, each only once. */
+/* Lists all elements that are reversed if some faces are: these faces, their vertices and their
+ * edges. Each is listed once. */
 static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
                              he_error *err)
 {
@@ -113,9 +113,10 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
     return status;
 }
 
-/* Moves the corner values around vertex v. The corner that h leaves in face(h) is left by
- * he_swing_ccw(h) afterwards, so the values of half-edges around v shift by one place. Those of
- * boundary half-edges shift, too, so that reversing a second time restores all values. */
+/* Moves corner values around vertex v. The value of a corner is stored with the half-edge that
+ * leaves the corner. The corner that h leaves is left by he_swing_ccw(h) after the reversal, so
+ * each value moves to the next half-edge around v. Values of boundary half-edges move, too, so that
+ * a second reversal restores all values. */
 static void shift_corners(he_mesh *m, size_t slot, he_vertex v)
 {
     const he_column *column = m->c.columns[slot];
@@ -167,9 +168,9 @@ static void turn_values(he_mesh *m, const part *p)
     }
 }
 
-/* Exchanges the two half-edges of an edge: each gets the face of the other and, reversed, its
- * neighbours. What is written depends on the old links of this edge only, so the edges may be
- * handled in any order. */
+/* Exchanges the roles of the two half-edges of an edge. Each gets the old face of its twin. Its
+ * next becomes the twin of its twin's old prev, and its prev the twin of its twin's old next. Only
+ * links of this edge are read, so the edges may be handled in any order. */
 static void turn_edge(he_mesh *m, he_edge e)
 {
     he_halfedge next[2], prev[2];

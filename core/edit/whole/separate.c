@@ -4,8 +4,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Checks that no half-edge or face of a fan is locked. *h is the half-edge with which the fan
- * begins, and is set to the one with which it ends. */
+/* Checks that no edge or face of a fan is locked. *h is the half-edge with which the fan begins;
+ * the function advances it to the half-edge with which the fan ends. */
 static he_status check_fan(const he_mesh *m, const he_marks *marks, he_halfedge *h, he_error *err)
 {
     he_status status = he_require_unlocked(marks, HE_EDGE, he_edge_of(*h).i, err);
@@ -27,8 +27,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_halfedge stored = he_vertex_halfedge(m, v), h = he_swing_ccw(m, stored);
-    /* The last fan, which ends with the half-edge that v stores, keeps the vertex, so locks in this
-     * fan do not matter. */
+    /* The last fan ends with the half-edge that v stores. It keeps vertex v, so its locks do not
+     * matter. */
     for (uint32_t fans = he_vertex_fans(m, v); status == HE_OK && fans > 1; fans--) {
         status = check_fan(m, &marks, &h, err);
         h = he_swing_ccw(m, h);
@@ -36,8 +36,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
     return status;
 }
 
-/* If v is a bow-tie, adds v to `ties`, and adds to `need` what separating the fans of v will
- * write. */
+/* If v is a bow-tie (a vertex with several fans), adds v to the list `ties`, and adds the memory
+ * for separating the fans of v to `need`. */
 static he_status plan(const he_mesh *m, he_vertex v, he_reservation *need, he_ids *ties,
                       he_error *err)
 {
@@ -89,7 +89,8 @@ static void commit(he_mesh *m, he_vertex v, he_ids *made)
     }
 }
 
-/* Separates the fans of the vertices in `ties`, and frees the list. */
+/* Gives each fan of the vertices in `ties` a vertex of its own, and frees the list `ties`. If
+ * `status` is an error, it only frees the list. */
 static he_status take_apart(he_mesh *m, he_ids *ties, he_reservation need, he_ids *made,
                             he_status status, he_error *err)
 {

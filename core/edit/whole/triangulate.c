@@ -8,8 +8,8 @@ static he_status room(he_ids *list, size_t extra, he_error *err)
     return list == NULL ? HE_OK : he_ids_reserve(list, extra, err);
 }
 
-/* Records the diagonals of a face that was triangulated, because triangulations of later faces must
- * avoid them. */
+/* Adds the diagonals of a triangulated face to `lookup`, because later triangulations must avoid
+ * them. */
 static void note_diagonals(const he_mesh *m, const he_triangulation *t, he_edge_lookup *lookup)
 {
     for (uint32_t k = 0; lookup->rank != NULL && k + 3 < t->flat.n; k++) {
@@ -64,8 +64,8 @@ he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count
     if (status != HE_OK) {
         return status;
     }
-    /* Each face is checked directly before it is triangulated, because the check must know the
-     * diagonals of the earlier faces. */
+    /* Each face is checked immediately before it is triangulated, because the check must know the
+     * diagonals of the faces that were triangulated earlier. */
     he_ids *const lists[3] = {edges, faces, degenerate};
     size_t before[3] = {0, 0, 0};
     for (unsigned i = 0; i < 3; i++) {
