@@ -64,7 +64,7 @@ static he_status run_edge_extrude(he_mesh *m, const he_arg *args, he_results *ou
     return status;
 }
 
-/* The names of the values of he_keep, in their order. */
+/* The names that requests use for the values of he_keep, in the order of the enum. */
 static const char *const keeps[] = {"mean", "a", "b", NULL};
 
 const he_op he_border_rows[] = {

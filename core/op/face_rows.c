@@ -31,8 +31,8 @@ static he_status run_face_delete(he_mesh *m, const he_arg *args, he_results *out
         args[FACE_DELETE_KEEP_ISOLATED].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
 }
 
-/* Finds the half-edge that leaves a corner of face f. The client names the corner by its vertex or
- * by that half-edge. */
+/* Finds the half-edge of face f that leaves a corner. The client names either the corner's vertex
+ * or this half-edge. */
 static he_status find_corner(const he_mesh *m, he_face f, const he_arg *vertex,
                              const he_arg *halfedge, he_halfedge *out, he_error *err)
 {
@@ -143,7 +143,7 @@ static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* The names of the values of he_fill, in their order. */
+/* The names that requests use for the values of he_fill, in the order of the enum. */
 static const char *const fill_methods[] = {"polygon", "fan", "triangulate", NULL};
 
 const he_op he_face_rows[] = {

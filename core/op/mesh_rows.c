@@ -107,7 +107,7 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
     return status;
 }
 
-/* The parameters and results that plane_split and plane_cut have in common. */
+/* Parameters and results that plane_split and plane_cut have in common. */
 #define PLANE_POINT                                                    \
     {                                                                  \
         .name = "point", .type = HE_PARAM_POINT, .flags = HE_REQUIRED, \
@@ -135,7 +135,7 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
         "faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut." \
     }
 
-/* The names of the values of he_cut_side, in their order. */
+/* The names that requests use for the values of he_cut_side, in the order of the enum. */
 static const char *const cut_sides[] = {"above", "below", NULL};
 
 const he_op he_mesh_rows[] = {

@@ -127,7 +127,8 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
     }
 }
 
-/* Returns true if an argument satisfies what the decoder must have checked. */
+/* Returns true if an argument has passed the checks that are the duty of the decoder of
+ * requests. */
 static bool is_sound(const he_param *param, const he_arg *arg)
 {
     if (!arg->given) {
@@ -167,8 +168,8 @@ static bool is_sound(const he_param *param, const he_arg *arg)
     return false;
 }
 
-/* Checks the alternatives that share a letter with parameter i: exactly one must be given if one is
- * required, and at most one otherwise. */
+/* Checks the parameters that have the letter of parameter i as their group, and so are
+ * alternatives: exactly one must be given if any of them is required, else at most one. */
 static bool is_group_sound(const he_op *op, const he_arg *args, size_t i)
 {
     size_t given = 0;

@@ -27,8 +27,8 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Returns the factor by which subdivision makes the mesh grow: each step makes three faces of each
- * face in the scheme sqrt3, else four. */
+/* Returns the factor by which the number of faces grows: each step divides a face into three if the
+ * scheme is sqrt3, else into four. */
 static double subdivide_growth(const he_arg *args)
 {
     return pow(args[SUBDIVIDE_SCHEME].choice == HE_SQRT3 ? 3 : 4, args[SUBDIVIDE_STEPS].number);
@@ -40,7 +40,7 @@ static he_status foresee_subdivide(const he_mesh *m, const he_arg *args, he_erro
                              (unsigned)args[SUBDIVIDE_STEPS].number, err);
 }
 
-/* The names of the values of he_scheme, in their order. */
+/* The names that requests use for the values of he_scheme, in the order of the enum. */
 static const char *const schemes[] = {"loop", "catmull_clark", "linear", "sqrt3", NULL};
 
 const he_op he_refine_rows[] = {

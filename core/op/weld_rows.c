@@ -6,8 +6,8 @@
 
 static const char *const positions[] = {"mean", "lowest", NULL};
 
-/* Merges the vertices that the client names, and lists the vertex that stays if others were merged
- * into it. */
+/* Merges the vertices that the client names into one of them. Adds that vertex to `kept`, unless
+ * the client names no other vertex. */
 static he_status weld_named(he_mesh *m, const he_arg *named, he_merge_place place, he_ids *kept,
                             uint64_t *moved, he_error *err)
 {
