@@ -1,11 +1,13 @@
-/* op.h - THE operation table: one row an edit, with everything the program knows about it.
+/* op.h - the operation table: one row for each edit, with all that the program knows about the
+ * edit.
  *
  * The rows drive the decoding of JSON bodies, GET /v1/operations, the OpenAPI schemas, the viewer's
- * tool panel, fuzzing, and the duties of the tests: every row succeeds once, every refusal it
- * declares is produced and no other, V, E and F change as declared, the checker passes, and a
- * refusal leaves the mesh bit-identical.
+ * tool panel, fuzzing, and the duties of the tests. For every row, tests must produce a success and
+ * each refusal that the row declares, and no other refusal. V, E and F must change as declared, the
+ * checker must pass, and a refusal must leave the mesh bit-identical.
  *
- * A row's name is also that of its C function (he_edge_split for edge_split) and of its tests. */
+ * The name of a row is also the name of its C function (he_edge_split for edge_split) and occurs in
+ * the names of its tests. */
 #ifndef HE_OP_OP_H
 #define HE_OP_OP_H
 
@@ -26,15 +28,15 @@ typedef enum he_param_type {
     /* red, green and blue, none below 0; with the flag HE_OPACITY a fourth number, the opacity, may
      * follow */
     HE_PARAM_COLOR,
-    HE_PARAM_MESH /* another mesh, which must not change meanwhile */
+    HE_PARAM_MESH /* another mesh, which must not change while the operation runs */
 } he_param_type;
 
 /* Flags of a parameter. */
 enum {
     HE_REQUIRED = 1,
     HE_NULLABLE = 2,  /* the element may be null in a request; the operation then gets HE_NONE */
-    HE_EXCLUSIVE = 4, /* `min` and `max` themselves are not allowed */
-    HE_RANGE = 8,     /* min and max apply */
+    HE_EXCLUSIVE = 4, /* the number may equal neither `min` nor `max` */
+    HE_RANGE = 8,     /* the number must be from `min` to `max` */
     HE_DERIVED = 16,  /* a number or flag whose default is computed from the mesh, as `doc` says */
     /* If a request gives this parameter, even an HE_OP_LOCAL operation takes time linear in the
      * whole mesh. */
@@ -43,17 +45,18 @@ enum {
     /* The operation also visits neighbours of the elements: all corners of the faces around a
      * vertex, all edges at the corners of a face or along a loop, both loops of an edge. */
     HE_REACHES = 64,
-    /* Each call walks around all elements that this parameter names: around the vertices and along
-     * the loops of faces and holes, and with HE_REACHES around all corners of their faces. A
-     * request with a list of operations is charged for these walks, since it may name one vertex of
-     * large degree again and again. */
+    /* The operation walks around each element that this parameter names: around a vertex, or along
+     * the loop of a face or hole; with HE_REACHES also around all corners of the adjacent faces.
+     * These walks count towards the work limit of a request that has a list of operations, because
+     * such a request may name a vertex of large degree again and again. */
     HE_WALKS = 256,
     HE_OPACITY = 512 /* a colour may have an opacity as its fourth number */
 };
 
 typedef struct he_param {
     const char *name;
-    /* Name under which a list is given; NULL unless `type` is HE_PARAM_ELEMENTS. */
+    /* The name of the member of a request that gives a list; NULL unless `type` is
+     * HE_PARAM_ELEMENTS. */
     const char *plural;
     he_param_type type;
     he_kind kind; /* kind of the elements */
@@ -81,13 +84,14 @@ typedef struct he_arg {
     int choice;
     double matrix[16];
     const char *text; /* value of an HE_PARAM_TEXT; borrowed */
-    /* Value of an HE_PARAM_COLOR, of which the first `count` numbers are given. */
+    /* The value of an HE_PARAM_COLOR: `count` numbers (3 or 4); the rest of the array is not
+     * used. */
     double color[4];
     const he_mesh *mesh; /* value of an HE_PARAM_MESH; borrowed; never the mesh that is edited */
 } he_arg;
 
-/* The type of a result. An operation gives results in addition to the sets that follow from its
- * delta. */
+/* The type of a result. Every operation also reports which elements it made, changed and deleted;
+ * that report follows from the delta (the log of writes) and is not declared here. */
 typedef enum he_result_type {
     HE_RESULT_ELEMENT,  /* one id, or null */
     HE_RESULT_ELEMENTS, /* a list of ids */
@@ -107,8 +111,9 @@ typedef struct he_result_row {
 
 enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
 
-/* The results of an operation, at the indices of their rows. he_op_run clears and fills them; in
- * the end the caller clears them. */
+/* The results of an operation: result i of the operation's row is in entry i of these arrays.
+ * he_op_run clears the arrays and fills them; the caller clears them when they are no longer
+ * needed. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
     /* Value of an HE_RESULT_ELEMENT, or the index of an HE_RESULT_CHOICE. */
@@ -117,11 +122,11 @@ typedef struct he_results {
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* On what an operation's time depends: on the elements that it touches (HE_OP_LOCAL), or on the
- * size of the whole mesh (HE_OP_WHOLE), so that it may take long. */
+/* Says what the time of an operation depends on: the number of elements that it touches
+ * (HE_OP_LOCAL), or the size of the whole mesh (HE_OP_WHOLE). */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
-/* Marks a change of V, E or F that depends on the mesh. */
+/* Stands for a change of V, E or F that depends on the mesh. */
 enum { HE_VARIES = -1000 };
 
 typedef struct he_op {
@@ -134,14 +139,15 @@ typedef struct he_op {
      * if the work can be cancelled, HE_CANCELLED; the list ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* change of the numbers of vertices, edges and faces, in this order */
-    /* The measured time of the operation relative to that of `transform`, rounded up: for each
-     * element of the mesh if the operation is HE_OP_WHOLE, else for each element of its lists. 0
-     * means 1. */
+    /* The measured time for one element, relative to that of `transform`, rounded up. Elements are
+     * those of the mesh if the operation is HE_OP_WHOLE, else those in the lists of its arguments.
+     * 0 means 1. */
     unsigned pace;
-    /* Returns the factor by which the mesh grows, approximately; NULL if it keeps its size. */
+    /* Returns the approximate factor by which the mesh grows; NULL if the mesh keeps its size. */
     double (*growth)(const he_arg *args);
-    /* Finds a refusal from the mesh's counts alone, before the operation begins; NULL if no refusal
-     * can be found in this way. HE_OK does not mean that the operation will succeed. */
+    /* Finds out, from the mesh's numbers of elements alone, whether the operation will be refused.
+     * HE_OK does not mean that the operation will succeed. NULL if the operation has no such
+     * check. */
     he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
     /* Performs the operation. Only he_op_run calls it. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
@@ -149,31 +155,32 @@ typedef struct he_op {
 
 size_t he_op_count(void);
 const he_op *he_op_at(size_t i);
-size_t he_op_number(const he_op *op); /* the number of the operation for he_op_at */
-/* The operation of this name; NULL if there is none. */
+size_t he_op_number(const he_op *op); /* returns the number i for which he_op_at(i) is `op` */
+/* Returns the operation with this name, or NULL if there is none. */
 const he_op *he_op_find(const char *name, size_t length);
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
 /* Returns true if the operation, with these arguments, takes time linear in the whole mesh. */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* Returns the factor by which the operation makes the mesh grow, approximately; 1 if it keeps its
- * size. */
+/* Returns the approximate factor by which the operation makes the mesh grow; 1 if the mesh keeps
+ * its size. */
 double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* Returns the operation's time relative to `transform`, at least 1. */
+/* Returns the operation's time for one element relative to that of `transform`, but at least 1. */
 unsigned he_op_pace(const he_op *op);
-/* Finds a refusal of the operation without looking at the elements it names. */
+/* Finds out, from the mesh's numbers of elements alone, whether the operation will be refused.
+ * HE_OK does not mean that the operation will succeed. */
 HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,
                                      const he_arg args[HE_OP_PARAMS], he_error *err);
-/* Returns true if the row declares this refusal, or if it is a lack of resources, which any row may
- * report. */
+/* Returns true if the row declares this refusal, or if the status means success, cancellation or a
+ * lack of memory or ids, which rows do not declare. */
 bool he_op_declares(const he_op *op, he_status status);
 
 /* Fills in an argument for every parameter: the parameter's default, with `given` false. */
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
-/* Applies one operation. The arguments are those of he_op_defaults, of which the caller has
- * replaced some. Ranges, groups and finiteness must have been checked; this is asserted. If the
- * operation is refused, or if a list of elements is given and empty, the mesh does not change; with
- * an empty list the results are null, 0 and empty lists. */
+/* Applies one operation. The caller fills `args` by he_op_defaults and then replaces the arguments
+ * that were given. It must have checked ranges, groups and finiteness; this is asserted. If the
+ * operation is refused, the mesh does not change. If a list of elements is empty, the mesh does not
+ * change either, and the results are null, 0 and empty lists. */
 HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                                  he_results *out, he_error *err);
 void he_results_clear(he_results *results);

@@ -6,13 +6,13 @@
 
 #include <math.h>
 
-/* The largest part of an edge's length that a bevel cuts off, so that no cut reaches the other end
- * of the edge. */
+/* The largest fraction of an edge's length that a bevel cuts off. It is below 1 so that no cut
+ * reaches the far end of the edge. */
 #define HE_BEVEL_MOST 0.99
 
-/* Returns where the edge of half-edge h is cut, as a fraction of its length from the origin of h:
- * that of the length `width` (above 0), but at most HE_BEVEL_MOST. An edge whose ends are at one
- * position is cut half-way. */
+/* Returns where a bevel cuts the edge of half-edge h, as a fraction of its length from the origin
+ * of h. The cut is at the distance `width` (above 0) from the origin, but the fraction is at most
+ * HE_BEVEL_MOST. An edge of length 0 is cut half-way. */
 static inline double he_bevel_part(const he_mesh *m, he_halfedge h, double width)
 {
     he_vec3 a = he_position(m, he_origin(m, h)), b = he_position(m, he_target(m, h));

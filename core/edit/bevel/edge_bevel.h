@@ -10,9 +10,9 @@ typedef struct he_bevel {
 } he_bevel;
 
 /* edge_bevel replaces an edge, whose ends have d1 and d2 edges, by a face: V + d1 + d2 - 4,
- * E + d1 + d2 - 3, F + 1; each end on the boundary adds V + 1, E + 1. Every other edge at the two
- * ends is cut at `width` from that end, and a new face joins the cuts. The bevelled edge and its
- * interior ends are deleted.
+ * E + d1 + d2 - 3, F + 1; each end on the boundary adds V + 1, E + 1. Every other edge that meets
+ * the edge at an end gets a new vertex at the distance `width` from that end. A new face joins the
+ * new vertices. The bevelled edge and those of its ends that are interior are deleted.
  *
  *        o           o             o           o
  *         \    f    /               \    f    /          the face f left of half-edge 2e, u -> v,
@@ -28,22 +28,23 @@ typedef struct he_bevel {
  *          /   g                      /            and the stubs from it to the cuts are sides.
  *                                    2---
  *
- * If an end on the boundary has several fans, the other fans stay at it; d1 and d2 count only the
- * edges of the fan that the bevelled edge belongs to.
+ * If an end on the boundary has several fans, only the fan of the bevelled edge changes, and d1 and
+ * d2 count only the edges of this fan.
  *
- * No cut is farther away than 0.99 of the length of its edge, so none reaches the other end; an
- * edge without length is cut half-way (bevel.h).
+ * No new vertex is farther from the end than 0.99 of the length of its edge, so none reaches the
+ * far end. An edge of length 0 is cut half-way (bevel.h).
  *
- * The new vertices come in the order of the new face, from the one after the edge counter-clockwise
- * about the origin of half-edge 2e on: 1 to 6 above. Each descends from the end whose edge was cut,
- * and has values between that end and the other end of its edge. The new edges come in the same
- * order. The old edges keep their ids at their other ends. The two long sides of the new face
- * descend from the bevelled edge, the stubs from the boundary edges that were cut, and the new face
- * from the face left of half-edge 2e. Half-edge 2e of a new edge runs along the new face, whose
- * stored half-edge leaves the first vertex.
+ * The new vertices are listed in the order of the new face. The first is the one that follows the
+ * edge counter-clockwise about the origin of half-edge 2e; in the drawing the order is 1 to 6. Each
+ * new vertex descends from the near end of the edge that was cut, and has values interpolated along
+ * that edge. The new edges are listed in the order of the new face as well. An edge that was cut
+ * keeps its id at its far end. The two long sides of the new face descend from the bevelled edge,
+ * the stubs from the boundary edges that were cut, and the new face from the face left of half-edge
+ * 2e. Half-edge 2e of a new edge runs along the new face, whose stored half-edge leaves the first
+ * vertex.
  *
  * `out` may be NULL; otherwise he_bevel_clear frees it. Takes time linear in the size of the fans
- * at both ends.
+ * at the two ends.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
  * Returns HE_BAD_VALUE unless width > 0.

@@ -15,11 +15,11 @@
  *          /       \                    /           \         from it.
  *        o           o                o               o
  *
- * Every edge at v is cut at `width` from v, but never beyond 0.99 of its length, so no cut reaches
- * the other end; an edge without length is cut half-way (bevel.h). Edges and faces keep their ids;
- * each face gets one more corner. Attributes of vertices and corners are interpolated along the
- * edges. The half-edge that the new face n stores leaves v, and half-edges 2e of the new edges run
- * along n.
+ * Every edge at v is cut at the distance `width` from v, but at most at 0.99 of its length, so no
+ * cut reaches the far end. An edge of length 0 is cut half-way (bevel.h). Edges and faces keep
+ * their ids; each face gets one more corner. Attributes of vertices and corners are interpolated
+ * along the edges. The half-edge that the new face n stores leaves v, and half-edges 2e of the new
+ * edges run along n.
  *
  * The ids of new vertices and edges are appended to `vertices` and `edges`, counter-clockwise from
  * v's stored half-edge on. Each output may be NULL.

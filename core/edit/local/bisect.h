@@ -1,4 +1,4 @@
-/* bisect.h - puts a vertex on an edge (edge_bisect), and removes it again (edge_join). */
+/* bisect.h - inserts a vertex into an edge (edge_bisect), and removes such a vertex (edge_join). */
 #ifndef HE_EDIT_LOCAL_BISECT_H
 #define HE_EDIT_LOCAL_BISECT_H
 
@@ -11,9 +11,10 @@
  *           o-----------o       --->       o-----o-----o
  *               e  2e ->                      e    e'
  *
- * Edge e keeps the end with the origin a of half-edge 2e; the new edge e' runs w to b with its
- * half-edge 2e' in the direction of 2e, and has e as its parent. w lies at t from a (0) to b (1).
- * Corner values at w are between those of the same face at a and b.
+ * Edge e keeps the end a, which is the origin of half-edge 2e. The new edge e' joins w and b; its
+ * half-edge 2e' has the direction of half-edge 2e, and its parent is e. Vertex w lies at the
+ * fraction t of the way from a to b. In each face, corner values at w are interpolated between the
+ * corners at a and b.
  *
  * `vertex` is w, and `edge` is e'; each may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
@@ -39,10 +40,9 @@ HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err);
 
-/* These functions are the COMMIT part of edge_bisect, which writes and cannot fail, for edits that
- * do their own checks and reserve their own memory. he_bisect_reservation adds what
- * he_bisect_commit will write to `need`; he_bisect_commit puts a vertex on edge e and returns
- * half-edge 2e' of the new edge e'. */
+/* Edits that consist of several steps use these functions after their own checks.
+ * he_bisect_reservation adds to `need` the memory for one bisection. he_bisect_commit inserts a
+ * vertex into edge e and returns half-edge 2e' of the new edge e'; it cannot fail. */
 void he_bisect_reservation(he_reservation *need);
 he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t);
 

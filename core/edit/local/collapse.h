@@ -22,28 +22,28 @@
  *              o                             o
  *              d                             d
  *
- * A triangle u, v, c beside the edge is deleted and its other sides become one edge: the side at v
- * stays, the side at u is merged into it. A face of more corners beside the edge loses the corner
- * u. All other edges and faces at u are moved to v.
+ * A triangle u, v, c beside the edge is deleted, and its sides u-c and v-c become one edge: the
+ * side at v stays, and the side at u is merged into it. A face beside the edge with more than three
+ * corners loses the corner u. All other edges and faces at u move to v.
  *
- * v moves to `to`, or if that is NULL to the point at t from u (0) to v (1). Interpolated
- * attributes of v are taken at t, or half-way between u and v if `to` is not NULL. An edge into
- * which another is merged gets the mean of the values of the two edges.
+ * Vertex v moves to `to`. If `to` is NULL, v moves to the point at the fraction t of the way from u
+ * to v. Interpolated attributes of v are taken at t, or half-way between u and v if `to` is not
+ * NULL. An edge into which another is merged gets the mean of the values of the two edges.
  *
  * The link condition (Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving edge contraction",
  * 1999), for polygons and boundaries:
  *
- *     L1  The common neighbours of u and v are the opposite corners of the triangles beside the
- *         edge, and those two differ.
+ * L1 The only common neighbours of u and v are the opposite corners of the triangles beside the
+ * edge, and these corners differ.
  *     L2  If both ends are on the boundary, so is the edge.
  *     L3  The two other sides of a triangle beside the edge are not both on the boundary.
  *     L4  No face except those beside the edge has both u and v as corners.
  *     L5  The edge is not one of a tetrahedron.
  *
- * If these hold, no two edges join the same vertices (L1, L3), and no vertex gets a closed fan
- * beside another fan. For an interior edge has an interior end (L2), whose only fan is opened at
- * the edge and inserted into the fan of the other end; and at a boundary edge two open fans are put
- * end to end, and their outer ends stay apart (L3).
+ * If L1 to L5 hold, no two edges join one pair of vertices afterwards (L1, L3), and no vertex gets
+ * a closed fan beside another fan. The reason: an interior edge has an interior end (L2). The only
+ * fan of this end is opened at the edge and inserted into a fan of the opposite end. At a boundary
+ * edge, two open fans are joined end to end, and their outer ends stay apart (L3).
  *
  * The output `vertex` is v and may be NULL. Takes at most time linear in the half-edges of the
  * mesh, and constant time if degrees are bounded.
@@ -51,7 +51,7 @@
  * Returns HE_LINK_CONDITION if one of L1 to L5 does not hold; the message names which.
  * Returns HE_BAD_VALUE unless 0 <= t <= 1.
  * Returns HE_NOT_FINITE if `to` is not finite.
- * Returns HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if the rules of marks.h forbid it.
+ * Returns HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if the rules of marks.h forbid the collapse.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);

@@ -16,12 +16,12 @@
  *                from o                       from o
  *
  * The part to the left of from -> to keeps the id and the values of f. The other part f' is new,
- * descends from f and contains half-edge `from`. At both ends of the diagonal the new corner copies
- * the values of the old one.
+ * descends from f and contains half-edge `from`. At each end of the diagonal, the new corner copies
+ * the values of the old corner.
  *
  * `edge` is the diagonal, and `face` is f'; each may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the face or a half-edge is not live.
- * Returns HE_NOT_A_CORNER if a half-edge is of another face.
+ * Returns HE_NOT_A_CORNER if a half-edge belongs to a face other than f.
  * Returns HE_SAME_CORNER if `from` and `to` are equal.
  * Returns HE_ADJACENT_CORNERS if the corners are neighbours.
  * Returns HE_DOUBLED_EDGE if an edge elsewhere joins the two vertices.
@@ -34,9 +34,9 @@ HE_NODISCARD he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he
  * f. */
 he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
 
-/* face_join is the inverse of face_split: V + 0, E - 1, F - 1. The edge is deleted, and the other
- * face is merged into f, the face of its half-edge 2e. Interpolated attributes of f become the mean
- * of the two faces' values.
+/* face_join is the inverse of face_split: V + 0, E - 1, F - 1. Edge e is deleted, and the face of
+ * half-edge 2e + 1 is merged into f, the face of half-edge 2e. Interpolated attributes of f become
+ * the mean of the two faces' values.
  *
  *           o-------o-------o             o-------o-------o
  *           |       ^       |             |               |
@@ -53,10 +53,10 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);
 
-/* These functions are the COMMIT part of face_split, which writes and cannot fail, for edits that
- * do their own checks and reserve their own memory. he_cut_reservation adds to `need` what cutting
- * off a face of `corners` corners will write. he_cut_commit returns half-edge 2e of the diagonal;
- * the new face is on the side of its twin. */
+/* Edits that consist of several steps use these functions after their own checks.
+ * he_cut_reservation adds to `need` the memory for cutting off a face of `corners` corners.
+ * he_cut_commit makes the diagonal and returns its half-edge 2e; the new face is on the side of the
+ * twin. It cannot fail. */
 void he_cut_reservation(uint32_t corners, he_reservation *need);
 he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to);
 

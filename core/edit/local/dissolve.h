@@ -16,7 +16,7 @@
  *        o-----------o               o-----------o
  *
  * This is the inverse of face_poke (poke.h). Corners keep their values; interpolated attributes of
- * f become the mean of the faces. The output `face` is f and may be NULL.
+ * f become the mean of the merged faces. The output `face` is f and may be NULL.
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_VERTEX if the vertex is on the boundary.

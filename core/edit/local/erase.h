@@ -2,8 +2,8 @@
  *
  * A deleted face leaves a hole: its half-edges keep their links and become boundary half-edges.
  * Edges that are left without a face are deleted, so holes that touch along an edge merge.
- * Half-edges around a vertex only disappear, so a walk around the vertex still visits all its fans;
- * the vertex may become a bow-tie.
+ * The half-edges that remain around a vertex keep their order, so a walk around the vertex still
+ * visits all its fans; the vertex may become a bow-tie.
  *
  *        o-------o-------o            o-------o-------o
  *        |       |       |            |       |       |
@@ -31,8 +31,8 @@ typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 
-/* edge_delete: deletes the faces beside the edges as face_delete does, and with these faces also
- * the edges themselves. A face beside two of the edges is deleted once. V varies, E falls by
+/* edge_delete: deletes the faces beside the edges as face_delete does. The edges then have no face,
+ * so they are deleted as well. A face beside two of the edges is deleted once. V varies, E falls by
  * `count` or more, F by the number of faces beside the edges. If the edit is refused, nothing
  * changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
@@ -40,8 +40,8 @@ HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t 
 HE_NODISCARD he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count,
                                       he_leftover leftover, he_error *err);
 
-/* vertex_delete: deletes the faces at v as face_delete does, then v itself; `leftover` says what
- * happens to other vertices that are left without an edge. An isolated vertex is simply deleted.
+/* vertex_delete: deletes the faces at v as face_delete does, then v itself. `leftover` says what
+ * happens to neighbours of v that are left without an edge.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live. */
 HE_NODISCARD he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover,
                                         he_error *err);

@@ -9,8 +9,8 @@
 enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
 
 /* face_collapse: a face of n corners is deleted, and its corners become one vertex at their mean: V
- * - (n - 1). If no face beside it is a triangle, E - n, F - 1; a triangle beside one of the sides
- * is deleted, too, with another edge.
+ * - (n - 1). If no neighbour of the face is a triangle, E - n, F - 1. A triangle that shares a side
+ * with the face is deleted as well, together with one more edge.
  *
  *        o---o---o---o               o----o----o
  *        |   |   |   |               |\   |   /|
@@ -20,9 +20,9 @@ enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
  *        |   |   |   |               |/   |   \|
  *        o---o---o---o               o----o----o
  *
- * The edit runs edge_collapse on the sides, in order. The corner a that the stored half-edge leaves
- * stays, and the corner after it is merged into it, again and again, until the last side is
- * collapsed. Interpolated attributes of a become the mean of all corners.
+ * The edit runs edge_collapse on the sides, in order. Corner a, which the stored half-edge of f
+ * leaves, stays. The corner that follows a is merged into a, again and again, until the last side
+ * is collapsed. Interpolated attributes of a become the mean of all corners.
  *
  * If the edit is refused, nothing changes. The output `vertex` is a and may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

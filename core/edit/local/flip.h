@@ -17,18 +17,18 @@
  *          o------>o                   o------>o              corners after b and a)
  *          a       d                   a       d
  *
- * The new corner of f at d gets the values of the corner of g at d; the new corner of g at c gets
- * those of the corner of f at c.
+ * The new corner of f at d gets the values of the corner of g at d. The new corner of g at c gets
+ * the values of the corner of f at c.
  *
  * At each of the four vertices a fan loses or gains an edge between two of its faces, so no fan
  * closes or opens.
  *
- * Takes time linear in the corners of both faces and the lesser degree of c and d.
+ * Takes time linear in the number of corners of f and g plus the smaller of the degrees of c and d.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
  * Returns HE_SAME_ENDS if c = d.
- * Returns HE_LOW_DEGREE if an interior end has degree 3 or less (an end on the boundary has at
- * least 3 edges, as the edge is interior, and keeps 2).
+ * Returns HE_LOW_DEGREE if an end of the edge is an interior vertex of degree 3 or less. (An end on
+ * the boundary has at least 3 edges, because the edge is interior, and so keeps at least 2.)
  * Returns HE_DOUBLED_EDGE if an edge joins c and d.
  * Returns HE_REPEATED_CORNER if d is on f already, or c on g.
  * Returns HE_FEATURE_EDGE if the edge is a feature.

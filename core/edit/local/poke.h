@@ -18,9 +18,9 @@
  *
  * The triangle of the stored half-edge keeps the id of f; the others descend from it. Half-edge 2e
  * of a new edge runs from the old corner to w. New ids are in the order of the loop, from the
- * stored half-edge on. w is at `position`, or at the mean of the corners if `position` is NULL.
- * Interpolated attributes of w, and of the corners at w, are the mean of the values around the
- * loop.
+ * stored half-edge on. Vertex w is at `position`, or at the mean of the corners if `position` is
+ * NULL. Interpolated attributes of w, and of the corners at w, are the mean of the values around
+ * the loop of f.
  *
  * `vertex` is w; the ids of new edges and faces are appended to `edges` and `faces`. Each of the
  * three may be NULL.
@@ -45,8 +45,8 @@ typedef struct he_poke {
         loop;
 } he_poke;
 
-/* Plans to fill the loop of `first`, and adds what he_poke_commit will write to `need`, which the
- * caller must reserve. he_poke_clear frees the plan.
+/* Plans to fill the loop of `first`, and adds the memory that he_poke_commit needs to `need`. The
+ * caller must reserve this memory. he_poke_clear frees the plan.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out,
                                     he_reservation *need, he_error *err);

@@ -20,11 +20,13 @@
  * The new edge lies in the two corners that separate the half-edges of u from those of v: the
  * corner clockwise before a, in the face of twin(a), and the corner clockwise before b, in the face
  * of twin(b). One of these corners may belong to a hole. Each of the two faces gets one more
- * corner. u lies where v does; half-edge 2e runs from u to v, so that edge_collapse of it is the
- * inverse. If v is a bow-tie, whole fans may go to u, too.
+ * corner. The new vertex u lies at the position of v. Half-edge 2e of the new edge e runs from u to
+ * v, so edge_collapse of this half-edge is the inverse. If v is a bow-tie, whole fans may move to
+ * u.
  *
- * u descends from v and has its values; the new edge has no parent. Each new corner has the values
- * of the corner in which the new edge lies. The outputs are u and the new edge; each may be NULL.
+ * Vertex u descends from v and has the values of v; the new edge has no parent. Each new corner has
+ * the values of the corner in which the new edge lies. The outputs are u and the new edge; each may
+ * be NULL.
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_SAME_CORNER if a and b are equal.

@@ -9,7 +9,8 @@ typedef struct he_vertex_parts {
     /* The edge u-v, then the edges from u to `left` and to `right`, if these are not null. */
     he_edge edges[3];
     he_face faces[2]; /* the new triangles left and right of the edge from u to v */
-    /* Number of new faces: 2, or 1 if `left` or `right` was null; `edges` has one entry more. */
+    /* The number of new faces: 2, or 1 if `left` or `right` was null. `edges` has one entry
+     * more. */
     unsigned sides;
 } he_vertex_parts;
 
@@ -28,9 +29,10 @@ typedef struct he_vertex_parts {
  *            right
  *
  * `left` and `right` are neighbours of v. The faces and edges around v that lie counter-clockwise
- * from left to right (a and b) go to the new vertex u, which lies at `to`; the others stay with v,
- * and v stays where it is. Two triangles fill the gap: u, v, left and v, u, right. edge_collapse of
- * u -> v is the exact inverse: it restores all links, except which half-edge an interior v stores.
+ * from left to right (a and b) move to the new vertex u, which lies at `to`. All other edges and
+ * faces stay with v, which does not move. Two triangles fill the gap: u, v, left and v, u, right.
+ * The inverse is edge_collapse of u -> v: it restores all links exactly, except which half-edge v
+ * stores if v is interior.
  *
  * If v is on the boundary, `left` or `right` may be null ({HE_NONE}) and then stands for the hole
  * at v. Afterwards the hole is on that side of the new edge, and there is a triangle on the other
@@ -46,7 +48,7 @@ typedef struct he_vertex_parts {
  * Returns HE_REPEATED_ELEMENT if left = right.
  * Returns HE_NOT_BOUNDARY if left or right is null and v is interior.
  * Returns HE_NO_SECTOR if no face lies counter-clockwise between left and right.
- * Returns HE_BAD_VALUE if both are null.
+ * Returns HE_BAD_VALUE if `left` and `right` are null.
  * Returns HE_NOT_FINITE if `to` is not finite.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */

@@ -15,10 +15,11 @@
  * the values of their vertices, under the attribute's name. The attribute of vertices is then
  * deleted, unless a vertex without corners has a value of it that is not the default.
  *
- * If corners already have an attribute of that name, it is never changed. If it has the same type,
- * and the corners at the merged vertices have the values of these vertices, nothing needs to be
- * moved. Otherwise the new attribute is called NAME_2, or NAME_ with the first higher number that
- * is free. If a corner attribute of such a name has these values already, no new one is made.
+ * If corners already have an attribute of that name, it is never changed. If it is of the vertex
+ * attribute's type, and the corners at the merged vertices have the values of these vertices,
+ * nothing needs to be moved. Otherwise the values move to a new attribute of corners called NAME_2,
+ * or NAME_ with the first higher number that is free. If an existing corner attribute with such a
+ * name already has these values, no new attribute is made.
  *
  * Marks (marks.h) are not moved. A vertex without corners cannot keep its value: the value of the
  * vertex it is merged into stays. If an attribute's rule is `default`, a vertex that has the
@@ -37,8 +38,8 @@ typedef struct he_keep_pairs {
 /* The values that a weld under way must keep: he_keep_begin fills this struct, he_keep_end clears
  * it. */
 typedef struct he_keeping {
-    /* The number of values that would be lost: values of merged vertices that differ from the value
-     * of the vertex they are merged into. */
+    /* The number of values that would be lost: those in which a merged vertex differs from the
+     * vertex into which it is merged. */
     uint64_t count;
     /* The bracket (edits that succeed or fail together) that encloses the weld; begun only if
      * `count` is above 0. */
@@ -52,9 +53,10 @@ typedef struct he_keeping {
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out,
                                      he_error *err);
-/* Must be called after the weld with its outcome `status`, which it returns. If the weld failed,
- * the moved values are put back. If it succeeded, `moved` (which may be NULL) gets the number of
- * values that were kept. */
+/* Ends what he_keep_begin began. The caller passes the outcome of the weld as `status`, which is
+ * also the return value. If the weld failed, the values at corners move back to the vertices. If
+ * the weld succeeded, `moved` (which may be NULL) gets the number of values that moved to
+ * corners. */
 he_status he_keep_end(he_mesh *m, he_keeping *kept, he_status status, uint64_t *moved);
 
 #endif

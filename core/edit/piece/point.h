@@ -11,8 +11,8 @@ static inline bool he_point_is_finite(he_vec3 p)
     return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
 }
 
-/* Interpolates from a (t = 0) to b (t = 1). Rounding never puts the result outside [a, b], so it is
- * finite if a and b are, and it is a if a = b. */
+/* Interpolates from a (t = 0) to b (t = 1). Rounding never puts the result outside [a, b], so the
+ * result is finite if a and b are finite, and equal to a if a = b. */
 static inline double he_between(double a, double b, double t)
 {
     double low = a < b ? a : b, high = a < b ? b : a;

@@ -16,9 +16,9 @@ enum { HE_SETTLE_LINKS = 1 };
  * leaves v. */
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving);
 
-/* Returns the end of a fan. `in` is a boundary half-edge, with which one of the fans at its target
- * begins; the result is the boundary half-edge that leaves the target and ends that fan. Takes time
- * linear in the size of the fan. */
+/* Returns the half-edge with which a fan ends. `in` is a boundary half-edge; a fan at its target
+ * begins with it. The result is the boundary half-edge that leaves the target and ends this fan.
+ * Takes time linear in the size of the fan. */
 he_halfedge he_ring_fan_end(const he_mesh *m, he_halfedge in);
 
 /* Makes `out` follow `in` in the loop of a hole. Both are boundary half-edges at one vertex: a fan

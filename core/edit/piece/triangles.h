@@ -13,8 +13,8 @@ typedef struct he_triangles {
 } he_triangles;
 
 /* Plans the triangles that fill the loop of half-edge `first`. Diagonals avoid existing edges.
- * Fails as he_triangulation_make does, which gets `work`; `work` may be NULL if only one loop is
- * filled. he_triangles_clear frees the plan. */
+ * Passes `work`, which may be NULL if only one loop is filled, to he_triangulation_make, and fails
+ * if that function fails. he_triangles_clear frees the plan. */
 HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first,
                                          he_triangulation_work *work, he_triangles *out,
                                          he_error *err);
