@@ -4,8 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* The elements that loop_bridge made, in the order of the loop of half-edge `a` from the origin of
- * `a` on. */
+/* The elements that loop_bridge made, in the order of the loop of half-edge `a`, beginning at the
+ * origin of `a`. */
 typedef struct he_bridge {
     /* The rungs, edges between the two loops: half-edge 2e of each leaves the loop of a. */
     he_ids edges;
@@ -23,22 +23,22 @@ typedef struct he_bridge {
  *        o------>o------>o  loop of a          o-------o-------o
  *
  * a and b are any boundary half-edges of the two loops; they decide only the order of the new
- * elements. The loops are those that the links of boundary half-edges make; at a bow-tie a loop may
- * pass a vertex more than once. At such a vertex the strip fills gaps between fans, so that these
- * become one fan. A fan is closed only if it is the only one of its vertex, so no vertex gets a
- * closed fan beside another fan.
+ * elements. A loop follows the links of boundary half-edges, so it may pass a bow-tie more than
+ * once. At such a vertex the strip fills gaps between fans, so that these fans become one. A fan is
+ * closed only if its vertex has no other fan, so no vertex gets a closed fan beside another fan.
  *
- * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n, rounded, of the other, and
- * s is chosen so that the sum of the squared distances of the pairs is smallest; of several such s
- * the lowest is taken. On loops of more than HE_TWIST_PAIRS corners the sum is over that many
- * corners, evenly spread. If a pairing would join two vertices that an edge joins already, the
- * pairing with the next smallest sum is tried: all pairings on loops of equal length that pass no
- * vertex twice, at most HE_TWIST_TRIES on others.
+ * LEAST TWIST. A number s decides how corners are paired: corner i of the loop of a is paired with
+ * corner s + i * m / n, rounded, of the loop of b. The chosen s is the lowest one with the smallest
+ * sum of squared distances between paired corners. If the loops have more than HE_TWIST_PAIRS
+ * corners, the sum is taken over HE_TWIST_PAIRS corners that are evenly spread. If a pairing would
+ * join two vertices that an edge joins already, the pairing with the next smallest sum is tried.
+ * All pairings may be tried if the loops have equal lengths and pass no vertex twice, otherwise at
+ * most HE_TWIST_TRIES.
  *
- * Triangles start at the pair of corners with the origin of a, and each next rung is the shorter of
- * two candidates (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line
- * definitions into polygonal element mosaics", 1978), but neither side of the strip gets half a
- * loop ahead of the other.
+ * If the strip consists of triangles, the first rung joins the pair of corners to which the origin
+ * of a belongs. Each further rung is the shorter of two candidates (H. N. Christiansen and T. W.
+ * Sederberg, "Conversion of complex contour line definitions into polygonal element mosaics",
+ * 1978), except that no side of the strip may get half a loop ahead of the opposite side.
  *
  * Old elements keep their ids; new ones have no parents.
  *
@@ -48,8 +48,8 @@ typedef struct he_bridge {
  * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
  * Returns HE_SAME_LOOP if a and b are on one loop.
  * Returns HE_SHARED_VERTEX if the loops share a vertex.
- * Returns HE_DOUBLED_EDGE if every pairing that was tried has a rung whose ends another edge or
- * rung joins already (the message names one in the pairing of least twist).
+ * Returns HE_DOUBLED_EDGE if in every pairing that was tried the ends of a rung are joined by an
+ * edge or by another rung. The message names such a rung of the pairing with the least twist.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *out,

@@ -13,8 +13,8 @@ typedef struct he_walls {
 
 /* edge_extrude extrudes boundary edges into walls: V + k + 1, E + 2k + 1, F + k for each chain of k
  * edges that follow each other along the boundary; V + k, E + 2k, F + k for a closed chain. Each
- * edge gets a quad on the side where it has no face, between it and a copy of it that is shifted by
- * the vector `by`. Neighbouring quads of a chain share a side.
+ * edge gets a quad on the side where it has no face, between the edge and a copy of the edge that
+ * is shifted by the vector `by`. Neighbouring quads of a chain share a side.
  *
  *                                        v1----->v2----->v3     the far edges
  *                                        |       |       |
@@ -24,11 +24,12 @@ typedef struct he_walls {
  *        o-------o-------o               |   f   |   g   |
  *                                        o-------o-------o
  *
- * New vertices descend from the vertices they are copies of and have their values; far edges
- * descend from the given edges. A quad descends from the face on the other side of its edge, and
- * has the values of that face and of its corners there. Half-edge 2e of a far edge runs along its
- * quad; that of a new edge between an old vertex and its copy leaves the old vertex. At a bow-tie
- * the order of the fans is changed if other fans are in a gap that is closed (ring.h).
+ * A new vertex descends from the vertex that it copies and has the values of that vertex; a far
+ * edge descends from the given edge that it copies. A quad descends from the face of the given
+ * edge, and has the values of that face and of the corners at that edge. Half-edge 2e of a far edge
+ * runs along its quad. Half-edge 2e of a new edge between an old vertex and its copy leaves the old
+ * vertex. At a bow-tie the order of the fans changes if the new faces close a gap in which other
+ * fans lie (ring.h).
  *
  * Deleting the new faces is the inverse.
  *
@@ -37,8 +38,8 @@ typedef struct he_walls {
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
- * Returns HE_BRANCHING_CHAIN if at a bow-tie more than one edge would arrive, or leave, along the
- * boundary.
+ * Returns HE_BRANCHING_CHAIN if more than one of the edges arrives at a bow-tie along the boundary,
+ * or more than one leaves it.
  * Returns HE_CLOSED_FAN if a vertex that has other fans would get a closed fan.
  * Returns HE_NOT_FINITE if a position is not finite.
  * Returns HE_NO_MEMORY if memory is out.

@@ -26,11 +26,11 @@ typedef struct he_filled {
  *        o-----o-----o            o-----o-----o          o-----o-----o          o-----o-----o
  *                                    polygon                  fan                triangulate
  *
- * The loop is the one that the links of boundary half-edges make: at a bow-tie it may lead from one
- * fan to another. The new faces fill the gap between these fans, which become one fan. A fan is
- * closed only if it is the only one of its vertex, so no vertex gets a closed fan beside another
- * fan. Old elements keep their ids; the new faces and the new vertex have no parents. With
- * HE_FILL_POLYGON the new face stores h.
+ * The loop follows the links of boundary half-edges, so at a bow-tie it may lead from one fan to
+ * another. The new faces fill the gap between these fans, which become one fan. A fan is closed
+ * only if its vertex has no other fan, so no vertex gets a closed fan beside another fan. Old
+ * elements keep their ids; the new faces and the new vertex have no parents. With HE_FILL_POLYGON
+ * the new face stores h.
  *
  * `out` may be NULL; otherwise he_filled_clear frees it.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

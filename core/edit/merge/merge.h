@@ -1,7 +1,7 @@
 /* merge.h - merges vertices, and the boundary edges that then coincide.
  *
- * The caller says which vertices are merged into which; which edges and faces are merged or deleted
- * follows from that:
+ * The caller says which vertices are merged into which. This decides which edges and faces are
+ * merged or deleted:
  *
  *     o---o   o---o              o---o---o        The vertices of each side become one, pair by
  *     |   a   c   |              |   |   |        pair: c is merged into a, d into b. The edges a-b
@@ -11,15 +11,15 @@
  *
  *  - An edge whose ends become one is deleted, and the faces beside it lose a corner. A face left
  *    with fewer than three corners is deleted.
- *  - If several faces then run through the same corners in the same order, only the face with the
- * lowest id stays.
+ *  - If several faces then pass equal corners in equal order, only the face with the lowest id
+ *    stays.
  *  - Edges without a face are deleted; so are vertices left without an edge, except those into
  *    which others were merged.
  *
  * Corner values follow their half-edges. Values in which merged vertices differ move to their
- * corners (keep.h); an edge into which others are merged keeps its attribute values. The delta (the
- * record of the edit) lists the vertices and edges that were merged, and the faces that were
- * deleted because they equal another. */
+ * corners (keep.h). An edge into which others are merged keeps its attribute values. The delta (the
+ * log of the edit's writes) lists the vertices and edges that were merged, and the faces that were
+ * deleted because they are equal to another face. */
 #ifndef HE_EDIT_MERGE_MERGE_H
 #define HE_EDIT_MERGE_MERGE_H
 

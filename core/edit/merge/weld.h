@@ -1,4 +1,4 @@
-/* weld.h - welds vertices: some given ones, or all that are close together. */
+/* weld.h - merges listed vertices (vertex_weld), or all vertices that are close together (weld). */
 #ifndef HE_EDIT_MERGE_WELD_H
 #define HE_EDIT_MERGE_WELD_H
 
@@ -14,9 +14,9 @@
  *     o---o       o---o               o---o---o          o---o           o---o    edge (g too)
  *
  * merge.h says which other elements are merged or deleted. The vertex with the lowest id moves to
- * the mean of all, or stays where it is if `place` is HE_MERGE_INTO. `into`, which may be NULL,
- * gets the vertex that stays. `moved`, which may be NULL, gets the number of values that were moved
- * from vertices to corners (keep.h).
+ * the mean of the given vertices, or does not move if `place` is HE_MERGE_INTO. `into`, which may
+ * be NULL, gets the vertex that stays. `moved`, which may be NULL, gets the number of values that
+ * were moved from vertices to corners (keep.h).
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
@@ -29,10 +29,10 @@ HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size
 
 /* weld: merges all vertices that are close together. Vertices are visited in rising order of ids.
  * Each vertex is merged into the first earlier vertex that stays and is no farther away than
- * `tolerance`; if there is no such vertex, the visited one stays, and later vertices may be merged
- * into it. So all vertices that become one lie in a ball around the one with the lowest id, and a
- * chain of vertices with small gaps does not become one vertex. With a tolerance of 0 vertices at
- * equal positions are merged.
+ * `tolerance`. If there is no such vertex, the visited vertex stays, and later vertices may be
+ * merged into it. So all vertices that become one lie in a ball around the vertex with the lowest
+ * id. A chain of vertices with small gaps does not become one vertex. With a tolerance of 0, only
+ * vertices at equal positions are merged.
  *
  * The ids of the vertices into which others were merged are appended to `into`, in rising order.
  * Takes time linear in the number of vertices, with the grid of point_grid.h. Fails as vertex_weld

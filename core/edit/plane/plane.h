@@ -1,8 +1,9 @@
 /* plane.h - decides on which side of a plane each vertex of a mesh lies.
  *
- * Every vertex is measured once, and all decisions of an edit use these numbers: two faces never
- * disagree about a vertex they share. A vertex within the tolerance counts as in the plane.
- * Distances are positive on the side the normal points to. */
+ * The distance of every vertex from the plane is computed once, and an edit bases all its decisions
+ * on these numbers. So the decisions about two faces never contradict each other at a common
+ * vertex. A vertex within the tolerance counts as in the plane. Distances are positive on the side
+ * the normal points to. */
 #ifndef HE_EDIT_PLANE_PLANE_H
 #define HE_EDIT_PLANE_PLANE_H
 
@@ -21,19 +22,21 @@ typedef struct he_sides {
     /* Distance of each vertex from the plane, times `scale`; exactly 0 for vertices in the plane
      * and for deleted ones. */
     double *distance;
-    /* The number of vertices that were issued when the distances were measured. Newer vertices
-     * count as in the plane, because only cuts along the plane make them. */
+    /* The number of vertices that were issued when the distances were computed. Vertices with
+     * higher ids count as lying in the plane, because only cuts along the plane make them. */
     uint32_t count;
-    /* The factor that coordinates are multiplied with: a power of two that brings the point and all
-     * vertices that have edges within [-1, 1], so that nothing overflows or underflows. */
+    /* The factor by which coordinates are multiplied: a power of two that brings the coordinates of
+     * the plane's point, and of all vertices that have edges, into [-1, 1], so that nothing
+     * overflows or underflows. */
     double scale;
 } he_sides;
 
-/* Measures the vertices against a plane. If plane->tolerance is NULL, the tolerance is 1e-9 of the
- * longest side of the box around the vertices that have edges, but no less than 2^-48 of their
- * coordinates along the normal, below which distances are rounding noise. An isolated vertex,
- * however far away, has no influence on the tolerance. A vertex that was put where an edge crosses
- * the plane is in the plane when it is measured again. he_sides_clear frees the result.
+/* Computes the distances of all vertices from a plane. If plane->tolerance is NULL, the tolerance
+ * is 1e-9 of the longest side of the bounding box of the vertices that have edges. It is larger if
+ * the coordinates are so large that distances have a larger rounding error (about 2^-48 of the
+ * coordinates along the normal). Isolated vertices do not influence the tolerance. A vertex that
+ * was put where an edge crosses the plane counts as in the plane in a later call. he_sides_clear
+ * frees the result.
  * Returns HE_NOT_FINITE if the point, normal or tolerance is not finite.
  * Returns HE_BAD_VALUE if the normal is zero or the tolerance is negative.
  * Returns HE_NO_MEMORY if memory is out. */

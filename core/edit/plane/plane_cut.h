@@ -12,8 +12,8 @@ typedef struct he_cut_parts {
     /* `edges_split` and `faces_split`: numbers of edges and of faces that were split */
     uint32_t edges_split, faces_split;
     uint32_t faces_deleted; /* number of deleted faces, parts of split faces included */
-    /* The faces that close the cut, in rising order of the half-edges with which their loops
-     * begin. */
+    /* The faces that close the cut, sorted by the lowest id of a half-edge of the cut that each of
+     * them closes. */
     he_ids caps;
 } he_cut_parts;
 
@@ -29,12 +29,12 @@ typedef struct he_cut_parts {
  *       |           |/                a hole                     capped
  *       o-----------o
  *
- * Every face belongs to exactly one side, so the results for both sides together make up the whole
- * mesh. A face in the plane belongs to the side below if it faces up, like the top of a solid below
- * the plane, else to the side above.
+ * Every face belongs to exactly one side, so the parts kept by the two values of `keep` make up the
+ * whole mesh. A face in the plane belongs to the side below if it faces up, like the top of a solid
+ * below the plane, else to the side above.
  *
- * With `cap` each loop of the cut is closed by one polygon, even if a loop lies inside another one:
- * the signed areas of such polygons, and the volume of the mesh, are still right.
+ * With `cap` each loop of the cut is closed by one polygon, even if one loop lies inside another.
+ * The signed areas of such polygons, and the volume of the mesh, are still correct.
  *
  * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_cut_parts_clear frees
  * it.

@@ -24,18 +24,18 @@ typedef struct he_plane_parts {
  *        |.      |       |              .                         edge in the plane is left alone
  *       .o-------o-------o
  *
- * If faces are listed, only these are split. An edge between a listed face and another one still
- * gets its vertex, so the other face gets one more corner.
+ * If faces are listed, only these are split. An edge between a listed face and an unlisted face is
+ * bisected as well, so the unlisted face gets one more corner.
  *
  * Afterwards no face (or, if faces are listed, no listed one) has corners on both sides of the
  * plane, and splitting again along the same plane changes nothing. A plane that only touches a
  * face, at corners or along sides, does not cross it.
  *
- * Edges are split in the order of their ids, then faces in the order of theirs. A diagonal of a
- * face is made after the diagonals that it separates from the face's stored half-edge. An edge
- * keeps its id at the end with the origin of half-edge 2e. A face keeps its id on the part with the
- * stored half-edge's origin and the side that leaves it; the other parts descend from it. Diagonals
- * and vertices have no parents.
+ * Edges are split in the order of their ids, then faces in the order of their ids. A diagonal of a
+ * face is made after the diagonals that it separates from the face's stored half-edge. The part of
+ * an edge at the origin of half-edge 2e keeps the id of the edge. The part of a face with the
+ * stored half-edge keeps the id of the face; the other parts descend from the face. Diagonals and
+ * new vertices have no parents.
  *
  * A NULL list of faces stands for all faces.
  *

@@ -8,12 +8,11 @@
  * Testing one corner against one side counts as one step. */
 enum { HE_INSET_STEPS = 1 << 22 };
 
-/* How far an inset goes, one of two ways. With a `factor` above 0 and below 1, each corner on the
- * rim goes this fraction of the way to the mean of its face's corners. In a region, the mean is
- * computed for each of its faces at the corner, and the corner goes towards the mean of these
- * points. With factor 0 the sides of the rim move in parallel by `distance`, within the planes of
- * their faces; a corner so sharp that it would have to move farther than four times `distance`
- * moves less far than that. */
+/* Says how far an inset goes, in one of two ways. With a `factor` above 0 and below 1, each corner
+ * on the rim goes this fraction of the way to the mean of the corners of its face. If a corner
+ * belongs to several faces of a region, it goes towards the mean of these means. With factor 0, the
+ * sides of the rim move in parallel by `distance`, within the planes of their faces. At a sharp
+ * corner, where the corner would have to move farther than four times `distance`, it moves less. */
 typedef struct he_inset_width {
     double factor, distance;
 } he_inset_width;
@@ -30,18 +29,17 @@ typedef struct he_inset_width {
  *        o---------------o            o---------------o
  *
  * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r, E
- * + 2r, F + r. The listed faces keep their ids and are the inner ones; vertices inside a region
- * stay where they are.
+ * + 2r, F + r. The listed faces keep their ids and become the inner faces; vertices inside a region
+ * do not move.
  *
  * New vertices copy the values of the vertices they descend from. Interpolated attributes get the
- * values that the region has at the new position. To find these, each face is divided into
- * triangles, each of two neighbouring corners and the mean of all corners; values are interpolated
- * in that triangle at the old corner which is nearest to the new position.
+ * values that the region has at the new position. To find these values, each face is divided into
+ * triangles, each of two neighbouring corners and the mean of all corners. Of the triangles at the
+ * old corner, the one nearest to the new position is chosen, and values are interpolated in it.
  *
- * The motion of all corners is scaled down by one factor if necessary: they go at most 99 % of the
- * way to the first point at which, within one face of the region, a side would have no length, a
- * corner would flip, or a reflex corner would hit another side. A face that is not planar is
- * projected along its normal.
+ * The motion of all corners is scaled down by one factor if necessary. It ends at 99 % of the time
+ * at which, within one face of the region, a side would have no length, a corner would flip, or a
+ * reflex corner would hit another side. A face that is not planar is projected along its normal.
  *
  * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees
  * it.

@@ -1,10 +1,10 @@
-/* region.h - detaches faces from their surroundings by a ring of quads along their rim. Both
- * face_extrude and face_inset do this; these edits differ in where they put the new vertices.
+/* region.h - detaches faces from their surroundings by a ring of quads along their rim. The edits
+ * face_extrude and face_inset do this; they differ in where they put the new vertices.
  *
- * A region is a set of faces connected across edges. Its rim consists of those of its half-edges
- * whose twins belong to other faces or to a hole. Each corner on the rim gets a new vertex, which
- * takes its place in the faces of the region, and each rim half-edge gets a quad between the old
- * and the new vertices:
+ * A region is a set of faces connected across edges. Its rim consists of the half-edges of these
+ * faces whose twins belong to other faces or to a hole. Each vertex on the rim gets a new vertex,
+ * which replaces it in the faces of the region. Each rim half-edge gets a quad between the old and
+ * the new vertices:
  *
  *        o-------o-------o               o-------o-------o
  *        |       |       |               | \     |     / |
@@ -26,12 +26,13 @@
  *     new edge 2i + 1   its half-edge 2e runs from a to the new vertex
  *     new face i        the quad, whose stored half-edge is the rim's; descends from the face there
  *
- * Corner values follow the corners of the region's faces; a quad has copies of the values of the
- * corners beside it.
+ * The corners of the region's faces keep their values; the corners of a quad copy the values of the
+ * corners beside the quad.
  *
- * The fans of a bow-tie at the rim stay as they are: at an old vertex two quads take the place of
- * the region's faces, and at a new vertex they close the fan. So no two edges join the same
- * vertices, and no vertex gets a closed fan beside another fan.
+ * The fans of a bow-tie at the rim stay open or closed as they were: at an old vertex two quads
+ * replace the region's faces, and at the new vertex these quads close the fan of the region's
+ * faces. So no two edges join one pair of vertices, and no vertex gets a closed fan beside another
+ * fan.
  *
  * Returns HE_NO_RIM naming a face, if a region is a whole closed component.
  * Returns HE_RIM_MEETS_ITSELF naming a vertex, if the rim of one region passes it twice.
@@ -49,15 +50,16 @@ typedef struct he_region {
     /* Maps each vertex of the rim to the index in `rim` of the rim half-edge that leaves it. */
     he_idmap corners;
     he_ids rim;
-    /* `inner`: half-edges inside the region, other than those of the rim, that leave a rim vertex;
-     * `inner_at`: the index of that vertex in `corners`. */
+    /* `inner` lists the half-edges inside the region that leave vertices of the rim, without the
+     * rim's own half-edges. inner_at.ids[i] is the index in `corners` of the vertex that
+     * inner.ids[i] leaves. */
     he_ids inner, inner_at;
 } he_region;
 
-/* How the interpolated values of a new vertex are computed, as a weighted mean. Half-edge `in`
- * leaves the old vertex from which the new one descends; `mean` is the weight of the mean of the
- * corners of the face of `in`. `side` is the weight of vertex `beside`. The old vertex has weight 1
- * - mean - side. */
+/* Says how the interpolated values of a new vertex are computed, as a weighted mean of three
+ * values. Half-edge `in` leaves the old vertex, from which the new vertex descends. The mean of the
+ * corners of the face of `in` has the weight `mean`, the vertex `beside` has the weight `side`, and
+ * the old vertex has the weight 1 - mean - side. */
 typedef struct he_region_mix {
     he_halfedge in;
     he_vertex beside;
@@ -84,10 +86,10 @@ typedef struct he_region_parts {
 
 void he_region_parts_clear(he_region_parts *parts);
 
-/* Detaches the listed faces from their surroundings: each by itself, or with `joined` each set of
- * faces that are connected across edges as one region. If the edit is refused, nothing changes.
- * `out` may be NULL; otherwise he_region_parts_clear frees it. Takes time linear in the elements at
- * the corners of the faces.
+/* Detaches the listed faces from their surroundings: each face as a region of its own or, with
+ * `joined`, each set of faces that are connected across edges as one region. If the edit is
+ * refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees it. Takes time
+ * linear in the elements at the corners of the faces.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF or HE_LOCKED_ELEMENT in the cases that the head of

@@ -27,8 +27,8 @@ typedef struct he_appended {
  * attribute that only the other mesh has is added; old elements have its default. An attribute
  * whose domain is the mesh itself is added only if this mesh has none of that name.
  *
- * MATERIALS. Materials of the other mesh that equal one of this mesh are not added again; others
- * are added. If this mesh has a different material of that name, the added one is called NAME_2,
+ * MATERIALS. A material of the other mesh is added unless this mesh has an equal material of that
+ * name. If this mesh has a different material of that name, the added material is called NAME_2,
  * NAME_3 and so on, and the new faces use the new name.
  *
  * `other` must not be `m`. `out` may be NULL; otherwise he_appended_clear frees it.

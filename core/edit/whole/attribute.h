@@ -1,9 +1,9 @@
 /* attribute.h - edits of attribute columns, and of their values.
  *
- * These edits are recorded and undone bit for bit like all others: adding or dropping a column
- * makes one record, which keeps the column, and changing a value makes one record for each of its
- * 32-bit words. A value is a row of the column: as many little-endian numbers of the column's type
- * as it has components.
+ * Like all edits, these are recorded in the delta and can be undone bit for bit. Adding or dropping
+ * a column makes one record, which keeps the column; changing a value makes one record for each of
+ * its 32-bit words. A value is a row of the column: as many little-endian numbers of the column's
+ * type as it has components.
  *
  * Every function may return HE_NO_MEMORY; the mesh is then as it was. */
 #ifndef HE_EDIT_WHOLE_ATTRIBUTE_H
@@ -11,9 +11,10 @@
 
 #include "mesh/column.h"
 
-/* Adds a column to the mesh, replacing one of the same domain and name. On success the mesh owns
- * `takes`. If the column has fewer rows than the mesh has elements, the missing rows get its
- * default. Rows of deleted elements must hold the default already: see he_attribute_settle. */
+/* Adds the column `takes` to the mesh; it replaces a column with its domain and name. On success
+ * the mesh owns `takes`. If the column has fewer rows than the mesh has elements, the missing rows
+ * get its default. Rows of deleted elements must hold the default already: see
+ * he_attribute_settle. */
 HE_NODISCARD he_status he_attribute_put(he_mesh *m, he_column *takes, he_error *err);
 /* Removes an attribute column from the mesh. */
 HE_NODISCARD he_status he_attribute_drop(he_mesh *m, const he_column *column, he_error *err);

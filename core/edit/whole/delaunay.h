@@ -9,9 +9,9 @@
  * forth. */
 #define HE_DELAUNAY_EPSILON 1e-9
 
-/* The edit is refused if it takes more than this number of steps, times the number of live edges.
- * Testing an edge is one step, and so is visiting one half-edge around a vertex in search of an
- * edge. */
+/* The edit is refused if it takes more than this number of steps for each live edge. Testing an
+ * edge is one step. Visiting a half-edge around a vertex, in search of an edge, is also one
+ * step. */
 enum { HE_DELAUNAY_STEPS = 512 };
 
 /* delaunay flips edges until the triangles are as round as possible; no element is made or deleted.
@@ -37,19 +37,22 @@ enum { HE_DELAUNAY_STEPS = 512 };
  *
  * These edges are never flipped: edges on the boundary or beside a face of more than three corners,
  * feature edges, locked edges and edges beside a locked face (marks.h). If he_edge_flip refuses an
- * edge, the edge is tried again after other flips. At the end every other tested edge satisfies the
- * criterion, and if no edges were listed, a second call changes nothing.
+ * edge, the edge is tried again after other flips. At the end, all tested edges except these
+ * satisfy the criterion. If no edges were listed, a second call changes nothing.
  *
- * The algorithm ends. Angles are those of the triangles in space, so a flip across a bent edge
- * changes the surface; but it never makes it larger: flattened about its edge the kite is convex
- * and keeps its area, and bending it back shortens c-d, which shrinks both new triangles as the
- * angles opposite to c-d sum to less than pi. So if the same triangles ever came back, all flips in
- * between would have been across flat edges; those are flips within one flat surface, where the
- * triangulations never repeat (A. I. Bobenko and B. A. Springborn, "A discrete Laplace-Beltrami
- * operator for simplicial surfaces", 2007). Since their number may be quadratic, work is limited.
+ * The algorithm ends. Angles are those of the triangles in space. A flip of an edge at which the
+ * two triangles are not coplanar changes the surface, but never increases its area. To see this,
+ * unfold the two triangles into a plane: the kite is then convex. The flip does not change its
+ * area. Folding it back shortens c-d, which shrinks the two new triangles, because their angles
+ * opposite to c-d sum to less than pi. So if a set of triangles ever occurred again, all flips in
+ * between would have left the area as it was, so they would have been flips inside flat parts of
+ * the surface. There, no triangulation ever repeats (A. I. Bobenko and B. A. Springborn, "A
+ * discrete Laplace-Beltrami operator for simplicial surfaces", 2007). The number of flips may be
+ * quadratic, so the work is limited.
  *
  * Edges and faces keep their ids; attributes follow the rules of edge_flip. `flips`, which may be
- * NULL, gets the edges in the order they were flipped, and an edge once for each flip.
+ * NULL, gets the flipped edges in the order of the flips; an edge is listed once for each of its
+ * flips.
  *
  * If the edit is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list

@@ -17,11 +17,11 @@
  *         |       |       |                | '-----|-----' |
  *         o-------o-------o                o-------o-------o
  *
- * All ids are new, in the order of the old elements from which the new ones are made, and the old
- * elements are deleted. Half-edge 2e of a new edge runs to the face that was left of half-edge 2e
- * of the old edge, which is its parent. The values of edges follow the rules of their attributes;
- * all other attributes have their defaults. The dual of the dual has the links of the original
- * mesh.
+ * All ids are new: new elements are made in the order of the old elements that they replace, and
+ * the old elements are deleted. The parent of a new edge is the old edge that it crosses. Half-edge
+ * 2e of the new edge ends at the vertex that replaces the face left of half-edge 2e of the old
+ * edge. The values of edges follow the rules of their attributes; all other attributes have their
+ * defaults. The dual of the dual has the links of the original mesh.
  *
  * Returns HE_BOUNDARY_EDGE unless the mesh is closed.
  * Returns HE_ISOLATED_VERTEX if a vertex is isolated.

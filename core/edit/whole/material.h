@@ -1,8 +1,8 @@
 /* material.h - makes, changes and deletes materials, and assigns them to faces.
  *
- * These edits are recorded and undone bit for bit: each changed entry of the table of materials
- * makes one record. If the face attribute `material` has no label for a name yet, its column is
- * replaced by one that has the label. */
+ * These edits are recorded in the delta and can be undone bit for bit: each changed entry of the
+ * table of materials makes one record. If the face attribute `material` has no label for a name
+ * yet, its column is replaced by one that has the label. */
 #ifndef HE_EDIT_WHOLE_MATERIAL_H
 #define HE_EDIT_WHOLE_MATERIAL_H
 

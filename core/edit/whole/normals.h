@@ -12,8 +12,8 @@
  * A normal is multiplied with the inverse transpose of the map's linear part and scaled to length 1
  * (J. D. Foley, A. van Dam, S. K. Feiner and J. F. Hughes, "Computer Graphics: Principles and
  * Practice", 1990, 5.7), computed by cofactors, which also works for a map that flattens everything
- * into a plane. A normal that has no direction before or afterwards stays as it is, and so do all
- * normals if the map is a translation. */
+ * into a plane. A normal that is zero, or that the map makes zero, is not changed. A translation
+ * changes no normals. */
 typedef struct he_normals {
     he_mesh *m;
     const uint32_t *vertices; /* the vertices that the map moves; NULL: all vertices */

@@ -4,10 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* reverse reverses the orientation of faces: V, E, F + 0. Every listed face, or every face if
- * `faces` is NULL, runs the other way round. No element is made or deleted and edges keep their
- * ends, so the origin of half-edge 2e stays the same: the two half-edges of an edge exchange their
- * faces.
+/* reverse reverses the orientation of faces: V, E, F + 0. The loop of every listed face, or of
+ * every face if `faces` is NULL, is reversed. No element is made or deleted. The half-edges of an
+ * edge keep their origins, and exchange their faces.
  *
  *         c                        c
  *         o                        o
@@ -23,14 +22,14 @@
  * every bit.
  *
  * Only whole components can be reversed. Otherwise two faces would run along their common edge in
- * the same direction, or two fans of a bow-tie would have different orientations.
+ * one direction, or two fans of a bow-tie would have different orientations.
  *
- * If the edit is refused, nothing changes. Locked elements (marks.h) do not hinder it, because they
- * keep their corners and ends.
+ * If the edit is refused, nothing changes. Locked elements (marks.h) are allowed, because they keep
+ * their corners and ends.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
- * Returns HE_ORIENTATION naming an edge, if its other face is not listed.
- * Returns HE_BOWTIE naming a vertex, if one of its fans is not listed.
+ * Returns HE_ORIENTATION naming an edge, if only one of its two faces is listed.
+ * Returns HE_BOWTIE naming a vertex, if one of its fans is listed and another one is not.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *err);
 

@@ -13,9 +13,9 @@
  *           o-----v-----o       --->        o-----v u-----o      u lies where v does, and descends
  *          /     / \     /                 /     / \     /       from it.
  *
- * The fan of the half-edge that v stores keeps v; each other fan gets a new vertex, in the order of
+ * The fan of the half-edge that v stores keeps v. Each other fan gets a new vertex, in the order of
  * the fans around v. A vertex with one fan or none is not changed. Corners keep their values, and
- * the new vertices have those of v.
+ * the new vertices have the values of v.
  *
  * vertex_weld is the inverse. The ids of the new vertices are appended to `made`, which may be
  * NULL. If the edit is refused, nothing changes.

@@ -4,10 +4,11 @@
 
 #include "mesh/mesh.h"
 
-/* transform maps vertices affinely; no element is made or deleted. Each listed vertex p moves to
- * the first three rows of matrix * (p, 1); `matrix` is row-major and its last row must be 0 0 0 1.
- * A NULL list means every live vertex. Attributes `normal` are transformed, too (normals.h), other
- * attributes are not. A matrix that mirrors does not reverse faces.
+/* transform maps vertices affinely; no element is made or deleted. The new position of a listed
+ * vertex p is given by the first three numbers of matrix * (p, 1); `matrix` is row-major and its
+ * last row must be 0 0 0 1. If `vertices` is NULL, all live vertices are mapped. Attributes called
+ * `normal` are transformed as well (normals.h); no other attribute is. Faces are not reversed, even
+ * if the matrix is a reflection.
  *
  *     | m0  m1  m2  m3  |   | x |
  *     | m4  m5  m6  m7  | * | y |

@@ -17,11 +17,11 @@
  *           o         o                     o         o
  *
  * Concave faces are handled correctly; triangulation.h says which triangles are chosen. The
- * triangle of the stored half-edge keeps the id of its face, the others descend from it; a face
- * that is a triangle is not changed.
+ * triangle of the stored half-edge keeps the id of its face; the other triangles descend from the
+ * face. A face that already is a triangle is not changed.
  *
  * The ids of new elements are appended to `edges` and `faces`. A face that has no area or
- * intersects itself is triangulated, too, but then some of its triangles have no area or are
+ * intersects itself is triangulated as well, but then some of its triangles have no area or are
  * flipped; the ids of such faces are appended to `degenerate`. Each of the three lists may be NULL.
  *
  * If the edit is refused, nothing changes.
