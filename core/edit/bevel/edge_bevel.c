@@ -274,8 +274,8 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
         }
         he_set_origin(m, h, cut_at(end, i));
         /* The first new vertex after the hole must store a boundary half-edge (invariant I8 of
-         * mesh.h). This is a half-edge of the new edge that joins it to the end of the bevelled
-         * edge. */
+         * mesh.h). That half-edge belongs to the new edge between the new vertex and the end of the
+         * bevelled edge. */
         bool stub = end->gap > 0 && i == end->gap;
         he_halfedge stored = stub ? he_next(m, he_twin(h)) : h;
         he_set_vertex_halfedge(m, cut_at(end, i), stored);

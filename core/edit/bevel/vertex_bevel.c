@@ -79,8 +79,9 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
     he_vertex w = v;
     he_face f = he_new_face(m);
     do {
-        /* After the last edge at v, the first edge follows again, and its fraction is known. Vertex
-         * v moves after this loop, because the loop computes points from the position of v. */
+        /* After the last edge at v, the first edge follows again; at_first is where it is cut.
+         * Vertex v itself moves only after this loop, because the loop computes points from the
+         * position of v. */
         he_halfedge following = he_swing_ccw(m, h);
         double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);

@@ -141,8 +141,8 @@ static double twist(const plan *p, uint32_t s)
 /* The strip is made face by face. So far it has used i of the n edges of one loop and j of the m
  * edges of the other loop. Returns true if the fractions i / n and j / m differ by less than 1/2.
  * While this holds, a loop that is behind can always advance, because each loop has at least three
- * edges. It also ensures that no two rungs join one pair of corners: that would need a whole round
- * on one loop while the other loop does not advance. */
+ * edges. The condition also ensures that no two rungs join one pair of corners: one side of the
+ * strip would have to pass its whole loop while the opposite side stays at one corner. */
 static bool is_abreast(uint64_t i, uint64_t n, uint64_t j, uint64_t m)
 {
     uint64_t x = i * m, y = j * n;

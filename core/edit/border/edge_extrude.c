@@ -172,8 +172,7 @@ typedef struct fresh {
     uint32_t vertex, side, far;
 } fresh;
 
-/* Returns the half-edge that runs from vertex i of plan.ends to its copy: half-edge 2e of a new
- * edge. */
+/* Returns the half-edge that runs from vertex i of plan.ends to the copy of this vertex. */
 static he_halfedge side_at(const fresh *new, size_t i)
 {
     return he_edge_halfedge((he_edge){new->side + (uint32_t)i}, 0);

@@ -246,7 +246,7 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
 {
     he_halfedge h = first;
     do {
-        /* he_swing_ccw() reads no origins, so this walk may change them. */
+        /* he_swing_ccw() reads no origins, so this walk may change origins on its way. */
         he_set_origin(m, h, to);
         h = he_swing_ccw(m, h);
     } while (h.i != first.i);

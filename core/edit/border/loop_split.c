@@ -111,7 +111,7 @@ static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_ve
 }
 
 /* Replaces half-edge `twin` by `outer` in the loop of its face. `twin` is the twin of a half-edge
- * of the cycle; the caller then makes it a side of the face that caps the hole. */
+ * of the cycle; the caller then makes `twin` a side of the face that closes (caps) the hole. */
 static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 {
     he_face f = he_face_of(m, twin);
@@ -126,8 +126,8 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
 {
-    /* The half-edges of the new edges that belong to the second cap. They run in the direction of
-     * the cycle. */
+    /* The half-edges of the new edges that belong to the second cap (face that closes the cut).
+     * They run in the direction of the cycle. */
     he_halfedge inner[3];
     for (unsigned i = 0; i < 3; i++) {
         he_vertex u = he_origin(m, cycle[i]);
@@ -144,7 +144,7 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
     /* The half-edges on the right side of the cycle are found by walking around its vertices. Their
-     * origins must be changed before other links are, because the walk reads those links. */
+     * origins must be changed before any other links, because the walk reads those links. */
     for (unsigned i = 0; i < 3; i++) {
         move_right(m, cycle, i, made->vertices[i]);
     }

@@ -32,7 +32,8 @@ static he_status require_boundary(const he_mesh *m, he_edge e, he_error *err)
 }
 
 /* Checks that the two vertices of `end` can be merged: no face may have both as corners, and no
- * vertex may be a neighbour of both, unless the edges a and b lead to it. */
+ * vertex may be a neighbour of both, unless edge a joins one of them to it and edge b the other
+ * one. */
 static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_edge b, he_error *err)
 {
     he_vertex v = end->stays, w = end->goes;

@@ -123,8 +123,8 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
                       "the edge's ends share a neighbour that is not a corner of the edge's faces",
                       "vertex", w.i);
     }
-    /* If k runs along a triangle, all corners of that triangle are neighbours of the origin of h,
-     * so part L4 follows from part L1. */
+    /* If the loop of k is a triangle, all its corners are neighbours of the origin of h, so part L4
+     * follows from part L1. */
     if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
         return HE_OK;
     }
@@ -284,8 +284,8 @@ static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_
 }
 
 /* Closes a face from which the collapse has removed one of three sides: `kept` and `gone` are its
- * last two half-edges, and both join the vertices of one pair. The face and the edge of `gone` are
- * deleted; `kept` replaces twin(gone) in the face on the far side of that edge. */
+ * last two half-edges, which run between two vertices in opposite directions. The face and the edge
+ * of `gone` are deleted. `kept` replaces twin(gone) in the face on the far side of that edge. */
 static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
 {
     he_halfedge outer = he_twin(gone);

@@ -64,9 +64,10 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     } while (h.i != first.i);
     he_delete_face(m, f);
 
-    /* Deleting an edge relinks its neighbours in the loop, so the next half-edge is read before. It
-     * is not deleted before it is visited. The loop ends by a count of its corners, because the
-     * first half-edge may be deleted when the walk comes back to it. */
+    /* Deleting an edge relinks its neighbours in the loop, so the walk reads the next half-edge
+     * beforehand; that half-edge is not deleted before it is visited. The walk takes as many steps
+     * as the loop had corners, because the first half-edge may be deleted when the walk comes back
+     * to it. */
     uint32_t corners = he_loop_length(m, first);
     for (uint32_t i = 0; i < corners; i++) {
         he_halfedge next = he_next(m, h);

@@ -4,8 +4,8 @@
 #include "mesh/write.h"
 
 /* Returns the next half-edge to collapse. It runs from the corner of face f that follows vertex `a`
- * to `a`, and its face is the neighbour of f. If f is deleted already, the half-edge runs from
- * vertex `last` to `a`. */
+ * to `a`, and its face is the neighbour of f across that side. If f is deleted already, the
+ * half-edge runs from vertex `last` to `a`. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {

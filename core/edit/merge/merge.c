@@ -77,8 +77,8 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
     he_status status = check_faces(p, &marks, err);
     for (uint32_t i = 0; status == HE_OK && i < p->group.count; i++) {
         he_vertex v = {p->group.ids[i]};
-        /* moves() walks through all vertices that are merged into a vertex. It is called only for
-         * the vertices that stay, because many calls for one list of merged vertices would be
+        /* moves() walks through all vertices that are merged into a vertex. So it is called only
+         * for vertices that stay, because many calls for one list of merged vertices would be
          * slow. */
         if (goes_into_another(p, v) || moves(p, i)) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
@@ -113,8 +113,9 @@ static he_status reserve(he_merge_plan *p, he_error *err)
     return he_reserve(p->m, need, err);
 }
 
-/* Replaces each half-edge of a face that is merged into another half-edge by that half-edge, which
- * also gets the values of its corner. Each link is read before it is overwritten. */
+/* Walks around a face and replaces each half-edge that is merged into another one by the half-edge
+ * into which it is merged. The values of the corner move there as well. Each link is read before it
+ * is overwritten. */
 static void relink_face(const he_merge_plan *p, he_face f)
 {
     he_mesh *m = p->m;

@@ -226,8 +226,8 @@ he_status he_merge_pair_edges(he_merge_plan *p, he_error *err)
 
 /* --- the faces beside the edges that stay --- */
 
-/* Returns true if the faces of half-edges a and b will be equal after the merge: a walk from a
- * around its face then visits the half-edges that a walk from b visits, in that order. */
+/* Returns true if the faces of half-edges a and b will be equal after the merge: two walks around
+ * these faces, from a and from b, then visit equal half-edges in every step. */
 static bool is_same_face(const he_merge_plan *p, he_halfedge a, he_halfedge b)
 {
     he_halfedge h = a, k = b;
@@ -383,8 +383,8 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
             continue;
         }
         /* Half-edge h begins a fan. Its twin is a boundary half-edge that arrives at the vertex.
-         * The next of this twin will be `out`, the boundary half-edge with which the previous fan
-         * ends. */
+         * After the merge, the half-edge that follows this twin is `out`, with which the previous
+         * fan ends. */
         if (out.i != HE_NONE) {
             status = he_ids_add(&p->holes, he_twin(h).i, err);
             if (status == HE_OK) {

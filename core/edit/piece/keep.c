@@ -140,8 +140,8 @@ static he_status keep_column(he_mesh *m, const he_column *column, const he_keep_
 static he_status keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
 {
     he_status status = HE_OK;
-    /* keep_column() may add columns to the array that this loop walks through. They belong to
-     * corners, so is_value() rejects them and the loop skips them. */
+    /* keep_column() may add columns to the array that this loop walks through. The new columns are
+     * attributes of corners, which is_value() rejects, so the loop skips them. */
     for (size_t slot = 0; slot < m->c.column_count && status == HE_OK; slot++) {
         const he_column *column = m->c.columns[slot];
         if (is_value(column) && count_differing(m, column, pairs) > 0) {

@@ -4,10 +4,10 @@
 
 #include <assert.h>
 
-/* A corner of a face that lies in the cutting plane. */
+/* A corner that a face has in the cutting plane. */
 typedef struct he_line_crossing {
-    double along; /* its position along the line in which the face meets the plane */
-    uint32_t at;  /* its index in the loop of the face */
+    double along; /* the corner's position along the line in which the face meets the plane */
+    uint32_t at;  /* the corner's index in the loop of the face */
 } he_line_crossing;
 
 /* Bits that say on which sides of the plane a part of a face has corners. The bits times BESIDE say

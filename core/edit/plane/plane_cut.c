@@ -120,7 +120,7 @@ static he_status cap_loops(cutter *c, he_error *err)
         he_filled filled = {.vertex = {HE_NONE}};
         status = he_progress_at(c->m->progress, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
-            continue; /* an earlier round has closed the loop of this half-edge by a face */
+            continue; /* a face that an earlier iteration made already fills this hole */
         }
         status = check_loop(c, h, err);
         if (status == HE_OK) {

@@ -109,8 +109,9 @@ static uint32_t steps_between(const he_mesh *m, he_halfedge from, he_halfedge to
 }
 
 /* Splits a face along the chord from corner a to corner b. Chords whose corners lie between a and b
- * must have been made before: each has shortened the way from a to b. Counting the steps of this
- * way for all chords of a face therefore takes time linear in its corners. */
+ * must have been made before: each has shortened the path from a to b along the face. Counting the
+ * steps of these paths for all chords of a face therefore takes time linear in the corners of the
+ * face. */
 static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
 {
     he_mesh *m = s->m;

@@ -12,7 +12,8 @@ typedef struct motion {
     /* One vector for each face of the region: the mean of its corners or, if sides move in
      * parallel, its normal. */
     he_vec3 *of;
-    /* The first time at which a corner hits a side, a side has no length, or a corner flips. */
+    /* The first time at which a corner hits a side, a side has no length, or a corner flips. The
+     * motion must end before. */
     double end;
     uint64_t budget; /* the number of steps of work that may still be done */
 } motion;
@@ -295,7 +296,7 @@ static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, dou
 
 /* Looks at two triangles, each made of the origin of h, a corner beside it, and the mean of the
  * face of h. If one of them is nearer to the new position `to` than *least, *out becomes the
- * mixture of its three points and *least its squared distance. */
+ * mixture of its three points and *least becomes its squared distance. */
 static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
                         he_region_mix *out, double *least)
 {

@@ -43,8 +43,8 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Checks that no two faces share two edges. For each edge, a face writes its own id into the entry
- * of the neighbour across that edge. If the entry has this id already, the two faces share a second
+/* Checks that no two faces share two edges. For each edge, a face writes its own id into the array
+ * entry of its neighbour across that edge. If the id is there already, the two faces share a second
  * edge. */
 static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error *err)
 {

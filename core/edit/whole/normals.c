@@ -57,8 +57,8 @@ static void turn_row(const he_normals *n, size_t slot, uint32_t row)
         const double *k = n->k + 3 * i;
         w[i] = k[0] * (v[0] / largest) + k[1] * (v[1] / largest) + k[2] * (v[2] / largest);
     }
-    /* A map that flattens the mesh makes very small components, whose squares would underflow. They
-     * are therefore scaled up to at most 1 before the length is computed. */
+    /* A map that flattens the mesh makes very small components, whose squares would underflow. All
+     * components are therefore divided by the largest one before the length is computed. */
     largest = fmax(fabs(w[0]), fmax(fabs(w[1]), fabs(w[2])));
     if (!(largest > 0)) {
         return;
@@ -114,8 +114,8 @@ static size_t each_row(const he_normals *n, size_t slot, bool commit)
         }
         while (h.i != HE_NONE) {
             he_face f = he_face_of(m, h);
-            /* The normal of a face must be transformed only once: when the walk around the vertices
-             * reaches the half-edge that the face stores. */
+            /* The walks around the vertices pass a face several times. Its normal is transformed
+             * only when a walk reaches the half-edge that the face stores, so only once. */
             bool turns = domain == HE_HALFEDGE ||
                          (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i && is_mapped(n, f));
             rows += turns;

@@ -15,8 +15,8 @@ static void part_clear(part *p)
     he_ids_clear(&p->faces);
 }
 
-/* Lists all elements that are reversed if the whole mesh is: all faces and edges, and all vertices
- * that have faces. */
+/* Lists all elements to reverse if the whole mesh is reversed: all faces and edges, and all
+ * vertices that have faces. */
 static he_status take_all(const he_mesh *m, part *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -39,8 +39,8 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
     return status;
 }
 
-/* Lists all elements that are reversed if some faces are: these faces, their vertices and their
- * edges. Each is listed once. */
+/* Lists all elements to reverse if only some faces are reversed: these faces, their vertices and
+ * their edges. Each element is listed once. */
 static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
                              he_error *err)
 {
@@ -168,9 +168,9 @@ static void turn_values(he_mesh *m, const part *p)
     }
 }
 
-/* Exchanges the roles of the two half-edges of an edge. Each gets the old face of its twin. Its
- * next becomes the twin of its twin's old prev, and its prev the twin of its twin's old next. Only
- * links of this edge are read, so the edges may be handled in any order. */
+/* Reverses the half-edges h and t of an edge: face(h) becomes the old face(t), next(h) becomes the
+ * old twin(prev(t)), and prev(h) becomes the old twin(next(t)); the links of t change in this way,
+ * too. Only links of this edge are read, so the edges may be handled in any order. */
 static void turn_edge(he_mesh *m, he_edge e)
 {
     he_halfedge next[2], prev[2];

@@ -27,8 +27,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_halfedge stored = he_vertex_halfedge(m, v), h = he_swing_ccw(m, stored);
-    /* The last fan ends with the half-edge that v stores. It keeps vertex v, so its locks do not
-     * matter. */
+    /* The last fan ends with the half-edge that v stores. This fan keeps vertex v, so locks of its
+     * faces and edges do not matter. */
     for (uint32_t fans = he_vertex_fans(m, v); status == HE_OK && fans > 1; fans--) {
         status = check_fan(m, &marks, &h, err);
         h = he_swing_ccw(m, h);
