@@ -40,8 +40,8 @@ typedef struct he_poke {
     uint32_t corners;
     he_vec3 position;
     he_ids around,
-        /* The vertices and half-edges of the loop; filled only if the mesh has columns whose values
-         * are copied. */
+        /* `around` lists the vertices of the loop, `loop` its half-edges. Both are empty if
+         * vertices and half-edges have no attributes. */
         loop;
 } he_poke;
 

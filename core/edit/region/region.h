@@ -20,11 +20,12 @@
  * edges. For rim half-edge i, from a to b, in the order of the region's faces and of each face's
  * corners from its stored half-edge on:
  *
- *     new vertex i      above a; descends from a and has its values by rule
- *     new edge 2i       its half-edge 2e runs above the rim half-edge, inside the region; descends
- *                       from that edge and has its values by rule
+ *     new vertex i      replaces a in the region; descends from a and has values of a
+ *     new edge 2i       its half-edge 2e belongs to the region's face; descends from the edge of
+ *                       the rim half-edge and has values of that edge
  *     new edge 2i + 1   its half-edge 2e runs from a to the new vertex
- *     new face i        the quad, whose stored half-edge is the rim's; descends from the face there
+ *     new face i        the quad, whose stored half-edge is the rim half-edge; descends from the
+ *                       region's face there
  *
  * The corners of the region's faces keep their values; the corners of a quad copy the values of the
  * corners beside the quad.
