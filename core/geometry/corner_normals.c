@@ -3,18 +3,19 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-/* One corner around a vertex, with the normal of its face, and its group. The corners of a group
- * get one common normal. */
+/* A half-edge that leaves a vertex, and the normal of the face to the left of the half-edge. The
+ * corners around a vertex are divided into groups; all corners of a group get one common normal. */
 typedef struct corner {
     uint32_t halfedge;
-    uint32_t group; /* number of the group; HE_NONE on a boundary half-edge */
+    uint32_t group; /* number of the corner's group; HE_NONE for a boundary half-edge */
     he_vec3 normal; /* normal of the face; zero if the face is degenerate */
     bool degenerate;
 } corner;
 
 typedef struct fan {
-    corner *corners; /* the corners, counter-clockwise around the vertex */
-    he_vec3 *sums;   /* weighted sum of the normals of each group */
+    corner *corners; /* the half-edges that leave the vertex, counter-clockwise */
+    /* for each group, the sum of the normals of its faces, weighted by the angles of the corners */
+    he_vec3 *sums;
     size_t count, capacity;
     double crease;
 } fan;
@@ -43,8 +44,9 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, the
- * normals needed are computed. */
+/* Lists the corners around a vertex in f->corners, beginning with the half-edge `first`. `normals`
+ * has the normals of all faces of the mesh; if `normals` is NULL, the function computes the normals
+ * of the faces around the vertex. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {
@@ -79,13 +81,15 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
     return HE_OK;
 }
 
-/* Groups the corners around a vertex that no crease separates: the normals of neighbouring faces of
- * a group differ by at most the crease angle. Returns the number of groups. A boundary half-edge
- * comes before the corners of its fan, and a vertex on the boundary stores a boundary half-edge, so
- * only a closed fan continues from its last corner to the first. */
+/* Divides the corners around a vertex into groups, and returns the number of groups. A new group
+ * begins where the normals of two neighbouring faces differ by more than the crease angle, and
+ * after each boundary half-edge. The list of corners is a ring: if the vertex is not on the
+ * boundary, the last corner of the list is a neighbour of the first one. At a boundary vertex the
+ * list begins with a boundary half-edge, which separates the first corner from the last one. */
 static uint32_t find_groups(fan *f)
 {
-    /* the last and the first corner so far whose face has a normal */
+    /* `leader`: the first corner whose face has a normal; `last`: the latest corner, after the
+     * latest boundary half-edge, whose face has a normal */
     const corner *last = NULL, *leader = NULL;
     uint32_t group = 0;
     bool closed = true;
@@ -110,8 +114,8 @@ static uint32_t find_groups(fan *f)
     bool merged = he_vec3_angle(last->normal, leader->normal) <= f->crease;
     for (size_t i = 0; i < f->count; i++) {
         corner *c = &f->corners[i];
-        /* Degenerate corners before the first corner with a normal: they join the group of the
-         * corner next to them clockwise, which is the last one. */
+        /* The corners of degenerate faces at the beginning of the list, before `leader`, get the
+         * group of the last corner of the list, which is their neighbour in clockwise direction. */
         bool leads = c < leader;
         c->group = leads || (merged && c->group == group) ? (merged ? 0 : group) : c->group;
     }
@@ -136,8 +140,8 @@ static void sum_groups(fan *f, const he_mesh *m)
 he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease, he_vec3 *out,
                            he_error *err)
 {
-    /* The walk starts from the half-edge that the vertex stores, so the sums equal those that
-     * he_corner_normals computes for the whole mesh. */
+    /* The walk around the vertex starts from the half-edge that the vertex stores, as in
+     * he_corner_normals, so that normals are added up in one order and the results are equal. */
     fan f = {.crease = crease};
     he_status status = gather(&f, m, m->c.vertex_halfedge[m->c.origin[h.i]], NULL, err);
     if (status == HE_OK) {
@@ -157,7 +161,7 @@ he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease, he_ve
 typedef struct corners {
     const he_mesh *m;
     double crease;
-    const he_vec3 *normals; /* normals of all faces */
+    const he_vec3 *normals; /* the normal of each face of the mesh */
     he_vec3 *out;
 } corners;
 
@@ -172,8 +176,9 @@ static he_status clear_range(void *context, uint32_t part, size_t from, size_t t
     return HE_OK;
 }
 
-/* Computes the normals of the corners of some vertices. Each vertex writes its own corners and no
- * others, so threads do not interfere. */
+/* Computes the normals of the corners at the vertices from `from` to `to` - 1. Several threads run
+ * this function at once, for different vertices. They do not interfere, because each corner is at
+ * one vertex and so only one thread writes its normal. */
 static he_status vertex_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const corners *all = context;

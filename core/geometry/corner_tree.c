@@ -13,7 +13,8 @@ typedef struct keyed {
     uint32_t corner;
 } keyed;
 
-/* Spreads bits for the Z curve: moves bit i of the lower half to bit 2i. */
+/* Moves bit i of the lower half of `x` to bit 2i. A point's key on the Z curve is made of two
+ * coordinates whose bits were moved in this way: the bits alternate. */
 static uint64_t spread(uint64_t x)
 {
     x = (x | x << 16) & 0x0000FFFF0000FFFFu;
@@ -23,17 +24,18 @@ static uint64_t spread(uint64_t x)
     return (x | x << 1) & 0x5555555555555555u;
 }
 
-/* Converts a coordinate to its bits on the Z curve. Coordinates are within [-2, 2], see
- * planar_loop.h; slightly larger ones do no harm. */
+/* Converts a coordinate to an integer of 32 bits, for a point's key on the Z curve. Coordinates are
+ * within [-2, 2] (planar_loop.h); a coordinate that rounding has moved out of this range is clamped
+ * to it. */
 static uint64_t on_curve(double x)
 {
     double scaled = (x + 2) * ((uint64_t)1 << 30);
     return scaled <= 0 ? 0 : scaled >= UINT32_MAX ? UINT32_MAX : (uint64_t)scaled;
 }
 
-/* Sorts corners by their keys with a stable radix sort. Corners of equal keys stay in the order of
- * the loop, which keeps neighbours together. Returns the one of the two arrays that holds the
- * result. */
+/* Sorts `count` corners by their keys on the Z curve with a stable radix sort: corners of equal
+ * keys stay in the order of the loop, so corners that are neighbours in the loop stay together.
+ * Overwrites the arrays `from` and `to`, and returns the array that holds the result. */
 static keyed *sort(keyed *from, keyed *to, uint32_t count)
 {
     for (unsigned shift = 0; shift < 64; shift += 8) {
@@ -62,7 +64,8 @@ static uint64_t key_of(const he_planar_loop *f, uint32_t corner)
     return spread(on_curve(f->x[corner])) | spread(on_curve(f->y[corner])) << 1;
 }
 
-/* The number of corners of a list that are compared with a box at once, by vector instructions. */
+/* The number of corners that vector instructions compare with a box at once, if the corners are
+ * kept in a plain list instead of a tree. */
 enum { BATCH = 8 };
 
 static uint32_t batched(uint32_t count)
@@ -199,7 +202,8 @@ he_status he_corner_tree_make(he_corner_tree *out, const he_planar_loop *flat,
     return HE_OK;
 }
 
-/* Returns the leaf to which an index in `order` belongs: the inverse of leaf_start. */
+/* Returns the number of the leaf that holds entry `place` of the array `order`. This is the inverse
+ * of leaf_start, which returns the first entry of a leaf. */
 static uint32_t leaf_of(const he_corner_tree *t, uint32_t place)
 {
     return (uint32_t)((((uint64_t)place + 1) * t->leaves - 1) / t->count);
@@ -230,23 +234,26 @@ void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 
 /* --- searching --- */
 
-/* The area up to which he_planar_loop_turns_left regards a triangle as flat, relative to the
- * squared size of the triangle. It has a margin for points beside the triangle and for the rounding
- * of a determinant. */
+/* The tolerance of the searches in this file. It is relative to the size of the triangle for
+ * distances, and to the square of that size for areas. The tolerance is four times
+ * HE_PLANAR_LOOP_THIN, so that it covers rounding errors and all points that
+ * he_planar_loop_turns_left regards as lying on a side of the triangle. */
 static const double ABOUT = 4e-12;
 
-/* A side of the triangle, from `at` to `at` + `along`, and which corner of any box lies furthest to
- * the left of the side. */
+/* A side of a triangle: it begins at the point `at` and ends at the point `at` + `along`. */
 typedef struct side {
     double at[2], along[2];
-    bool high[2]; /* true on an axis if that corner is at the maximum of the box */
+    /* Which corner of any axis-aligned box lies furthest to the left of the side: high[i] is true
+     * if on axis i that corner has the maximum of the box, false if it has the minimum. */
+    bool high[2];
 } side;
 
 typedef struct triangle {
     uint32_t corner[3];
     side sides[3];
     he_corner_box box;
-    double slack; /* a point farther than this to the right of a side is not in the triangle */
+    /* If left_of a side and a point is less than -slack, the point is not in the triangle. */
+    double slack;
 } triangle;
 
 static double least(double a, double b)
@@ -259,7 +266,8 @@ static double most(double a, double b)
     return a > b ? a : b;
 }
 
-/* Returns the box around a triangle, with a margin for rounding. */
+/* Returns the axis-aligned box around the triangle of the corners a, b and c, enlarged by a margin
+ * for rounding errors. */
 static inline he_corner_box box_around(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c)
 {
     double left = least(least(f->x[a], f->x[b]), f->x[c]);
@@ -290,14 +298,15 @@ static double clamped(double x, double min, double max)
     return x < min ? min : x > max ? max : x;
 }
 
-/* Returns twice the area of the triangle that a side makes with a point; negative on its right. */
+/* Returns twice the area of the triangle between a side and the point (x, y); the area is negative
+ * if the point is to the right of the side. */
 static double left_of(const side *s, double x, double y)
 {
     return s->along[0] * (y - s->at[1]) - s->along[1] * (x - s->at[0]);
 }
 
-/* Returns true if the triangle may have a point in the box. Returns false only if it certainly has
- * none. */
+/* Returns false only if the triangle and the box certainly have no point in common. The test is
+ * quick, and may return true for a triangle and a box that are disjoint. */
 static inline bool touches(const triangle *t, const he_corner_box *box)
 {
     if (box->min[0] > t->box.max[0] || box->max[0] < t->box.min[0] || box->min[1] > t->box.max[1] ||
@@ -316,7 +325,7 @@ static inline bool touches(const triangle *t, const he_corner_box *box)
     return true;
 }
 
-/* Two numbers that the processor handles with one vector instruction. */
+/* Two doubles that one vector instruction processes together. */
 typedef double pair __attribute__((vector_size(2 * sizeof(double))));
 typedef int64_t pair_mask __attribute__((vector_size(2 * sizeof(int64_t))));
 
@@ -327,7 +336,8 @@ static inline pair pair_at(const double *from)
     return p;
 }
 
-/* Returns true if a corner of the batch is in the box. */
+/* Returns true if at least one of BATCH points is in the box; x and y are the coordinates of the
+ * points. */
 static inline bool is_any_in_box(const he_corner_box *box, const double *x, const double *y)
 {
     const double left = box->min[0], right = box->max[0], low = box->min[1], high = box->max[1];
@@ -339,7 +349,7 @@ static inline bool is_any_in_box(const he_corner_box *box, const double *x, cons
     return (any[0] | any[1]) != 0;
 }
 
-/* Returns true if corner p of the tree is in the triangle. */
+/* Returns true if corner p is inside the triangle, as he_corner_tree_find defines it. */
 static inline bool holds(const triangle *t, const he_planar_loop *f, uint32_t p)
 {
     double x = f->x[p], y = f->y[p];
@@ -376,15 +386,15 @@ static inline uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, c
     return HE_NONE;
 }
 
-/* Returns true if corner a is before corner b along the Z curve. */
+/* Returns true if corner a comes before corner b along the Z curve. */
 static bool is_before(const he_planar_loop *f, uint32_t a, uint32_t b)
 {
     uint64_t of_a = key_of(f, a), of_b = key_of(f, b);
     return of_a != of_b ? of_a < of_b : a < b;
 }
 
-/* Returns corner p of the list if it is in the triangle and comes before `found` along the Z curve;
- * otherwise `found`. */
+/* Returns p if corner p is inside the triangle and either `found` is HE_NONE or corner p comes
+ * before corner `found` along the Z curve; otherwise returns `found`. */
 static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uint32_t p,
                               uint32_t found)
 {
@@ -395,8 +405,10 @@ static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uin
     return found == HE_NONE || is_before(f, p, found) ? p : found;
 }
 
-/* Finds a corner in the triangle in a plain list: the first one along the Z curve, which a search
- * of a tree would find; in a list that was short when it was made, the first one of the list. */
+/* Searches a plain list for corners inside the triangle a, b, c. Returns the corner found that
+ * comes first along the Z curve, as a search of a tree would; HE_NONE if no corner is inside. If
+ * the list had at most HE_CORNER_UNSORTED corners when it was made, returns the corner found that
+ * comes first in the list instead. */
 static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps)
 {
@@ -409,7 +421,8 @@ static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b,
         if (!is_any_in_box(&box, tree->x + i, tree->y + i)) {
             continue;
         }
-        /* The sides of the triangle are computed only if a corner is in the box around it. */
+        /* The sides of the triangle are computed only when a corner in the box around the triangle
+         * has been found. */
         if (!has_sides) {
             t = triangle_of(tree->flat, a, b, c, &box);
             has_sides = true;
@@ -426,7 +439,8 @@ static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b,
 
 static uint32_t find_in_tree(const he_corner_tree *tree, const triangle *t, uint64_t *steps)
 {
-    /* The stack holds one waiting node for each level, and two of the last level. */
+    /* The stack holds nodes that are still to be visited: at most one node of each level of the
+     * tree, and two nodes of the deepest level. */
     uint32_t stack[34], depth = 0;
     stack[depth++] = 1;
     while (depth > 0) {

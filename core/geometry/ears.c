@@ -2,13 +2,14 @@
 
 #include "geometry/corner_tree.h"
 
-/* --- rings: lists of corners; each list begins and ends at a node of its own --- */
+/* --- circular, doubly linked lists of corners; a list has a head node, which is no corner --- */
 
 typedef struct ring {
     uint32_t *next, *prev;
 } ring;
 
-/* Links an element to itself: a node is then an empty list, and a corner is in no list. */
+/* Links element i to itself. If i is the head node of a list, the list is then empty; if i is a
+ * corner, the corner is then in no list. */
 static void isolate(ring r, uint32_t i)
 {
     r.next[i] = r.prev[i] = i;
@@ -32,29 +33,32 @@ static void take_out(ring r, uint32_t i)
 /* --- ears --- */
 
 typedef enum state {
-    CANDIDATE, /* a corner that turns left; not known yet whether it is an ear */
-    PIERCED,   /* a corner that turns left, with another corner in its triangle */
-    FLAT,      /* does not turn left */
-    TAKEN      /* a corner that would be an ear, but its diagonal is an edge */
+    CANDIDATE, /* the corner turns left; whether it is an ear is not known yet */
+    PIERCED,   /* the corner turns left, and another corner lies in its triangle */
+    FLAT,      /* the corner does not turn left */
+    TAKEN      /* the corner would be an ear, but its diagonal is an edge of the mesh */
 } state;
 
 typedef struct ears {
     const he_mesh *m;
     const he_planar_loop *f;
-    bool avoid; /* true if diagonals that exist as edges must be avoided */
-    ring loop;  /* the corners that are not cut off yet, in a ring without a node of its own */
-    ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; each begins at node n + state */
-    /* Lists of PIERCED corners, by the corner that lies in their triangle. Each list begins at node
-     * n plus that corner; the list at node 2n has the PIERCED corners whose other corner is no
-     * longer in the tree. */
+    bool avoid; /* true if no diagonal may join two vertices that an edge of the mesh joins */
+    ring loop;  /* circular list, without a head node, of the corners that are not cut off yet */
+    /* Three lists: of the CANDIDATE, of the PIERCED and of the FLAT corners. The head node of the
+     * list of a state is n + state, where n is the number of corners of the loop. */
+    ring kinds;
+    /* Lists of PIERCED corners. The list with the head node n + q has the corners in whose triangle
+     * corner q was found. The list with the head node 2n has the corners that must be tried again,
+     * because the corner found in their triangle was cut off or turns left now. */
     ring watch;
     uint8_t *state;
-    he_corner_tree tree; /* corners that have never turned left */
-    /* `left`: number of corners left; `at`: candidate to try next; `last`: a corner of the triangle
-     * that remains at the end */
+    he_corner_tree tree; /* the corners that have not turned left so far and are not cut off yet */
+    /* `left`: number of corners that are not cut off yet; `at`: the CANDIDATE to try next; `last`:
+     * a corner of the triangle that remains at the end */
     uint32_t left, at, last;
     uint32_t taken; /* number of corners in state TAKEN */
-    uint64_t most;  /* number of steps after which triangles are no longer tested for being empty */
+    /* when more steps than this were taken, triangles are no longer tested for being empty */
+    uint64_t most;
     he_triangulation_work *work;
 } ears;
 
@@ -68,8 +72,8 @@ static uint32_t list_of(const ears *e, state s)
     return e->f->n + (uint32_t)s;
 }
 
-/* Removes a corner from the tree, because it can no longer be inside a triangle. The PIERCED
- * corners that were listed under it move to the list of those to be tried again. */
+/* Removes a corner from the tree after it was cut off or began to turn left. The PIERCED corners in
+ * whose triangle this corner was found move to the list of corners that must be tried again. */
 static void leave_tree(ears *e, uint32_t corner)
 {
     uint32_t list = e->f->n + corner, waiting = 2 * e->f->n, i;
@@ -80,8 +84,8 @@ static void leave_tree(ears *e, uint32_t corner)
     }
 }
 
-/* Updates the state of a corner whose neighbour has changed. A corner that turns left is inserted
- * into the list of candidates behind the corner `before`. */
+/* Updates the state of corner i after a neighbour of corner i was cut off. If corner i turns left,
+ * it is inserted into the list of candidates behind the corner `before`. */
 static void look_at(ears *e, uint32_t i, uint32_t before)
 {
     take_out(e->kinds, i);
@@ -95,8 +99,8 @@ static void look_at(ears *e, uint32_t i, uint32_t before)
     insert_after(e->kinds, convex ? before : e->kinds.prev[list_of(e, FLAT)], i);
 }
 
-/* Returns true if the steps allowed for cutting ears are used up. Searching for edges does not
- * count, so the flag HE_AVOID_EDGES does not change which ears are found. */
+/* Returns true if the steps allowed for cutting ears are used up. Steps of searches for edges do
+ * not count, so that the flag HE_AVOID_EDGES does not change which ears are found. */
 static bool is_exhausted(const ears *e)
 {
     return e->work->steps - e->work->searched >= e->most;
@@ -126,7 +130,7 @@ static bool is_ear(ears *e, uint32_t i)
     return true;
 }
 
-/* Finds an ear. Returns HE_NONE if there is none, or if all ears are in state TAKEN. */
+/* Finds an ear. Returns HE_NONE if the loop has no ear, or if all its ears are in state TAKEN. */
 static uint32_t find_ear(ears *e)
 {
     uint32_t list = list_of(e, CANDIDATE), waiting = 2 * e->f->n, i;
@@ -151,8 +155,10 @@ static uint32_t find_ear(ears *e)
     }
 }
 
-/* Returns any corner whose diagonal is no edge, one that turns left if there is one; HE_NONE if
- * there is none. A corner in state TAKEN is not tested again before it changes. */
+/* Returns a corner that can be cut off although it is no ear, if possible one that turns left;
+ * HE_NONE if every corner has a diagonal that is an edge and must be avoided. A corner with such a
+ * diagonal leaves its list, so that it is not tested again before one of its neighbours is
+ * cut off. */
 static uint32_t find_corner(ears *e)
 {
     for (state s = PIERCED; s <= FLAT; s++) {
@@ -190,8 +196,8 @@ static void cut_off(ears *e, uint32_t i, uint32_t *corners)
         insert_after(e->kinds, list_of(e, CANDIDATE), i);
     }
     e->left--;
-    /* The corners a and c, on both sides of the corner i that was cut off, take the place of i in
-     * the list of candidates. */
+    /* The corners a and c are the neighbours of the corner i that was cut off. If they turn left,
+     * they take the place of corner i in the list of candidates. */
     look_at(e, c, i);
     take_out(e->kinds, a);
     look_at(e, a, e->kinds.prev[i]);
@@ -248,8 +254,9 @@ static void lay_out(ears *e, uint32_t *block)
     }
 }
 
-/* Puts every corner into its list, and those that do not turn left into the tree. `room` is scratch
- * space: the array of the triangulation's corners, which are not written yet. */
+/* Puts every corner into the list of its state, and the corners that do not turn left also into the
+ * tree. `room` is scratch space for n corners; the caller passes the array of the result, which is
+ * not filled yet. */
 static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
 {
     uint32_t n = e->f->n, flat = 0;
@@ -265,8 +272,8 @@ static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
     return he_corner_tree_make(&e->tree, e->f, room, flat, err);
 }
 
-/* Returns how many steps may be taken for n corners, which is enough for ordinary polygons of any
- * size. */
+/* Returns how many steps he_ears_cut may take for a loop of n corners: HE_EAR_STEPS * n * log2(n),
+ * which is enough for ordinary polygons of any size. */
 static uint64_t most_steps(uint32_t n)
 {
     uint64_t steps = 0;

@@ -11,7 +11,8 @@ void he_edge_lookup_clear(he_edge_lookup *lookup)
     *lookup = (he_edge_lookup){.rank = NULL};
 }
 
-/* Numbers the vertices of large degree in `rank`, and returns how many there are. */
+/* Numbers the vertices of large degree: rank[v] becomes the number of vertex v among them, or
+ * HE_NONE if the degree of v is not large. Returns the number of vertices of large degree. */
 static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
 {
     uint32_t count = 0;
@@ -26,16 +27,17 @@ static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
     return count;
 }
 
-/* Returns true if a half-edge is in a list of its origin's neighbours: both its ends have a large
- * degree, and its target has the smaller id. */
+/* Returns true if the target of half-edge h belongs into the list of neighbours of h's origin: the
+ * origin and the target have large degrees, and the target has the smaller id. */
 static bool is_listed(const he_mesh *m, const uint32_t *rank, uint32_t h)
 {
     uint32_t from = m->c.origin[h], to = m->c.origin[h ^ 1u];
     return to < from && rank[from] != HE_NONE && rank[to] != HE_NONE;
 }
 
-/* Computes where the list of each vertex of large degree begins. The start of list i is stored at
- * starts[i + 1], and moves on to the end of the list while the list is filled. */
+/* Computes where, in the array that holds all lists one after another, the list of each vertex of
+ * large degree begins. Returns the length of the array. The beginning of list i is stored in
+ * starts[i + 1]; while fill_lists fills the list, it moves this position to the end of the list. */
 static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t count,
                               uint32_t *starts)
 {
@@ -53,7 +55,8 @@ static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t c
     return total;
 }
 
-/* Puts each vertex of large degree into the lists of its neighbours, in rising order. */
+/* Appends each vertex of large degree to the lists of its neighbours that have large degrees and
+ * larger ids. The vertices are visited in rising order of ids, so every list is sorted. */
 static void fill_lists(const he_mesh *m, const he_edge_lookup *j)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
@@ -90,15 +93,17 @@ he_status he_edge_lookup_make(const he_mesh *m, he_edge_lookup *out, he_error *e
     return HE_OK;
 }
 
-/* --- pairs of vertices that were joined after the lookup was made --- */
+/* --- pairs of vertices that got an edge after the lookup was made --- */
 
-/* Returns the key of a pair of vertices. It is never 0, since the larger id is not 0. */
+/* Returns the key of a pair of vertices in the hash table. A key is never 0, because its upper half
+ * is the larger of the two ids, which is not 0. */
 static uint64_t key_of(he_vertex a, he_vertex b)
 {
     return a.i < b.i ? (uint64_t)b.i << 32 | a.i : (uint64_t)a.i << 32 | b.i;
 }
 
-/* Returns the slot of the hash table that holds a key, or the free slot where it belongs. */
+/* Returns the index of the entry of the hash table that holds a key, or of the free entry in which
+ * the key belongs. */
 static size_t slot_of(const he_edge_lookup *j, uint64_t key)
 {
     size_t mask = j->noted_slots - 1;

@@ -85,8 +85,8 @@ double he_corner_angle(const he_mesh *m, he_halfedge h)
     return ahead == 0 || behind == 0 ? 0 : he_vec3_angle(a, b);
 }
 
-/* Returns the dihedral angle of edge e. `left` and `right` are the normals of the faces on its two
- * sides. */
+/* Returns the dihedral angle of edge e. `left` and `right` are the unit normals of the faces of the
+ * edge's first and second half-edge. */
 static double dihedral_between(const he_mesh *m, he_edge e, he_vec3 left, he_vec3 right)
 {
     he_halfedge h = he_edge_halfedge(e, 0);

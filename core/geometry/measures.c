@@ -15,7 +15,8 @@ static void extend(he_box *box, bool *any, he_vec3 p)
                          p.z > high.z ? p.z : high.z};
 }
 
-/* Finds the box around vertices. With `isolated`, vertices without an edge count, too. */
+/* Finds the box around all live vertices. Isolated vertices (without an edge) count only if
+ * `isolated` is true. */
 static bool find_box(const he_mesh *m, bool isolated, he_box *out)
 {
     he_box box = {{0, 0, 0}, {0, 0, 0}};
@@ -40,7 +41,7 @@ bool he_surface_box(const he_mesh *m, he_box *out)
     return find_box(m, false, out);
 }
 
-/* A sum by Neumaier's method: the rounding errors are summed separately. */
+/* A sum by Neumaier's method: the rounding errors of the additions are summed up separately. */
 typedef struct total {
     double sum, error;
 } total;
@@ -52,17 +53,18 @@ static void add(total *t, double x)
     t->sum = sum;
 }
 
-/* Terms of very different sizes are summed in several totals, so that small terms are not lost:
- * terms whose exponents are in one range (window) of WINDOW exponents share a total. The exponent
- * of a volume is at most three times that of a double. */
+/* Terms of very different sizes are summed up in several totals, so that small terms are not lost
+ * beside large ones. The binary exponents from LEAST on are divided into WINDOWS ranges (windows)
+ * of WINDOW exponents; terms whose exponents are in one window share a total. The windows cover the
+ * exponents of all volumes, which are products of three doubles. */
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
-    /* a total for each window: of[i] times 2^(LEAST + WINDOW i) is the true total */
+    /* a total for each window i; the true total is of[i] * 2^(LEAST + WINDOW * i) */
     total of[WINDOWS];
 } sums;
 
-/* Adds x times 2^exponent to the total of its window. */
+/* Adds the term x * 2^exponent to the total of the window in which the term's exponent lies. */
 static void add_scaled(sums *s, double x, int exponent)
 {
     int own;
@@ -75,8 +77,8 @@ static void add_scaled(sums *s, double x, int exponent)
     add(&s->of[window], ldexp(part, above - window * WINDOW));
 }
 
-/* Returns the sum of all totals divided by `divisor`, or the largest double if that is too large
- * for a double. */
+/* Returns the sum of the totals in `s` and of the total `plain`, divided by `divisor`. A result
+ * that is too large for a double becomes DBL_MAX or -DBL_MAX. */
 static double sum_of(sums *s, const total *plain, double divisor)
 {
     add_scaled(s, plain->sum, 0);
@@ -93,9 +95,10 @@ static double sum_of(sums *s, const total *plain, double divisor)
     return he_clamped(ldexp((all.sum + all.error) / divisor, LEAST + top * WINDOW));
 }
 
-/* Finds the point from which volumes are measured: a vertex with edges that is nearest to the
- * origin of coordinates. Measured from a point far from the mesh the terms of the volume would
- * cancel out, and so would those of small parts measured from a far corner of the mesh. */
+/* Finds the base point of the volume. The volume of the mesh is the sum of the volumes of the cones
+ * from this point to each face. The base point is the vertex with edges that is nearest to the
+ * origin of coordinates, where a mesh may have its smallest parts. If the base point were far from
+ * a small part, the large volumes of the cones to that part would cancel out and lose digits. */
 static he_vec3 find_base(const he_mesh *m)
 {
     double least = HUGE_VAL;
@@ -104,7 +107,8 @@ static he_vec3 find_base(const he_mesh *m)
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (m->c.vertex_halfedge[v] < HE_DEAD) {
             he_vec3 p = m->c.position[v];
-            /* squared distance; if it is infinite, another vertex is taken */
+            /* The squared distance may overflow to infinity; a vertex with a finite one is
+             * preferred. */
             double square = he_vec3_dot(p, p);
             if (square < least || !any) {
                 least = square;
@@ -116,8 +120,9 @@ static he_vec3 find_base(const he_mesh *m)
     return base;
 }
 
-/* Adds the volume between a face and the point `base`. `vector`, the area vector of the face, is in
- * a scale of its own: the true vector is `vector` times 4^exponent. */
+/* Adds six times the volume of the cone from the point `base` to a face. `corner` is the position
+ * of a corner of the face. `vector` is twice the face's area vector in a scale of its own: the true
+ * vector is `vector` * 4^exponent. */
 static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector, int exponent)
 {
     int halved = 0;
@@ -134,7 +139,7 @@ static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector,
 he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
 {
     sums area = {0}, volume = {0};
-    /* sums of the terms that are neither very large nor very small */
+    /* Sums of the terms that are neither very large nor very small, so that they need no window. */
     total plain_area = {0, 0}, plain_volume = {0, 0};
     uint32_t budget = he_ring_budget(m);
     bool closed = m->c.boundary_halfedges == 0 && m->c.faces.live > 0;
@@ -162,8 +167,10 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
         } else {
             add_scaled(&area, twice, 2 * exponent);
         }
-        /* The volumes of the tetrahedra over a fan of triangles from corner p0 add up to p0 . A / 3
-         * for the area vector A, whatever the other corners, because p0 . (p0 x q) is 0. */
+        /* The face is divided into a fan of triangles from its corner p0. Each triangle and the
+         * base point b make a tetrahedron. The volumes of these tetrahedra add up to a third of the
+         * dot product of p0 - b and the area vector of the face, because p0 is a corner of every
+         * triangle. */
         if (!closed) {
             continue;
         }

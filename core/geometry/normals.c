@@ -5,16 +5,17 @@
 
 #include <stdlib.h>
 
-/* Returns the weight of a face by its area. Weights have a lower limit: the areas around a vertex
- * exceed the range of a double only in extreme meshes, where the limit keeps small faces from
- * counting nothing. */
+/* Returns the weight that HE_WEIGHT_AREA gives to a face: the face's area, divided by 2^unit, but
+ * at least DBL_MIN. The lower limit matters only in extreme meshes, where the ratio of the areas of
+ * two faces at a vertex exceeds the range of a double: the weight of the smaller face would become
+ * 0. */
 static double area_weight(const he_ring *r, int exponent, int unit)
 {
     return fmax(ldexp(0.5 * he_vec3_length(r->vector), 2 * exponent - unit), DBL_MIN);
 }
 
-/* Returns the binary exponent of the largest area around a vertex, relative to which weights are
- * taken. */
+/* Returns the binary exponent of twice the largest area of a face around a vertex. The weights of
+ * the faces are taken relative to it (`unit` of area_weight). */
 static int area_unit(const he_mesh *m, he_vertex v)
 {
     int unit = INT32_MIN;
@@ -67,26 +68,29 @@ bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *
     return he_vec3_normalise(sum, out);
 }
 
-/* A triangle of ordinary size. Most faces of most meshes are such triangles, and loops over the
- * whole mesh handle them without a call and with few square roots. */
+/* A triangular face of ordinary size. Most faces of most meshes are such triangles. Loops over all
+ * faces of a mesh compute such a triangle without a call and with few square roots, and call the
+ * general function he_ring_measure for all other faces. */
 typedef struct triangle {
-    uint32_t a, b, c; /* vertices of the corners, from the stored half-edge on */
-    he_vec3 u, v;     /* vectors from a to b and from a to c */
-    he_vec3 vector;   /* u x v: twice the area vector */
-    double square;    /* squared length of `vector` */
+    /* ids of the corners' vertices; `a` is the origin of the face's stored half-edge */
+    uint32_t a, b, c;
+    he_vec3 u, v;   /* vectors from a to b and from a to c */
+    he_vec3 vector; /* u x v: twice the area vector */
+    double square;  /* squared length of `vector` */
 } triangle;
 
-/* Returns true if a triangle is neither degenerate nor has coordinates whose products would
- * overflow or underflow. */
+/* Returns true if a triangle is not degenerate, and products of its coordinates neither overflow
+ * nor underflow. `square` is the squared length of twice the triangle's area vector; `reach` is the
+ * product of the squared lengths of two sides. */
 static inline bool is_plain(double square, double reach)
 {
     return (reach > HE_LEAST_PRODUCT) & (reach < HE_MOST_PRODUCT) &
            (square > HE_RING_NOISE * 3 * reach);
 }
 
-/* Computes a triangle quickly. Returns false if the face has not three corners, is degenerate, has
- * coordinates whose products would overflow or underflow, or if links are broken: the general
- * function handles these cases. */
+/* Computes the triangle to the left of half-edge h. Returns false if the face has not three
+ * corners, is degenerate, has coordinates whose products would overflow or underflow, or if links
+ * are broken. The caller then calls the general function he_ring_measure. */
 static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
 {
     const uint32_t end = 2u * m->c.edges.issued, vertices = m->c.vertices.issued;
@@ -98,8 +102,9 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     if (j >= end || m->c.next[j] != h) {
         return false;
     }
-    /* The origin of a twin shares a cache line with the origin of its half-edge, so targets are
-     * read as origins of twins; only the third half-edge is read in addition. */
+    /* The targets of the half-edges h and i are read as the origins of their twins, because the
+     * origins of a half-edge and its twin are in one cache line. The third half-edge, j, is read
+     * only to see that it leads back to h. */
     triangle t = {.a = m->c.origin[h], .b = m->c.origin[h ^ 1u], .c = m->c.origin[i ^ 1u]};
     if (t.a >= vertices || t.b >= vertices || t.c >= vertices) {
         return false;
@@ -114,9 +119,10 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     return is_plain(t.square, reach);
 }
 
-/* Prefetches for triangles that come later in the loop: their links first, and for nearer ones the
- * rows to which the links lead. Where ids are in no spatial order every access misses the caches,
- * and this overlaps the misses. */
+/* Prefetches memory for faces that a loop over all faces will visit soon: the links of the face
+ * that is LINKS faces ahead, and the corners of the face that is CORNERS faces ahead. If ids are in
+ * no spatial order, every access misses the caches; prefetching makes the processor wait for many
+ * of these accesses at once. */
 static inline void look_ahead(const he_mesh *m, uint32_t f)
 {
     enum { LINKS = 24, CORNERS = 12 };
@@ -137,29 +143,32 @@ static inline void look_ahead(const he_mesh *m, uint32_t f)
     }
 }
 
-/* --- faces ------------------------------------------------------------------------------------ */
+/* --- normals of faces --- */
 
-/* Faces are handled in blocks: first the corners of all faces of a block are found, which
- * prefetches their positions, then the area vectors are computed, then the lengths of the vectors
- * in a loop without branches. */
+/* The number of faces in a block. Normals are computed block by block, in three loops over the
+ * faces of a block: the first loop finds the vertices of the corners and prefetches their
+ * positions, the second computes the area vectors, and the third, which has no branches, the
+ * lengths of these vectors. */
 enum { BLOCK = 64 };
 
 typedef struct faces {
     const he_mesh *m;
-    bool triangles; /* all faces are triangles, so no loop needs to be followed to see that it
-                       closes */
+    /* True if all faces of the mesh are triangles. The third half-edge of a face is then not read,
+     * because it certainly leads back to the first. */
+    bool triangles;
     he_vec3 *out;
 } faces;
 
-/* Returns true if all faces are triangles. Every face has at least three corners (I7), so all are
- * triangles if the mean number of corners is three. */
+/* Returns true if all faces are triangles. Every face has at least three corners (invariant I7 of
+ * mesh.h), so all faces are triangles if the mean number of corners is three. */
 static bool are_triangles(const he_content *c)
 {
     return 2 * (uint64_t)c->edges.live - c->boundary_halfedges == 3 * (uint64_t)c->faces.live;
 }
 
 typedef struct triple {
-    /* vertices of a triangle; all HE_NONE if only the general function can handle it */
+    /* ids of the vertices of a triangular face; all HE_NONE if the face is deleted, is no triangle
+     * or has broken links */
     uint32_t a, b, c;
 } triple;
 
@@ -177,8 +186,8 @@ static inline triple find_triple(const he_content *c, uint32_t f, bool triangles
             return none;
         }
     }
-    /* The origin of a twin shares a cache line with the origin of its half-edge, so targets are
-     * read as origins of twins, and the third half-edge is not read. */
+    /* The targets of the half-edges h and i are read as the origins of their twins, because the
+     * origins of a half-edge and its twin are in one cache line. */
     triple t = {c->origin[h], c->origin[h ^ 1u], c->origin[i ^ 1u]};
     return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
 }
@@ -270,16 +279,17 @@ he_status he_face_normals(const he_mesh *m, he_progress *progress, he_vec3 *out,
     return he_run_ranges(progress, m->c.faces.issued, face_range, &all, err);
 }
 
-/* --- vertices --------------------------------------------------------------------------------- */
+/* --- normals of vertices --- */
 
 static void add_to(he_vec3 *sum, he_vec3 normal, double weight)
 {
     *sum = he_vec3_add(*sum, he_vec3_scale(normal, weight));
 }
 
-/* Adds a triangle's share to the normals of its three corners. `half` is half the unit of area (see
- * area_unit_of_all), 0 if a double cannot hold it. Returns false if the share would vanish in that
- * unit. */
+/* Adds the normal of a triangle, times its weight, to the sums in `out` of its three vertices. With
+ * HE_WEIGHT_AREA, twice the triangle's area vector times `half` is added: `half` is 2^-u / 2 for
+ * the exponent u from area_unit_of_all, or 0 if a double cannot hold that number. Returns false,
+ * and adds nothing, if the product would underflow. */
 static bool share_triangle(const triangle *t, he_weight weight, double half, he_vec3 *out)
 {
     if (weight == HE_WEIGHT_AREA) {
@@ -294,7 +304,8 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     }
     double root = sqrt(t->square), at_a = 1, at_b = 1, at_c = 1;
     if (weight == HE_WEIGHT_ANGLE) {
-        /* At each corner the cross product of the two sides has the length of `vector`. */
+        /* At each corner, the cross product of the two sides that meet there has the length `root`
+         * of t->vector. */
         he_vec3 w = he_vec3_sub(t->v, t->u);
         at_a = atan2(root, he_vec3_dot(t->u, t->v));
         at_b = atan2(root, -he_vec3_dot(t->u, w));
@@ -307,8 +318,8 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     return true;
 }
 
-/* Returns an exponent of 2 that suits all areas of the mesh: twice the exponent of its largest
- * coordinate. */
+/* Returns a binary exponent for the areas of all faces of the mesh: twice the exponent of the
+ * mesh's largest coordinate. Areas are divided by 2 to the power of this exponent. */
 static int area_unit_of_all(const he_mesh *m)
 {
     he_box box;

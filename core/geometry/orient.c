@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* Upper bounds of the rounding error of a determinant, relative to the sum of its terms' absolute
- * values. */
+/* Upper bounds of the rounding errors of the determinants that he_orient3 (ERROR3) and he_orient2
+ * (ERROR2) compute in doubles, relative to the sum of the absolute values of the terms. */
 static const double ERROR3 = 8e-16, ERROR2 = 3.4e-16;
 
 static int sign(double x)
@@ -11,9 +11,11 @@ static int sign(double x)
     return (x > 0) - (x < 0);
 }
 
-/* --- expansions: sums of doubles, in rising order of size, none of them zero --- */
+/* --- expansions: exact sums of doubles, none of them zero, in rising order of size --- */
 
-enum { MOST = 192 }; /* most components that the determinant of three-by-three differences needs */
+/* The most components (doubles) of an expansion: as many as the 3 x 3 determinant of he_orient3 may
+ * need. */
+enum { MOST = 192 };
 
 typedef struct expansion {
     size_t count;
@@ -36,7 +38,8 @@ static pair exact_product(double a, double b)
     return (pair){fma(a, b, -x), x};
 }
 
-/* Adds one number to an expansion, going through its components from the smallest. */
+/* Adds the number b to an expansion. b is added to each component, from the smallest to the
+ * largest; the rounding error of each addition becomes a component of the result. */
 static void grow(expansion *e, double b)
 {
     size_t kept = 0;
@@ -53,8 +56,9 @@ static void grow(expansion *e, double b)
     e->count = kept;
 }
 
-/* Adds to an expansion the product of three differences, each given as two numbers. Most
- * differences are exact, and then seven of the eight terms are zero. */
+/* Adds the product a * b * c * sign_of to an expansion. Each of the factors a, b and c is the exact
+ * sum of a pair of doubles. Usually `low` is 0 in all three factors; then seven of the eight terms
+ * of the product are zero and are skipped. */
 static void add_product(expansion *e, pair a, pair b, pair c, double sign_of)
 {
     const double as[2] = {a.low, a.high}, bs[2] = {b.low, b.high}, cs[2] = {c.low, c.high};
@@ -82,11 +86,12 @@ static pair difference(double a, double b)
     return exact_sum(a, -b);
 }
 
-/* --- pairs of doubles as numbers with twice the digits (T. J. Dekker, "A floating-point technique
- * for extending the available precision", 1971) --- */
+/* --- numbers with twice the digits of a double, each stored as a pair of doubles (T. J. Dekker, "A
+ * floating-point technique for extending the available precision", 1971) --- */
 
-/* Upper bound of the rounding error of a determinant in pairs, relative to the sum of its terms'
- * absolute values: each of a dozen operations adds less than 2^-102. */
+/* Upper bound of the rounding error of the 3 x 3 determinant if it is computed with pairs of
+ * doubles, relative to the sum of the absolute values of its terms. Each of about twelve operations
+ * adds less than 2^-102. */
 static const double PAIR_ERROR3 = 0x1p-96;
 
 static pair sum_of(pair a, pair b)
@@ -112,7 +117,7 @@ static pair minor_of(pair a, pair b, pair c, pair d)
 /* --- determinants --- */
 
 /* Returns the exact sign of the determinant of he_orient3. `size` is the sum of the absolute values
- * of its terms. */
+ * of the determinant's terms. */
 static int exact3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d, double size)
 {
     pair ax = difference(a.x, d.x), ay = difference(a.y, d.y), az = difference(a.z, d.z);

@@ -25,7 +25,8 @@ static double largest(double size, he_vec3 p)
     return z > size ? z : size;
 }
 
-/* A power of two as the product of two factors, since the power itself may exceed a double. */
+/* A power of two, stored as two factors, because the power may be too large or too small for one
+ * double. */
 typedef struct power {
     double one, other;
 } power;
@@ -35,7 +36,7 @@ static he_vec3 scaled(he_vec3 p, power by)
     return (he_vec3){p.x * by.one * by.other, p.y * by.one * by.other, p.z * by.one * by.other};
 }
 
-/* Returns the power of two that brings `size` into [0.5, 1). */
+/* Returns the power of two by which `size` must be multiplied to lie in [0.5, 1). */
 static power power_for(double size)
 {
     int exponent = 0;
@@ -43,8 +44,9 @@ static power power_for(double size)
     return (power){ldexp(1, -exponent / 2), ldexp(1, -exponent - -exponent / 2)};
 }
 
-/* Writes the positions of the corners into `at`, relative to corner 0 and scaled: first so that
- * differences are finite, then so that the loop fills the unit cube. */
+/* Writes the positions of the loop's corners, relative to corner 0, into `at`. The positions are
+ * scaled by powers of two: before corner 0 is subtracted, so that differences do not overflow, and
+ * afterwards, so that the largest coordinate is in [0.5, 1). */
 static void place(const he_mesh *m, const he_planar_loop *flat, he_vec3 *at)
 {
     double size = 0;
@@ -81,8 +83,8 @@ static void project(he_planar_loop *flat, const he_vec3 *at, he_vec3 normal)
 {
     double length = sqrt(dot(normal, normal));
     normal = (he_vec3){normal.x / length, normal.y / length, normal.z / length};
-    /* The axes of the plane come from a coordinate axis that is not nearly parallel to the
-     * normal. */
+    /* The plane's axis v is the cross product of the normal and a coordinate axis that is not
+     * nearly parallel to the normal. */
     he_vec3 away = fabs(normal.x) < 0.6 ? (he_vec3){1, 0, 0} : (he_vec3){0, 1, 0};
     he_vec3 v = cross(normal, away);
     length = sqrt(dot(v, v));

@@ -1,9 +1,13 @@
 /* point_grid.c - finds the points within a tolerance of a given point, by a hash table of cells.
  *
- * The constant NEAR is the tolerance, a quarter of a cell, with a margin for the rounding of the
- * division. For coordinates so large that the margin is too small (2^43 cells from 0), both
- * neighbours of a cell are searched; where even the next double is out of reach (2^53 cells), each
- * coordinate is a cell of its own, as with tolerance 0. */
+ * Points within the tolerance of a point p may lie in the cell of p or in a neighbouring cell.
+ * Along each axis a neighbouring cell is searched if its border is at most NEAR cell widths away
+ * from p. The tolerance is a quarter of a cell width; NEAR is slightly larger, because the division
+ * that finds the cell of p is rounded. At coordinates of FAR_CELL cell widths or more, rounding
+ * errors exceed this margin, so the cells before and after the cell of p are always searched. At
+ * coordinates of LONE cell widths or more, even successive doubles differ by more than the
+ * tolerance, so only equal coordinates are near, and each coordinate is treated as a cell of its
+ * own. A tolerance of 0 is treated in this way, too. */
 #include "geometry/point_grid.h"
 
 #include "geometry/point_hash.h"
@@ -16,8 +20,8 @@
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
-/* The number of slots that are cleared between two reports of progress; it is small because writing
- * to fresh memory is slow. */
+/* The number of entries of the hash table that are set to 0 between two reports of progress. It is
+ * small because the first write to newly allocated memory is slow. */
 enum { STRETCH = 16 * HE_PROGRESS_STRIDE };
 
 he_status he_point_grid_make(he_point_grid *out, const he_point_grid_points *points, size_t most,
@@ -52,7 +56,8 @@ void he_point_grid_clear(he_point_grid *grid)
     grid->slots = NULL;
 }
 
-/* Finds the cells along one axis that may have points near x; the first is the cell of x. */
+/* Finds the cells along one axis that may have points within the tolerance of coordinate x, and
+ * returns their number (1 to 3). cells[0] is the cell of x. */
 static size_t cells_of(const he_point_grid *t, double x, double cells[3])
 {
     double at = x / (CELL * t->tolerance), cell = floor(at);

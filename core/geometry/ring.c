@@ -50,9 +50,9 @@ static double largest_coordinate(const he_mesh *m, uint32_t first)
     return largest;
 }
 
-/* Walks around a face whose links are known to close, in a scale where its largest difference of
- * coordinates is near 1: coordinates may be tiny or huge, or their differences small beside the
- * distance to the origin. */
+/* Walks around a face whose links are known to close. Coordinates are taken relative to the first
+ * corner and multiplied by a power of two, so that the largest of them is near 1. This is for faces
+ * whose products of coordinates would overflow or underflow. */
 static he_ring walk_apart(const he_mesh *m, uint32_t first, uint32_t degree, int *exponent)
 {
     he_vec3 o = m->c.position[m->c.origin[first]], u = {0, 0, 0};
@@ -117,8 +117,9 @@ double he_ring_area(const he_ring *r, int exponent)
     return exponent == 0 ? scaled : he_saturated(ldexp(scaled, 2 * exponent));
 }
 
-/* Returns the centroid of a face. The sum of far corners can overflow even if the differences
- * between them are ordinary; then they are summed again in a smaller scale. */
+/* Returns the centroid of a face. If the corners are far from the origin of coordinates, the sum of
+ * their positions in `found` may have overflowed; the positions are then summed up again in a
+ * smaller scale. */
 he_vec3 he_ring_centroid(const he_mesh *m, uint32_t first, const he_ring *found, int exponent)
 {
     he_ring r = *found;

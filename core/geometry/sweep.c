@@ -4,31 +4,36 @@
 
 #include <string.h>
 
-/* A corner in the chain of an interval. One corner may be in two chains. */
+/* An entry of an interval's chain. A corner that is in two chains has an entry in each of them. */
 typedef struct link {
-    /* `up` and `down` are the links above and below this one in the chain; HE_NONE at the ends. */
+    /* `corner` is a corner of the loop; `up` and `down` are the indices of the next entries above
+     * and below in the chain, HE_NONE at its ends. */
     uint32_t corner, up, down;
 } link;
 
 typedef struct interval {
-    /* sides of the loop; a side is named by the corner where it begins */
+    /* the sides of the loop that bound the interval; the number of a side is that of the corner at
+     * which the side begins */
     uint32_t lower, upper;
-    /* links: `bottom` and `top` end the chain, `last` has the corner visited last */
+    /* indices of entries of the chain: its two ends, and (`last`) the entry with the corner that
+     * was visited last */
     uint32_t bottom, top, last;
-    /* neighbours in the tree: child[0] leads to intervals below, child[1] to those above */
+    /* neighbours in the splay tree of intervals: the subtree child[0] has intervals below this one,
+     * the subtree child[1] has intervals above it */
     uint32_t parent, child[2];
 } interval;
 
 typedef struct sweep {
     const he_planar_loop *f;
-    uint32_t *rank; /* place of each corner in the order in which corners are visited */
-    /* The interval that each side of the loop bounds; HE_NONE while the sweep line does not cross
-     * the side. */
+    uint32_t *rank; /* for each corner, how many corners are visited before it */
+    /* The interval that each side of the loop bounds; HE_NONE until the sweep line reaches the
+     * side. */
     uint32_t *within;
     interval *intervals;
     link *links;
     uint32_t interval_count, link_count, root;
-    uint32_t *corners, made; /* `made`: number of triangles cut so far; `corners`: their corners */
+    /* `made`: number of triangles cut so far; `corners`: the corners of these triangles */
+    uint32_t *corners, made;
     uint64_t *steps;
 } sweep;
 
@@ -48,15 +53,16 @@ static int orientation(const sweep *s, uint32_t a, uint32_t b, uint32_t c)
     return he_orient2((he_vec2){x[a], y[a]}, (he_vec2){x[b], y[b]}, (he_vec2){x[c], y[c]});
 }
 
-/* --- the order in which corners are visited --- */
+/* --- the order in which the sweep line visits corners --- */
 
 static bool is_earlier(const he_planar_loop *f, uint32_t a, uint32_t b)
 {
     return f->x[a] != f->x[b] ? f->x[a] < f->x[b] : f->y[a] != f->y[b] ? f->y[a] < f->y[b] : a < b;
 }
 
-/* Sorts the corners by merge sort, in runs of 1, 2, 4 and so on corners. Returns the one of the two
- * arrays that holds the result. */
+/* Sorts the corners into the order in which the sweep line visits them, by merge sort with runs of
+ * 1, 2, 4 and so on corners. Overwrites the arrays `from` and `to`, and returns the array that
+ * holds the result. */
 static uint32_t *sort(const he_planar_loop *f, uint32_t *from, uint32_t *to)
 {
     for (size_t run = 1; run < f->n; run *= 2) {
@@ -95,7 +101,7 @@ static int side_of(const sweep *s, uint32_t child)
     return s->intervals[s->intervals[child].parent].child[1] == child;
 }
 
-/* Rotates a node of the splay tree above its parent. */
+/* Rotates node i of the splay tree above its parent. */
 static void rotate(sweep *s, uint32_t i)
 {
     interval *of = s->intervals;
@@ -119,7 +125,7 @@ static void splay(sweep *s, uint32_t i)
     }
 }
 
-/* Returns the interval with the highest lower side below a corner, or HE_NONE. */
+/* Returns the highest interval whose lower side is below a corner; HE_NONE if there is none. */
 static uint32_t find_below(sweep *s, uint32_t corner)
 {
     uint32_t found = HE_NONE, deepest = HE_NONE;
@@ -130,16 +136,16 @@ static uint32_t find_below(sweep *s, uint32_t corner)
         deepest = i;
         i = s->intervals[i].child[above];
     }
-    /* Splaying the last node on the way down makes the whole search take logarithmic time on
-     * average. */
+    /* Splaying the deepest node that the search has visited makes a search take logarithmic
+     * amortized time. */
     if (deepest != HE_NONE) {
         splay(s, deepest);
     }
     return found;
 }
 
-/* Inserts an interval just above the interval `below`, or below all others if `below` is
- * HE_NONE. */
+/* Adds an interval to the tree, directly above the interval `below`, or below all intervals if
+ * `below` is HE_NONE. Returns the index of the new interval. */
 static uint32_t add_interval(sweep *s, uint32_t below)
 {
     interval *of = s->intervals;
@@ -188,8 +194,9 @@ static void join_links(sweep *s, uint32_t lower, uint32_t upper)
     s->links[upper].down = lower;
 }
 
-/* Adds the triangle of a visited corner and the corners of the links `upper` and `lower`. Returns
- * false if that triangle does not turn left. */
+/* Adds the triangle between `corner`, which the sweep line visits, and the corners of the chain
+ * entries `upper` and `lower`. Returns false, and adds nothing, if the triangle does not turn left,
+ * or if n - 2 triangles were added already. */
 static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
 {
     uint32_t a = s->links[upper].corner, b = s->links[lower].corner;
@@ -204,8 +211,8 @@ static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
     return true;
 }
 
-/* Adds a corner as the new top of an interval's chain: a corner on the upper side, or at the end of
- * that side. */
+/* Makes a corner the new top of an interval's chain. First cuts off the triangles between this
+ * corner and the corners at the top of the chain that it sees. */
 static void add_top(sweep *s, interval *of, uint32_t corner)
 {
     uint32_t top = of->top;
@@ -226,7 +233,8 @@ static void add_bottom(sweep *s, interval *of, uint32_t corner)
     join_links(s, of->bottom, bottom);
 }
 
-/* --- handlers of events at corners; false: a simple polygon has no such event --- */
+/* --- what is done when the sweep line reaches a corner; a function returns false if the loop
+ * cannot be a simple polygon --- */
 
 static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
 {
@@ -235,7 +243,8 @@ static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
     s->within[lower] = s->within[upper] = which;
 }
 
-/* Handles a corner at which both its sides begin, with the inside of the loop between them. */
+/* Handles a corner whose two sides lie ahead of the sweep line, with the inside of the loop between
+ * the sides: a new interval begins. */
 static bool start(sweep *s, uint32_t corner)
 {
     uint32_t made = add_interval(s, find_below(s, corner));
@@ -245,7 +254,8 @@ static bool start(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Handles a corner at which both its sides begin, with the outside of the loop between them. */
+/* Handles a corner whose two sides lie ahead of the sweep line, with the outside of the loop
+ * between the sides: the interval in which the corner lies is split in two. */
 static bool split(sweep *s, uint32_t corner)
 {
     uint32_t below = find_below(s, corner);
@@ -257,7 +267,8 @@ static bool split(sweep *s, uint32_t corner)
     link *last = &s->links[low->last];
     bound(s, above, corner, low->upper);
     bound(s, below, low->lower, before(s, corner));
-    /* The corner that was visited last belongs to both chains. */
+    /* The chain is split at the corner that was visited last. This corner ends the lower chain and
+     * begins the upper chain, so it gets a second entry. */
     high->bottom = new_link(s, last->corner);
     high->top = high->bottom;
     if (last->up != HE_NONE) {
@@ -271,7 +282,8 @@ static bool split(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Handles a corner at which both its sides end, with the outside of the loop between them. */
+/* Handles a corner whose two sides lie behind the sweep line, with the outside of the loop between
+ * the sides: the intervals below and above the corner become one. */
 static bool merge(sweep *s, uint32_t corner)
 {
     uint32_t below = s->within[corner], above = s->within[before(s, corner)];
@@ -281,7 +293,8 @@ static bool merge(sweep *s, uint32_t corner)
     interval *low = &s->intervals[below], *high = &s->intervals[above];
     add_top(s, low, corner);
     add_bottom(s, high, corner);
-    /* The corner ends both chains, so one of its two links is dropped. */
+    /* The corner is now the top of the lower chain and the bottom of the upper chain. The chains
+     * are joined, and the corner's entry in the upper chain is dropped. */
     join_links(s, low->top, s->links[high->bottom].up);
     low->last = low->top;
     low->top = high->top;
@@ -290,7 +303,8 @@ static bool merge(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Handles a corner at which both its sides end, with the inside of the loop between them. */
+/* Handles a corner whose two sides lie behind the sweep line, with the inside of the loop between
+ * the sides: the interval between the sides ends. */
 static bool end(sweep *s, uint32_t corner)
 {
     uint32_t which = s->within[corner];
@@ -307,7 +321,7 @@ static bool meet(sweep *s, uint32_t corner)
 {
     uint32_t b = before(s, corner), a = after(s, corner);
     bool onward = s->rank[a] > s->rank[corner], back = s->rank[b] > s->rank[corner];
-    /* Sides that end at this corner must have begun, and must be the bounds of their intervals. */
+    /* Each side that ends at this corner must bound an interval. */
     if ((!onward && s->within[corner] == HE_NONE) || (!back && s->within[b] == HE_NONE)) {
         return false;
     }
@@ -331,9 +345,9 @@ static bool meet(sweep *s, uint32_t corner)
                     : (onward ? split(s, corner) : merge(s, corner));
 }
 
-/* --- sorting the triangles so that each cuts a corner off the rest of the loop --- */
+/* --- sorting the triangles so that each triangle cuts a corner off the rest of the loop --- */
 
-/* Returns the middle one of three corners. */
+/* Returns the corner whose number is neither the lowest nor the highest of the three. */
 static uint32_t middle_of(const uint32_t t[3])
 {
     uint32_t low = t[0] < t[1] ? t[0] : t[1], high = t[0] < t[1] ? t[1] : t[0];
@@ -350,9 +364,11 @@ static uint32_t span_of(const uint32_t t[3])
     return high - low;
 }
 
-/* Sorts the triangles so that each cuts a corner off. A triangle spans a range of corners; the
- * triangles that cut off the corners inside that range have smaller spans, so triangles of small
- * spans come first. Returns false if they are no triangulation. `room` has n + 2 words. */
+/* Sorts the triangles so that each triangle cuts one corner off what the triangles before it have
+ * left of the loop. The span of a triangle is the difference between its highest and its lowest
+ * corner number. The triangles that cut off the corners between these two numbers have smaller
+ * spans, so triangles are sorted by their spans, the smallest first. Returns false if the triangles
+ * are no triangulation of the loop. `room` is scratch space for n + 2 numbers. */
 static bool put_in_order(const he_planar_loop *f, const uint32_t *from, uint32_t *to,
                          uint32_t *room)
 {
@@ -408,7 +424,7 @@ he_status he_sweep_cut(const he_planar_loop *f, uint32_t *corners, bool *done, u
     he_status status = HE_NO_MEMORY;
     sweep s = {.f = f, .root = HE_NONE, .steps = steps};
     uint32_t *words = he_mem_array(NULL, n + 1, 7 * sizeof *words);
-    /* Each corner begins at most one interval, and has at most three links. */
+    /* At each corner the sweep line makes at most one interval and at most three chain entries. */
     s.intervals = he_mem_array(NULL, n, sizeof *s.intervals);
     s.links = he_mem_array(NULL, n, 3 * sizeof *s.links);
     if (words == NULL || s.intervals == NULL || s.links == NULL) {

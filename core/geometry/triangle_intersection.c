@@ -4,14 +4,15 @@
 
 /* --- intersection tests in a plane --- */
 
-/* Projects a point by dropping one axis. Coordinates stay as they are, so nothing is rounded. */
+/* Projects a point along a coordinate axis, by dropping the coordinate on that axis. The remaining
+ * coordinates do not change, so nothing is rounded. */
 static he_vec2 flat(he_vec3 p, int axis)
 {
     return axis == 0 ? (he_vec2){p.y, p.z} : axis == 1 ? (he_vec2){p.z, p.x} : (he_vec2){p.x, p.y};
 }
 
-/* Returns the axis along which the triangle's projection has the largest area, subject to
- * rounding. */
+/* Returns the coordinate axis along which the triangle's projection has the largest area. The areas
+ * are rounded, so the result may be another axis if two areas are almost equal. */
 static int likely_axis(const he_vec3 t[3])
 {
     he_vec3 n = he_vec3_cross(he_vec3_sub(t[1], t[0]), he_vec3_sub(t[2], t[0]));
@@ -19,7 +20,8 @@ static int likely_axis(const he_vec3 t[3])
     return x > y && x > z ? 0 : y > z ? 1 : 2;
 }
 
-/* Returns an axis along which the triangle's projection has area, -1 if it has none. */
+/* Returns a coordinate axis along which the triangle's projection has an area other than 0; -1 if
+ * there is none. The test is exact. */
 static int open_axis(const he_vec3 t[3])
 {
     int likely = likely_axis(t);
@@ -37,7 +39,7 @@ bool he_triangle_has_area(const he_vec3 t[3])
     return open_axis(t) >= 0;
 }
 
-/* Returns true if p, which is on the line of a and b, lies between them. */
+/* Returns true if p lies between a and b. p must be on the line through a and b. */
 static bool between(he_vec2 a, he_vec2 b, he_vec2 p)
 {
     return fmin(a.x, b.x) <= p.x && p.x <= fmax(a.x, b.x) && fmin(a.y, b.y) <= p.y &&
@@ -65,8 +67,8 @@ static bool is_inside(he_vec2 p, const he_vec2 t[3])
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* Returns true if a segment and a triangle in one plane intersect. Both are projected along an
- * axis. */
+/* Returns true if the segment from p to q and the triangle t, which lie in one plane, intersect.
+ * The test uses their projections along a coordinate axis. */
 static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axis)
 {
     he_vec2 a = flat(p, axis), b = flat(q, axis);
@@ -75,8 +77,8 @@ static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axi
            segments_meet(a, b, c[1], c[2]) || segments_meet(a, b, c[2], c[0]);
 }
 
-/* Two triangles, projected along an axis along which triangle a has area. Triangle b then has area,
- * too, if it is in the same plane. */
+/* The projections of two triangles along a coordinate axis. The projection of triangle a has area.
+ * If the triangles lie in one plane, the projection of triangle b has area, too. */
 typedef struct flat_pair {
     he_vec2 a[3], b[3];
 } flat_pair;
@@ -87,8 +89,9 @@ static flat_pair flatten(const he_vec3 a[3], const he_vec3 b[3], int axis)
                        {flat(b[0], axis), flat(b[1], axis), flat(b[2], axis)}};
 }
 
-/* Returns true if all corners of triangle u are beyond the line of the side of triangle t that
- * begins at corner i; false if t has no area. */
+/* Returns true if the line through the side of triangle t that begins at corner i separates the
+ * triangles: all corners of u lie on that side of the line on which t does not lie. Returns false
+ * if t has no area. */
 static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
 {
     he_vec2 p = t[i], q = t[(i + 1) % 3];
@@ -97,9 +100,8 @@ static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
            he_orient2(p, q, u[2]) == beyond;
 }
 
-/* Returns true if two triangles in one plane intersect. They are disjoint exactly if one lies
- * beyond some side of the other, because the differences of their points fill a convex polygon,
- * whose sides are parallel to theirs. */
+/* Returns true if two triangles in one plane intersect. Two triangles are disjoint exactly if the
+ * line through one of their six sides separates them (separating axis theorem). */
 static bool flat_meet(const flat_pair *f)
 {
     for (int i = 0; i < 3; i++) {
@@ -110,9 +112,10 @@ static bool flat_meet(const flat_pair *f)
     return true;
 }
 
-/* The sector of triangle t at its corner `at` is on one side of the line through its ray to corner
- * `to`. Returns true if the sector of triangle u at its corner `of`, which is at the position of
- * `at`, is on the other side, without touching that ray. */
+/* Two triangles, t and u, have a common corner: corner `at` of t is at the position of corner `of`
+ * of u. The sector of a triangle is the angle at this corner, between the rays along two sides of
+ * the triangle. Returns true if the line through the ray from corner `at` to corner `to` of t
+ * separates the sector of t from the sector of u, and u's sector does not contain that ray. */
 static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3], int of)
 {
     he_vec2 apex = t[at], ray = t[to];
@@ -127,9 +130,9 @@ static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3]
     return true;
 }
 
-/* Returns true if two triangles in one plane with a common corner share other points. They do so
- * exactly if their sectors at that corner share a ray. If they share none, the line through one of
- * their four rays separates them. */
+/* Returns true if two triangles in one plane, with a common corner, share other points, too. They
+ * do exactly if their sectors at that corner (is_beyond_ray) share a ray. If the sectors share no
+ * ray, the line through one of the four rays that bound the sectors separates the sectors. */
 static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
 {
     for (int k = 1; k < 3; k++) {
@@ -141,8 +144,9 @@ static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
     return true;
 }
 
-/* Returns true if two triangles in one plane that share the side opposite to corners i and k
- * overlap. They do so if they are on the same side of that common side. */
+/* Returns true if two triangles in one plane with a common side overlap. The side is opposite to
+ * corner i of triangle a and to corner k of triangle b. The triangles overlap exactly if these two
+ * corners are on one side of the line through the common side. */
 static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 {
     he_vec2 p = f->a[(i + 1) % 3], q = f->a[(i + 2) % 3];
@@ -151,16 +155,17 @@ static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 
 /* --- intersection tests in space --- */
 
-/* Two triangles, and on which side of each one's plane the corners of the other are. */
+/* Two triangles in space, and where the corners of each triangle lie relative to the plane of the
+ * other triangle. */
 typedef struct meeting {
     const he_vec3 *t[2];
-    /* side[0]: where the corners of t[0] are, as seen from the plane of t[1]; side[1]: the
-     * reverse. */
+    /* side[0][i]: on which side of the plane of t[1] corner i of t[0] lies (0: in the plane);
+     * side[1][i]: on which side of the plane of t[0] corner i of t[1] lies */
     int side[2][3];
 } meeting;
 
-/* Returns true if the side that begins at corner i of triangle `of` intersects the other
- * triangle. */
+/* Returns true if a side of one triangle intersects the other triangle. The side begins at corner i
+ * of the triangle t[of]. */
 static bool side_meets(const meeting *m, int of, int i)
 {
     const he_vec3 *t = m->t[1 - of];
@@ -180,9 +185,11 @@ static bool side_meets(const meeting *m, int of, int i)
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* Computes on which sides of the plane of t[1 - of] the corners of t[of] are; corners in the set
- * `shared`, which both triangles have, lie in the plane. Returns true if all other corners are on
- * one side and none is in the plane, as for nearly all neighbours. */
+/* Computes on which side of the plane of triangle t[1 - of] each corner of triangle t[of] lies. Bit
+ * i of `shared` is set if corner i of t[of] is also a corner of t[1 - of]; such a corner lies in
+ * the plane. Returns true if all other corners lie on one side of the plane and none lies in it.
+ * The triangles then do not intersect. This is so for nearly all triangles that are neighbours in a
+ * mesh. */
 static bool is_beside(meeting *m, int of, unsigned shared)
 {
     const he_vec3 *plane = m->t[1 - of];
@@ -245,13 +252,14 @@ bool he_triangles_intersect(const he_vec3 a[3], const he_vec3 b[3])
                              : flat_meet_beyond_side(&f, 3 - sum_a, 3 - sum_b);
     }
     if (shared == 1) {
-        /* If both triangles contain more than the shared corner, what they have in common reaches
-         * the side opposite to that corner in one of them, and this side intersects the other
+        /* The triangles share a corner and lie in different planes, so their common points form a
+         * segment that begins at this corner. If the segment is longer than a point, it ends on the
+         * side opposite to this corner of one triangle, and that side intersects the other
          * triangle. */
         return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
     }
-    /* If the projections of the triangles are disjoint, the triangles are disjoint, too; this test
-     * is cheaper than the ones that follow. */
+    /* If the projections of the triangles are disjoint, the triangles are disjoint, too. This test
+     * is cheaper than the tests of the six sides below. */
     const flat_pair seen = flatten(a, b, likely_axis(a));
     if (!flat_meet(&seen)) {
         return false;

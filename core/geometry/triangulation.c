@@ -9,11 +9,12 @@
 
 /* --- state that the triangulations of several loops share --- */
 
-/* Progress is reported after this many steps, which take less than a millisecond. */
+/* Progress is reported each time that this many steps were taken, which takes less than a
+ * millisecond. */
 enum { STEPS_UNTOLD = 1 << 15 };
 
-/* Edges are searched around their ends until this many steps, or as many as making the index of
- * edges takes, have been spent; then the index is made. */
+/* When searches for edges around vertices have taken this many steps, and as many more as making
+ * the index of edges takes, the index is made (edge_lookup.h). */
 enum { SEARCHED_AT_LEAST = 4096 };
 
 bool he_diagonal_exists(const he_mesh *m, const he_planar_loop *flat, uint32_t i, uint32_t k,
@@ -63,18 +64,19 @@ he_status he_diagonals_refuse(const he_mesh *m, const he_planar_loop *flat, he_e
         v);
 }
 
-/* --- exact triangulation: all sub-loops i..k of corners, smallest first --- */
+/* --- exact triangulation by dynamic programming: sub-loops of corners i..k, smallest first --- */
 
-/* The cost of a triangle that does not turn left. It exceeds the cost of all diagonals of a loop,
- * each of which costs at most one: its squared length divided by the largest that is possible in
- * the coordinates of planar_loop.h. */
+/* The cost of a triangle that does not turn left. It exceeds the cost of all diagonals of a loop
+ * together, because there are fewer than HE_EXACT_CORNERS diagonals and none costs more than 1. */
 static const double BAD = 4096;
 
 typedef struct table {
-    /* The cost of the best triangulation of sub-loop i..k, stored under i, k and under k, i;
-     * DBL_MAX if there is none. */
+    /* cost[i * n + k] and cost[k * n + i], for i < k, both hold the cost of the best triangulation
+     * of the sub-loop from corner i to corner k; DBL_MAX if there is none. */
     double *cost;
-    uint8_t *middle; /* middle corner of the triangle on side i, k of the sub-loop */
+    /* middle[i * n + k], for i < k, is the third corner of the triangle that has the corners i and
+     * k in the best triangulation of the sub-loop */
+    uint8_t *middle;
     he_triangulation_work *work;
 } table;
 
@@ -84,7 +86,8 @@ static double diagonal_cost(const he_planar_loop *f, uint32_t i, uint32_t k)
     return (x * x + y * y) / 12;
 }
 
-/* Computes the cost of the sub-loop i..k, including `side`, the cost of its diagonal. */
+/* Finds the best triangulation of the sub-loop from corner i to corner k, and returns its cost.
+ * `side`, the cost of the diagonal between i and k, is included. */
 static double fill_cell(const he_planar_loop *f, uint32_t i, uint32_t k, double side, table *t)
 {
     uint32_t n = f->n;
@@ -92,8 +95,8 @@ static double fill_cell(const he_planar_loop *f, uint32_t i, uint32_t k, double 
     double best = DBL_MAX;
     for (uint32_t j = i + 1; j < k; j++) {
         double cost = side + from_i[j] + to_k[j];
-        /* Most triangles cost more than the best one even if they turn left, so for them it is not
-         * tested whether they do. */
+        /* The cost of most triangles i, j, k is too high even if the triangle turns left; then it
+         * is not tested whether the triangle turns left. */
         if (cost < best) {
             cost += he_planar_loop_turns_left(f, i, j, k) ? 0 : BAD;
             if (cost < best) {
@@ -129,9 +132,10 @@ static he_status fill_table(const he_mesh *m, const he_planar_loop *f, bool avoi
     return HE_OK;
 }
 
-/* Lists the triangles innermost first, so that each cuts off its middle corner when its turn comes.
- * The stack holds sub-loops. They are visited in preorder and written backwards, which puts
- * children before parents. */
+/* Writes the triangles of the best triangulation, in such an order that each triangle cuts its
+ * middle corner off the rest of the loop. The stack holds sub-loops that are still to be visited.
+ * Each sub-loop is visited before the smaller sub-loops that its triangle leaves, and `corners` is
+ * filled from its end to its beginning, so the triangles of the smaller sub-loops come first. */
 static void read_table(const he_planar_loop *f, const table *t, uint32_t *corners)
 {
     uint32_t stack[2 * HE_EXACT_CORNERS], depth = 0, n = f->n, left = n - 2;
@@ -196,12 +200,13 @@ void he_triangulation_clear(he_triangulation *triangulation)
     *triangulation = (he_triangulation){.corners = NULL};
 }
 
-/* Returns true if a side of a triangle that is no side of the loop is an edge of the mesh. */
+/* Returns true if a diagonal of the triangulation joins two vertices that an edge of the mesh
+ * joins. */
 static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
                          he_triangulation_work *work)
 {
-    /* The third side of a triangle is the diagonal by which it is cut off; the last triangle has no
-     * diagonal of its own. */
+    /* The side from the third to the first corner of a triangle is the diagonal that cuts the
+     * triangle off. The last triangle is not cut off, so it is skipped. */
     for (uint32_t k = 0; k + 3 < plan->flat.n; k++) {
         const uint32_t *corners = plan->corners + 3 * (size_t)k;
         if (he_diagonal_exists(m, &plan->flat, corners[0], corners[2], work)) {
@@ -211,7 +216,8 @@ static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
     return false;
 }
 
-/* Triangulates by the sweep line, because ear clipping got stuck. */
+/* Triangulates a loop by a sweep line (sweep.h), because ear clipping got stuck. *done becomes
+ * false if the sweep line finds no triangulation. */
 static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                             he_triangulation *plan, bool *done, he_error *err)
 {
@@ -268,8 +274,9 @@ static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_wo
     return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
 }
 
-/* Takes the triangulation from the mesh's cache. `found` is set to false if the cache does not have
- * it, or if it would double an edge. */
+/* Takes the triangulation of a loop from the mesh's cache of long faces. Sets *found to true if the
+ * cache has the triangulation and, with HE_AVOID_EDGES, none of its diagonals is an edge of the
+ * mesh. */
 static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
                            he_triangulation_work *work, he_triangulation *plan, bool *found,
                            he_error *err)
