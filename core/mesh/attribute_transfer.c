@@ -1,5 +1,5 @@
-/* attribute_transfer.c - the functions of write.h that set the attributes of a row from those of
- * other rows. */
+/* attribute_transfer.c - the functions of write.h that compute the attributes of an element from
+ * the attributes of other elements. */
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
@@ -15,9 +15,10 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
     return false;
 }
 
-/* Writes the weighted sum of n rows of a column, or their mean without weights, in the column's own
- * type. Integers and booleans are rounded to nearest; the sum is kept within the type's range
- * despite rounding errors. */
+/* Writes the weighted sum of the attribute values of n elements to `out`, or the mean of the values
+ * if `weights` is NULL. The result has the type of the column: integers and booleans are rounded to
+ * the nearest value, and a sum that rounding errors have pushed out of the type's range
+ * is clamped. */
 static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
                   unsigned char *out)
 {
@@ -87,7 +88,8 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
     }
 }
 
-/* The rows from whose values the value of another row is made, and their weights. */
+/* The elements from whose attribute values the value of another element is computed, and the
+ * weights of these elements. */
 typedef struct mixture {
     const uint32_t *rows;
     const double *weights; /* weight of each row; NULL if all weights are equal */
@@ -95,8 +97,8 @@ typedef struct mixture {
     uint32_t nearest; /* the row whose value is copied if the column's rule is copy */
 } mixture;
 
-/* Sets row `to`, in every column of a kind of element, to the value that the column's rule makes of
- * the rows that `of` names. */
+/* Sets the attributes of element `to`. In each attribute column for this kind of element, the
+ * column's rule (copy, interpolate or default) computes the new value from the elements in `of`. */
 static void carry(he_mesh *m, he_kind kind, uint32_t to, const mixture *of)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {

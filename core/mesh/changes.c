@@ -7,10 +7,13 @@
 
 #include <string.h>
 
-/* A record of a delta that changed one word of a column. Sorting by `key` brings all records of a
- * word together, in the order in which they were written. */
+/* The change of one 32-bit word in one of the mesh's arrays, taken from a record of a delta (the
+ * log of an edit). Sorting such changes by `key` brings all changes of one word together, in the
+ * order in which they were made. */
 typedef struct word_record {
-    uint64_t key; /* column, word and row */
+    /* identifies the word: number of the array, of the element and of the word in the element's
+     * entry */
+    uint64_t key;
     uint32_t before, after;
 } word_record;
 
@@ -19,8 +22,7 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->column << 40 | (uint64_t)r->word << 32 | r->row;
 }
 
-/* Sorts records by key and keeps the order of equal keys: a few records, such as those of a local
- * edit, by insertion; many by radix sort, which skips the bytes that are equal in all keys. */
+/* Sorts a few records by key, with insertion sort. Records with equal keys stay in order. */
 static void sort_few(word_record *records, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
@@ -35,6 +37,9 @@ static void sort_few(word_record *records, size_t count)
 
 enum { FEW = 96 };
 
+/* Sorts records by key. Records with equal keys stay in order. Up to FEW records, such as those of
+ * a local edit, are sorted by insertion sort; more are sorted by radix sort, which skips the bytes
+ * that are equal in all keys. */
 static he_status sort_records(word_record **records, size_t count, he_progress *progress,
                               he_error *err)
 {
@@ -122,14 +127,16 @@ static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_c
     return he_ids_add(&out->modified[column->domain], row, err);
 }
 
-/* The net change of one word over all deltas. */
+/* The net change of one 32-bit word in one of the mesh's arrays over all edits that are
+ * summed up. */
 typedef struct word_change {
     uint32_t column, row, before, after;
 } word_change;
 
-/* Adds the element to which a changed word belongs to the lists of changes; `attribute` is the
- * column of the word, NULL if the word is no attribute value. Elements that were created or deleted
- * are recorded as modified, too; keep_modified drops them at the end. */
+/* Adds the element to which a changed word belongs to the lists of changed elements. `attribute` is
+ * the attribute column of the word; NULL if the word is a link or part of a position. Elements that
+ * were created or deleted are also added to the list of modified elements; keep_modified removes
+ * them from that list at the end. */
 static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
                            const word_change *change, he_error *err)
 {
@@ -177,16 +184,20 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* What a slot for an attribute column contained before the first change. */
+/* What the edits did to one entry of the mesh's array of attribute columns. The entries are called
+ * slots. */
 typedef struct attribute_slot {
-    const he_column *before; /* the first column in the slot; NULL if the slot was free */
-    bool has_changed;        /* a column was added to the slot or dropped from it */
-    /* `before` is NULL because the first column was dropped and put back: the mesh owns it now. */
+    /* the column that was in the slot before all edits, if one of the edits dropped it;
+     * else NULL */
+    const he_column *before;
+    bool has_changed; /* a column was added to the slot or dropped from it */
+    /* An edit dropped the column that was in the slot at first, and another edit put it back into
+     * the mesh. No delta owns this column now, so `before` is NULL. */
     bool is_unknown;
 } attribute_slot;
 
-/* Returns the label of component i of a row; "" if the value is no index of a label, which can
- * happen in a damaged store and is reported by he_check. */
+/* Returns the label of component i of an attribute value, which starts at `row`. Returns "" if the
+ * component is not the index of a label, which can happen only if the stored mesh was damaged. */
 static const char *label_of(const he_column *column, const unsigned char *row, uint32_t i)
 {
     uint32_t index;
@@ -194,8 +205,9 @@ static const char *label_of(const he_column *column, const unsigned char *row, u
     return index < he_labels_count(column->labels) ? he_labels_get(column->labels, index) : "";
 }
 
-/* Returns true if two columns have equal labels in row `row`. If one column is NULL, all its rows
- * have the default of the other. */
+/* Returns true if two attribute columns have equal labels for element `row`. If one of the columns
+ * does not exist (NULL), the element counts as having the default label of the column
+ * that exists. */
 static bool same_labels(const he_column *a, const he_column *b, size_t row)
 {
     const he_column *x = a != NULL ? a : b, *y = b != NULL ? b : a;
@@ -208,18 +220,20 @@ static bool same_labels(const he_column *a, const he_column *b, size_t row)
     return same;
 }
 
-/* The records that changed words, of all parts of deltas. They are sorted by key, and records with
- * one key are in the order in which they took effect. */
+/* The changes of 32-bit words that all edits made, sorted by key. Changes with equal keys are in
+ * the order in which they took effect. */
 typedef struct words {
     word_record *records;
     size_t count;
-    attribute_slot *slots; /* what is known about each slot for an attribute column */
+    /* what the edits did to each entry of the mesh's array of attribute columns */
+    attribute_slot *slots;
     size_t slot_count;
 } words;
 
-/* Notes what a record that added or dropped a column says about the column's slot. The delta owns
- * the column if it is not in the mesh now. A slot number above those of the mesh belongs to a
- * content that was replaced. */
+/* Evaluates a record which says that an attribute column was added to a slot (an entry of the
+ * mesh's array of columns) or dropped from a slot. If the column is not in the mesh now, it is in
+ * the delta's array `objects`. A slot number that is too high for the mesh is from a time before
+ * all data of the mesh were replaced; such a record is ignored. */
 static void note_slot(words *w, const he_change_part *part, const he_record *r)
 {
     if (r->row >= w->slot_count) {
@@ -234,9 +248,9 @@ static void note_slot(words *w, const he_change_part *part, const he_record *r)
     slot->has_changed = true;
 }
 
-/* Returns true if the column in the slot was added or dropped by an earlier record. Words written
- * to the slot afterwards need not be noted, because the first column and the present one are
- * compared as a whole. */
+/* Returns true if an earlier record added a column to the slot or dropped one from it. Single
+ * values that were written to the slot after that are not compared, because the column that was in
+ * the slot before all edits is compared with the present column as a whole. */
 static bool is_written_later(const words *w, uint32_t slot)
 {
     return slot < w->slot_count && w->slots[slot].has_changed;
@@ -300,9 +314,9 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
     return status == HE_OK ? sort_records(&w->records, w->count, mesh->progress, err) : status;
 }
 
-/* Returns the attribute column to which words with this column number belong. Returns NULL for
- * links and positions, and for a column without labels that was dropped: such a column is reported
- * as a whole. */
+/* Returns the attribute column that has the number `column` in records of a delta. Returns NULL if
+ * links or positions have this number, or if a column without labels was dropped; the loss of such
+ * a column is reported by he_changes.others and not for each element. */
 static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32_t column)
 {
     if (column < HE_COL_ATTRIBUTE) {
@@ -315,8 +329,9 @@ static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32
     return slot->before != NULL && slot->before->labels != NULL ? slot->before : NULL;
 }
 
-/* Lists as modified the elements whose label differs after a column was added, dropped or replaced
- * by another with its name. */
+/* Compares the attribute columns `before` and `after`, and adds the elements whose labels differ to
+ * the list of modified elements. If one of the columns does not exist (NULL), the elements count as
+ * having the default label of the column that exists. */
 static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_column *before,
                              const he_column *after, he_error *err)
 {
@@ -391,7 +406,8 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
     return status;
 }
 
-/* Keeps in `modified` only elements that exist both before and after the changes. */
+/* Removes the elements that did not exist before the changes, or do not exist after them, from the
+ * list of modified elements. */
 static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
 {
     he_ids *list = &out->modified[kind];

@@ -12,9 +12,10 @@ typedef struct checker {
     const he_mesh *m;
     he_problem *problems;
     size_t capacity, total;
-    uint64_t *in_face; /* a bit for each half-edge, set if the walk around its face reached it */
-    uint64_t *in_ring; /* a bit for each half-edge, set if the walk around its origin reached it */
-    /* A word for each vertex: 1 + the id of the face or vertex whose walk reached it last. */
+    uint64_t *in_face; /* a bit for each half-edge, set when a walk around a face reaches it */
+    uint64_t *in_ring; /* a bit for each half-edge, set when a walk around a vertex reaches it */
+    /* The last walk that reached each vertex: 1 + the id of the face or vertex around which that
+     * walk went; 0 if no walk has reached the vertex. */
     uint32_t *stamp;
 } checker;
 
@@ -34,7 +35,8 @@ static void broken(checker *c, int rule, he_element at, const char *format, ...)
     c->total++;
 }
 
-/* Returns true if the check must stop: at the first problem, if the caller wants only one. */
+/* Returns true if the check must stop, because the caller wants only one problem and one
+ * was found. */
 static bool enough(const checker *c)
 {
     return c->capacity == 1 && c->total > 0;
@@ -76,8 +78,9 @@ static void check_edge_links(checker *c, uint32_t e)
     }
 }
 
-/* Checks invariant I1, and the stored half-edges of vertices and faces. If this pass finds a bad
- * link, the later passes are skipped, because they follow links. */
+/* Checks that every link leads to a live element: invariant I1, and the half-edges that vertices
+ * and faces store. If this pass of the check finds a bad link, the later passes are skipped,
+ * because they follow links. */
 static void check_links(checker *c)
 {
     const he_content *k = &c->m->c;
@@ -313,8 +316,8 @@ he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, s
 he_status he_check_with_progress(const he_mesh *mesh, he_progress *progress, he_problem *problems,
                                  size_t capacity, size_t *total, he_error *err)
 {
-    /* The passes of the check, in the order in which they run. If check_links finds a bad link, the
-     * others are skipped, because they follow links. */
+    /* The passes of the check, in the order in which they run. If the first pass finds a link to no
+     * live element, all other passes are skipped, because they follow links. */
     static void (*const passes[])(checker * c) = {check_links,    check_halfedges, check_faces,
                                                   check_vertices, check_rows,      check_materials};
     enum { PASSES = sizeof passes / sizeof *passes };

@@ -28,7 +28,7 @@ const char *he_rule_name(he_rule rule)
     return rules[rule];
 }
 
-/* Returns the schema of a column; its name is borrowed from the column. */
+/* Returns the schema of a column. The name in the schema is borrowed from the column. */
 static he_column_schema schema_of(const he_column *column)
 {
     return (he_column_schema){column->name, column->domain, column->type, column->components,
@@ -188,7 +188,8 @@ bool he_is_normal_column(const he_column *column)
 void he_normal_negate(const he_column *column, unsigned char *row)
 {
     size_t size = he_type_bytes(column->type);
-    /* Values are little-endian, so the sign is the top bit of the last byte. */
+    /* The three values are floats or doubles in little-endian byte order, so the sign of a value is
+     * the top bit of its last byte. */
     for (size_t k = 1; k <= 3; k++) {
         row[k * size - 1] ^= 0x80;
     }

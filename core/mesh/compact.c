@@ -11,10 +11,10 @@ void he_maps_clear(he_maps *maps)
     *maps = (he_maps){0};
 }
 
-/* A block of 64 rows of a table: `rows` has a set bit for each live row, and `before` is the number
- * of live rows before the block. The new id of a row is `before` plus a number of set bits.
- * Compared with an array of new ids, blocks take an eighth of the space, so they stay in the
- * cache. */
+/* Says which of 64 successive elements are live: `rows` has a set bit for each live element, and
+ * `before` is the number of all live elements with lower ids than the first of the 64. The new id
+ * of a live element is `before` plus the number of set bits below the element's own bit. Blocks
+ * take a sixteenth of the memory of an array of new ids, so they stay in the cache. */
 typedef struct block {
     uint64_t rows;
     uint32_t before;
@@ -31,7 +31,8 @@ static size_t block_count(uint32_t issued)
     return (size_t)issued / BLOCK_ROWS + 1;
 }
 
-/* Makes the blocks of a table. A row is live unless its link, links[row * stride], is dead. */
+/* Makes the blocks (bits that say which elements are live) for all `issued` elements of a kind.
+ * Element i is live unless its link, which is entry i * stride of `links`, is HE_DEAD. */
 static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
 {
     block *blocks = he_mem_array(NULL, block_count(issued), sizeof *blocks);
@@ -49,7 +50,7 @@ static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
     return blocks;
 }
 
-/* Returns the number of set bits. They are counted in parallel in fields of 2, 4 and 8 bits; a
+/* Returns the number of set bits. The bits are counted in parallel in fields of 2, 4 and 8 bits; a
  * multiplication adds up the fields. */
 static uint32_t count_bits(uint64_t bits)
 {
@@ -59,7 +60,7 @@ static uint32_t count_bits(uint64_t bits)
     return (uint32_t)(bits * 0x0101010101010101u >> 56);
 }
 
-/* Returns the new id of a live row. */
+/* Returns the new id of the live element whose old id is `row`. */
 static uint32_t rank(const block *blocks, uint32_t row)
 {
     const block *at = &blocks[row / BLOCK_ROWS];
@@ -71,11 +72,12 @@ static uint32_t rank_halfedge(const block *edges, uint32_t h)
     return h == HE_NONE ? HE_NONE : 2 * rank(edges, h >> 1) + (h & 1);
 }
 
-/* An iteration over live rows: `row` is the old id and `fresh` the new one. It visits the set bits
- * of a block from the lowest up, so that no branch depends on which rows are live. */
+/* An iteration over the live elements of a block of 64: `row` is the old id and `fresh` the new id
+ * of the present element. The iteration visits the set bits of the block from the lowest up, so
+ * that no branch depends on which elements are live. */
 typedef struct walk {
     const block *blocks;
-    uint64_t left; /* bits of the present block that are not visited yet */
+    uint64_t left; /* set bits of the block that were not visited yet */
     size_t at;
     uint32_t row, fresh;
 } walk;
@@ -96,8 +98,8 @@ static bool walk_on(walk *w)
     return true;
 }
 
-/* A move of the live rows of the content `from` into the content `to`; `ranks` gives their new
- * ids. */
+/* The arguments for copying live elements from the mesh data `from` to the mesh data `to`. `ranks`
+ * gives the new ids of the elements. */
 typedef struct moving {
     const he_content *from;
     he_content *to;
@@ -141,7 +143,8 @@ static void move_faces(const moving *m, size_t at)
     }
 }
 
-/* Moves the live rows of a table that has `issued` rows; `move` moves those of one block. */
+/* Copies the live elements of one kind to the compacted mesh. `issued` ids of that kind were
+ * issued, and `move` copies the live elements of one block of 64 ids. */
 static he_status move_table(const moving *m, uint32_t issued,
                             void (*move)(const moving *m, size_t at), he_progress *progress,
                             he_error *err)
@@ -178,8 +181,9 @@ static void move_row(const he_column *from, size_t row, he_column *to, size_t fr
     }
 }
 
-/* Copies the values of live rows to a new column. A column has `per` rows for each row of its table
- * of elements: 2 for half-edges, whose table is that of edges, else 1. */
+/* Copies the attribute values of live elements to a new column. `per` is the number of values for
+ * each element of the blocks: 2 in a column of half-edges, which uses the blocks of edges,
+ * otherwise 1. */
 static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
                       he_column *to)
 {
@@ -269,8 +273,8 @@ static he_status make_room(const he_content *from, he_content *to, he_error *err
     return status;
 }
 
-/* Lists the new id of each row, HE_NONE for the rows of deleted elements. Returns NULL if memory is
- * out. */
+/* Returns an array with the new id of each element that was ever issued, HE_NONE for deleted
+ * elements. Returns NULL if memory is out. */
 static uint32_t *map_rows(const block *blocks, uint32_t issued)
 {
     uint32_t *map = he_mem_array(NULL, issued, sizeof *map);

@@ -8,7 +8,8 @@ static he_status no_memory(const char *what, size_t rows, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", rows, what);
 }
 
-/* Resizes the memory of one column. If memory is out, the old block stays. */
+/* Resizes an array to `rows` entries of `size` bytes. `column` is the address of the pointer to the
+ * array. If memory is out, the array stays as it is, and the function returns false. */
 static bool resize(void *column, size_t rows, size_t size)
 {
     void *block;
@@ -21,8 +22,9 @@ static bool resize(void *column, size_t rows, size_t size)
     return true;
 }
 
-/* Returns the capacity to which a table grows. The first allocation is exact, so a mesh that was
- * just built has no spare memory; later ones grow by he_rows_grown. */
+/* Returns the capacity to which the arrays of one kind of element grow so that `rows` elements fit.
+ * The first allocation is exact, so a mesh that was just built has no spare memory; he_rows_grown
+ * decides the size of later allocations. */
 static size_t grown(const he_rows *table, size_t rows)
 {
     size_t capacity = table->issued == 0 ? rows : he_rows_grown(table->capacity, rows);
@@ -93,10 +95,10 @@ void he_content_clear(he_content *c)
  * can be cancelled quickly. */
 enum { COPY_BLOCK = 1 << 20 };
 
-/* The progress of copying the columns of a mesh one after another. */
+/* The progress of copying the arrays of a mesh one after another. */
 typedef struct copying {
     he_progress *progress;
-    size_t done, bytes; /* bytes of all columns together */
+    size_t done, bytes; /* number of bytes copied so far, and of all arrays together */
 } copying;
 
 static he_status copy_rows(copying *c, void *to, const void *from, size_t rows, size_t size,

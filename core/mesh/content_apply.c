@@ -1,5 +1,6 @@
-/* content_apply.c - applies the records of a delta: he_content_apply, _issue and _withdraw of
- * content.h. */
+/* content_apply.c - applies the records of a delta (the log of an edit) to a content (the struct of
+ * all arrays of a mesh), and issues or withdraws ids: he_content_apply, he_content_issue and
+ * he_content_withdraw of content.h. */
 #include "mesh/content.h"
 
 #include "mesh/write.h"
@@ -7,7 +8,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* Updates the number of live rows when a link of a row changes from dead to live or back. */
+/* Updates the number of live elements after a link of an element has changed from `before` to
+ * `after`. The links of a deleted element are HE_DEAD. */
 static void put_liveness(he_rows *table, uint32_t before, uint32_t after)
 {
     table->live += (uint32_t)(before == HE_DEAD) - (uint32_t)(after == HE_DEAD);
@@ -49,7 +51,9 @@ static void swap_content(void **objects, he_content *c, const he_record *r)
     *other = here;
 }
 
-/* Applies one record to the content: changes a word, or a slot, from `before` to `after`. */
+/* Applies one record of a delta to the mesh data `c`: changes a 32-bit word from `before` to
+ * `after`, or exchanges an attribute column, a material or all mesh data with the object that the
+ * record names in the array `objects`. */
 static void apply(void **objects, he_content *c, const he_record *r, uint32_t before,
                   uint32_t after)
 {

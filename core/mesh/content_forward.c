@@ -1,12 +1,13 @@
-/* content_forward.c - applies a delta to a content that has not issued the delta's rows yet:
- * he_content_forward of content.h. */
+/* content_forward.c - applies a delta (the log of an edit) to a content (the struct of all arrays
+ * of a mesh) in which the ids of the edit's new elements are not issued yet: he_content_forward of
+ * content.h. */
 #include "mesh/content.h"
 #include "mesh/delta.h"
 
 #include <string.h>
 
-/* A part of a delta's records, from..to, that were all written to one content. A record that
- * replaces the whole content ends such a span. */
+/* Successive records of a delta (the log of an edit), from index `from` to `to` - 1, none of which
+ * replaces all data of the mesh. Record `to`, if it exists, replaces all data of the mesh. */
 typedef struct span {
     size_t from, to;
 } span;
@@ -25,8 +26,9 @@ static void raise(uint32_t *mark, uint32_t row)
     *mark = *mark <= row ? row + 1 : *mark;
 }
 
-/* Computes how many rows of each kind are issued at the end of a span: an edit writes links to
- * every row it issues, so the highest number of a written row is that of the last issued row. */
+/* Computes how many ids of each kind of element are issued after the records of a span were
+ * applied. An edit writes the links of every element that it makes, so the highest id whose links
+ * are written is the last id issued. */
 static void marks_after(const he_content *c, const he_delta *delta, span s,
                         uint32_t marks[HE_KIND_COUNT])
 {
@@ -53,7 +55,7 @@ static he_status refuse(size_t i, size_t *refused, const char *what, he_error *e
     return he_fail_plain(err, HE_CORRUPT, "change %zu %s", i, what);
 }
 
-/* Makes a slot after the last one, for a column that will be added. */
+/* Adds a free entry at the end of the array of attribute columns. */
 static he_status add_slot(he_content *c, he_error *err)
 {
     if (c->column_count == c->column_capacity) {
@@ -69,8 +71,8 @@ static he_status add_slot(he_content *c, he_error *err)
     return HE_OK;
 }
 
-/* Makes a slot for the column that record i adds, and extends that column to as many rows as its
- * domain has issued. */
+/* Prepares the mesh data for record i, which adds an attribute column: makes an entry in the array
+ * of columns, and extends the new column so that it has a value for each element of its domain. */
 static he_status ready_column(he_content *c, const he_delta *delta, size_t i, void **objects,
                               size_t *refused, he_error *err)
 {
@@ -91,7 +93,7 @@ static he_status ready_column(he_content *c, const he_delta *delta, size_t i, vo
     return status == HE_OK && r->row == c->column_count ? add_slot(c, err) : status;
 }
 
-/* Makes a slot for the material that record i adds. */
+/* Makes an entry in the table of materials for the material that record i of a delta adds. */
 static he_status ready_material(he_content *c, const he_delta *delta, size_t i, size_t *refused,
                                 he_error *err)
 {
@@ -111,7 +113,8 @@ static he_status ready_material(he_content *c, const he_delta *delta, size_t i, 
     return status;
 }
 
-/* Makes slots for the columns and materials that a span adds. */
+/* Makes entries in the arrays of attribute columns and of materials for everything that the records
+ * of a span add. */
 static he_status ready_slots(he_content *c, const he_delta *delta, span s, void **objects,
                              size_t *refused, he_error *err)
 {
@@ -126,7 +129,8 @@ static he_status ready_slots(he_content *c, const he_delta *delta, span s, void 
     return status;
 }
 
-/* Allocates all memory that is needed to apply the delta. */
+/* Allocates all memory that is needed to apply the delta to the mesh data, so that applying the
+ * records cannot fail for lack of memory. */
 static he_status ready(he_content *c, const he_delta *delta, void **objects,
                        const uint32_t issued[HE_KIND_COUNT], size_t *refused, he_error *err)
 {
@@ -174,7 +178,8 @@ static bool attribute_is(const he_content *c, const he_record *r)
            word_is(he_column_value(column, r->row), column->row_bytes, r);
 }
 
-/* Returns true if the slot is free, and no column of the same domain has the name of `column`. */
+/* Returns true if `column` can be added as entry `slot` of the array of attribute columns: the
+ * entry is unused, and no other column has the name and domain of `column`. */
 static bool is_free(const he_content *c, size_t slot, const he_column *column)
 {
     for (size_t i = 0; i < c->column_count; i++) {
@@ -187,8 +192,9 @@ static bool is_free(const he_content *c, size_t slot, const he_column *column)
     return c->columns[slot] == NULL;
 }
 
-/* Returns true if the slot has the material that record r replaces, and no other slot has a
- * material with the new material's name. */
+/* Returns true if record r can put the material `comes` into entry r->row of the table of
+ * materials: the entry has the material that the record replaces, and no other entry has a material
+ * with the name of `comes`. */
 static bool material_is(const he_content *c, const he_record *r, const he_material *comes)
 {
     const he_material *row = c->materials.rows[r->row];
@@ -197,7 +203,8 @@ static bool material_is(const he_content *c, const he_record *r, const he_materi
     return (row == NULL ? 0 : row->mark) == r->after && (slot == SIZE_MAX || slot == r->row);
 }
 
-/* Returns true if the content has the value that the record expects (its `before`). */
+/* Returns true if record r can be applied to the mesh data: they have the value, column or material
+ * that the record replaces. */
 static bool holds(const he_content *c, void **objects, const he_record *r)
 {
     size_t halfedges = 2 * (size_t)c->edges.issued;

@@ -36,13 +36,14 @@ size_t he_object_bytes(uint32_t column, const void *object)
     if (column == HE_COL_MATERIAL) {
         return he_material_bytes(object);
     }
-    /* The labels count, too, because after an edit that adds or renames a label only the delta has
-     * the old labels. */
+    /* The labels of a column count, too, unless another column shares them: after an edit that adds
+     * or renames a label, only the delta has the old labels. */
     return he_column_bytes(object) + he_labels_own_bytes(((const he_column *)object)->labels);
 }
 
-/* Frees the objects of a delta from index `from` on. The delta owns them, because the mesh does not
- * hold them now. */
+/* Frees the objects (attribute columns, materials or whole mesh data that an edit replaced) of a
+ * delta from index `from` on. The delta owns these objects, because they are not in the
+ * mesh now. */
 static void free_objects(he_delta *d, size_t from)
 {
     for (size_t i = 0; i < d->count; i++) {
@@ -108,8 +109,9 @@ static uint64_t key_of(const he_record *r)
  * progress; folding a record takes a few cache misses. */
 enum { FOLD_STRIDE = 16 * HE_PROGRESS_STRIDE };
 
-/* Combines all records of one word (he_delta_fold in delta.h). A hash table with open addressing
- * finds the first record of a word; a slot has the index of a record plus 1, or 0 if it is free. */
+/* Combines all records that changed one 32-bit word into one record, and does so for every word. A
+ * hash table with open addressing finds the first record of a word; an entry of the table is the
+ * index of a record plus 1, or 0 if the entry is free. */
 he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_error *err)
 {
     uint32_t bits = 4;

@@ -5,9 +5,10 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* The labels are strings: `text` is one block of them, each ended by NUL. `slots` is a hash table
- * with open addressing, which has the index of each string plus 1. A file may name a million
- * groups, so adding a string must take constant time. */
+/* The strings of the labels are stored one after another in `text`, each ended by NUL; starts[i] is
+ * the offset of string i. `slots` is a hash table with open addressing: an entry is the index of a
+ * string plus 1, or 0 if it is free. The table exists because a file may name a million groups, so
+ * adding a string must take constant time. */
 struct he_labels {
     atomic_uint references;
     char *text;
@@ -78,7 +79,8 @@ bool he_labels_equal(const he_labels *a, const he_labels *b)
             (a->text_length == 0 || memcmp(a->text, b->text, a->text_length) == 0));
 }
 
-/* Returns the slot of the hash table that holds the string, or the free slot where it belongs. */
+/* Returns the index of the entry of the hash table that holds the string, or of the free entry in
+ * which the string belongs. */
 static size_t slot_of(const he_labels *labels, const char *text, size_t length)
 {
     size_t mask = labels->slot_count - 1;

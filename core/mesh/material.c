@@ -10,7 +10,8 @@
 const he_look he_plain_look = {
     .base_color = {1, 1, 1, 1}, .metallic = 0, .roughness = 1, .emission = {0, 0, 0}};
 
-/* The number of values of a material's look, which list_numbers lists in a fixed order. */
+/* How many numbers say how a material looks: four for the base colour, one each for metallic and
+ * roughness, three for the emission. list_numbers lists the numbers in this order. */
 enum { NUMBERS = 9 };
 
 typedef struct number {
@@ -72,7 +73,7 @@ static he_status check_name(const char *name, size_t length, he_error *err)
                : he_fail_plain(err, HE_BAD_VALUE, "a material's name is not UTF-8");
 }
 
-/* Checks that the numbers of a look are within their ranges, and turns -0 into 0. */
+/* Checks that the numbers of a material's look are within their ranges, and turns -0 into 0. */
 static he_status check_look(he_look *look, he_error *err)
 {
     number numbers[NUMBERS];

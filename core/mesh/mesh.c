@@ -181,8 +181,9 @@ const he_materials *he_mesh_materials(const he_mesh *mesh)
     return &mesh->c.materials;
 }
 
-/* Returns true if two columns are equal in every row; a row that only one of them stores must have
- * the default value. */
+/* Returns true if two attribute columns have equal names, types, rules, defaults and labels, and
+ * equal values in every row. A row that only one of the columns stores must have the
+ * default value. */
 static bool columns_equal(const he_column *a, const he_column *b)
 {
     if (a == NULL || b == NULL) {
@@ -234,8 +235,8 @@ bool he_mesh_equal_live(const he_mesh *first, const he_mesh *second)
         !same(a->face_halfedge, b->face_halfedge, f, sizeof(uint32_t))) {
         return false;
     }
-    /* The live counts and all common rows are equal, so rows that only one mesh has issued are
-     * dead. */
+    /* The meshes have equally many live elements, and all elements whose ids both meshes have
+     * issued are equal. So an element whose id only one of the meshes has issued is deleted. */
     size_t columns = a->column_count > b->column_count ? a->column_count : b->column_count;
     for (size_t i = 0; i < columns; i++) {
         if (!columns_equal(slot(a, i), slot(b, i))) {

@@ -5,12 +5,14 @@
 
 #include <assert.h>
 
-/* The objects (columns, materials, contents) that the copy of a mesh lost when it crossed one delta
- * (replay.h), in the order of the delta's objects. */
+/* Attribute columns, materials or whole mesh data (objects) that the copy of a mesh exchanges each
+ * time it crosses one delta, that is, undoes or redoes one edit. Before the crossing, the list has
+ * the objects that the crossing will put into the copy; afterwards, the objects that it took out of
+ * the copy. The objects are in the order of the delta's array `objects`. */
 typedef struct other_side {
     uint64_t key;
     void **objects;
-    uint32_t *columns; /* the value of `column` in the record that names each object */
+    uint32_t *columns; /* for each object, the member `column` of the record that names it */
     size_t count;
     struct other_side *next;
 } other_side;
@@ -97,13 +99,14 @@ static he_status copy_object(void *object, uint32_t of, void **out, he_error *er
     he_content *copy = he_mem_zero(1, sizeof *copy);
     if (copy == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY,
-                             "no memory for a copy of the content that an edit replaces");
+                             "no memory for a copy of the mesh that an edit replaced");
     }
     *out = copy;
     return he_content_copy(object, NULL, copy, err);
 }
 
-/* Makes a list for copies of `count` objects. Returns NULL if memory is out. */
+/* Makes a list for `count` objects (attribute columns, materials or whole mesh data), whose entries
+ * are NULL at first. Returns NULL if memory is out. */
 static other_side *side_new(uint64_t key, size_t count)
 {
     other_side *side = he_mem_alloc(sizeof *side);
@@ -119,12 +122,14 @@ static other_side *side_new(uint64_t key, size_t count)
     return side;
 }
 
-/* Copies the objects of a delta. */
+/* Makes a list of copies of the objects (attribute columns, materials or whole mesh data) that a
+ * delta owns. */
 static he_status side_of(const he_delta *delta, uint64_t key, other_side **out, he_error *err)
 {
     other_side *side = side_new(key, delta->object_count);
     if (side == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the inverse of an edit");
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory for copies of the attributes and materials of an edit");
     }
     for (size_t i = 0; i < delta->count; i++) {
         const he_record *r = &delta->records[i];
@@ -153,8 +158,8 @@ static other_side *find_side(const he_replay *replay, uint64_t key)
     return side;
 }
 
-/* Finds the objects that crossing a delta will put into the copy in exchange for others; *objects
- * is NULL if the delta names none. */
+/* Finds the objects (attribute columns, materials or whole mesh data) that crossing a delta will
+ * put into the copy of the mesh. *objects becomes NULL if the delta names no objects. */
 static he_status require_side(he_replay *replay, const he_crossing *crossing, void ***objects,
                               he_error *err)
 {
@@ -166,7 +171,7 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     if (side == NULL && !crossing->held) {
         return he_fail_plain(
             err, HE_UNSUPPORTED,
-            "the stored edit lacks the attributes or the content that the mesh has after the edit");
+            "the stored edit lacks attributes or mesh data that are needed to undo or redo it");
     }
     if (side == NULL) {
         he_status status = side_of(crossing->delta, crossing->key, &side, err);
@@ -180,9 +185,9 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     return HE_OK;
 }
 
-/* Moves a content backwards across a delta. If this puts back a whole content, that content has
- * issued as many ids as when it was taken out, so rows are issued or taken back until the numbers
- * are those of crossing->issued. */
+/* Undoes a delta (the log of an edit) in the data of the copy. If the edit replaced all mesh data,
+ * the undo puts back the old data, in which only the ids are issued that were issued when they were
+ * replaced. Ids are then issued or withdrawn until as many are issued as crossing->issued says. */
 static he_status back(he_content *c, const he_crossing *crossing, void **objects, he_error *err)
 {
     he_content_apply(c, crossing->delta, crossing->delta->count, 0, objects);
@@ -205,7 +210,8 @@ he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_err
     status = crossing->undo
                  ? back(c, crossing, objects, err)
                  : he_content_forward(c, crossing->delta, objects, crossing->issued, NULL, err);
-    /* HE_CORRUPT cannot occur: the copy is in the state on which the delta was made */
+    /* HE_CORRUPT cannot occur, because the copy is in the state from which the delta's
+     * edit began. */
     assert(status != HE_CORRUPT);
     return status;
 }

@@ -44,9 +44,10 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     return fans == 0 ? 1 : fans;
 }
 
-/* Makes a step of a walk around a vertex in both directions at once: `up` and `down` each go half
- * of the way. Waiting for links in memory then takes half the time. Returns true if all half-edges
- * around the vertex have been visited. */
+/* Makes a step of a walk around a vertex in two directions: `up` goes counter-clockwise and `down`
+ * clockwise. The processor can read the links of `up` and of `down` at one time, so waiting for
+ * memory takes half as long as in a walk in one direction. Returns true if `up` and `down` have
+ * met: all half-edges around the vertex have then been visited. */
 static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
 {
     if (up->i == down->i) {
@@ -61,8 +62,8 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
 }
 
 /* A search for the half-edge between two vertices takes this many steps around the first vertex
- * before it searches around the second one, too. Most vertices have fewer edges, so the second
- * vertex is seldom read, which would cost another cache miss. */
+ * before it searches around the second vertex, too. Most vertices have fewer edges, so the search
+ * seldom needs to read the second vertex, which would cost another cache miss. */
 enum { ALONE = 8 };
 
 static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)

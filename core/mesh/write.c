@@ -2,7 +2,8 @@
 
 #include "mesh/content.h"
 
-/* Returns the number of 32-bit words of a row of a column; the last word may be short. */
+/* Returns the number of 32-bit words that one value of an attribute column takes. The last word may
+ * be filled only partly. */
 static size_t row_words(const he_column *column)
 {
     return (column->row_bytes + 3u) / 4u;
@@ -118,7 +119,8 @@ he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err)
     return status;
 }
 
-/* Records the words of a row that differ from its new value. */
+/* Records the change of each 32-bit word in which the new value of an element differs from the
+ * stored value. */
 static void record_row(he_mesh *m, uint32_t column, uint32_t row, const void *stored,
                        const void *value, size_t row_bytes)
 {
@@ -218,8 +220,9 @@ static he_status slot_for_column(he_mesh *m, he_error *err)
     return m->delta == NULL ? HE_OK : he_delta_reserve(m->delta, 1, 1, err);
 }
 
-/* Records that an object (column, material or content) was exchanged; the delta owns the one that
- * the mesh does not hold. */
+/* Records in the delta that an attribute column, a material or all data of the mesh were added,
+ * removed or replaced. `object` is what was taken out of the mesh, which the delta then owns; NULL
+ * if nothing was taken out. */
 static void record_object(he_mesh *m, uint32_t column, uint32_t row, uint32_t after, void *object)
 {
     he_delta *d = m->delta;
