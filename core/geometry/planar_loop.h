@@ -1,11 +1,11 @@
 /* planar_loop.h - a loop of half-edges, projected into its Newell plane.
  *
- * The normal of the plane is the sum of the cross products of successive corners (M. E. Newell's
- * method; I. E. Sutherland, R. F. Sproull and R. A. Schumacker, "A characterization of ten
- * hidden-surface algorithms", 1974). It is the vector area of the loop, so a loop that is not
- * planar is projected in the direction from which it looks largest, and its projection runs
- * counter-clockwise. Coordinates are scaled by a power of two to lie within [-2, 2], so that
- * nothing overflows or underflows, however large or small the mesh is. */
+ * The normal of the plane is the sum of the cross products of the positions of successive corners
+ * (M. E. Newell's method; I. E. Sutherland, R. F. Sproull and R. A. Schumacker, "A characterization
+ * of ten hidden-surface algorithms", 1974). This sum is twice the area vector of the loop. So a
+ * loop that is not planar is projected in the direction from which it looks largest, and its
+ * projection runs counter-clockwise. Coordinates are scaled by a power of two to lie within [-2,
+ * 2], so that nothing overflows or underflows, however large or small the mesh is. */
 #ifndef HE_GEOMETRY_PLANAR_LOOP_H
 #define HE_GEOMETRY_PLANAR_LOOP_H
 
@@ -15,8 +15,9 @@ typedef struct he_planar_loop {
     uint32_t n;
     uint32_t *halfedge; /* the half-edge that leaves corner i */
     double *x, *y;
-    bool degenerate; /* the loop has no area, so no plane: all coordinates are zero */
-    void *memory;    /* one block that contains the arrays */
+    /* true if the loop has no area and so no plane; all coordinates are then zero */
+    bool degenerate;
+    void *memory; /* one block that contains the arrays */
 } he_planar_loop;
 
 /* Projects the loop of half-edge `first` into its plane. he_planar_loop_clear frees the result.
@@ -25,8 +26,8 @@ HE_NODISCARD he_status he_planar_loop_init(he_planar_loop *flat, const he_mesh *
                                            he_halfedge first, he_error *err);
 void he_planar_loop_clear(he_planar_loop *flat);
 
-/* A triangle or loop counts as having no area if its doubled area, divided by the square of its
- * sides, is below this limit. */
+/* A triangle or loop counts as having no area if twice its area, divided by the sum of the squared
+ * lengths of its sides, is below this limit. */
 #define HE_PLANAR_LOOP_THIN 1e-12
 
 /* Returns true if the triangle of corners a, b, c turns counter-clockwise, by more than rounding

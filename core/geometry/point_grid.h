@@ -1,15 +1,15 @@
-/* point_grid.h - a grid of points: finds the point of lowest number within a tolerance of a given
- * point.
+/* point_grid.h - a grid of points, which finds the point of lowest number within a tolerance of a
+ * given point.
  *
  *     for each point p, in the order of their numbers:
- *         he_point_grid_find    finds the lowest kept point within the tolerance of p, or HE_NONE
+ *         he_point_grid_find    finds the kept point of lowest number within the tolerance of p
  *         he_point_grid_keep    keeps p under its own number, if no kept point was found
  *
- * Kept points are stored in a hash table by the cell in which they lie; cells are cubes of 4
- * tolerances. Points within the tolerance of p are in the cell of p or, if p is near a side of its
- * cell, in the neighbour there: 8 cells at most (27 very far from 0), 3.4 on average. A cell holds
- * few points, since kept points are farther apart than the tolerance. So the total time is linear
- * in the points, wherever they lie and whatever their number. */
+ * Kept points are stored in a hash table by the cell in which they lie. Cells are cubes whose sides
+ * are four times the tolerance. A point within the tolerance of p is in the cell of p or, if p is
+ * near the border of its cell, in a neighbouring cell: 8 cells must be searched at most (27 very
+ * far from 0), 3.4 on average. A cell holds few points, because kept points are farther apart than
+ * the tolerance. So the total time is linear in the number of points, wherever the points lie. */
 #ifndef HE_GEOMETRY_POINT_GRID_H
 #define HE_GEOMETRY_POINT_GRID_H
 
@@ -17,7 +17,8 @@
 #include "mesh/mesh.h"
 
 typedef struct he_point_grid_slot {
-    /* `hash`: hash of a kept point; `number`: its number + 1; both are 0 in a free entry */
+    /* `hash`: hash of the cell of a kept point; `number`: number of that point + 1; both are 0 in
+     * an unused entry */
     uint32_t hash, number;
 } he_point_grid_slot;
 
@@ -30,7 +31,7 @@ typedef struct he_point_grid {
     const he_vec3 *points; /* positions of all points by their numbers; borrowed */
 } he_point_grid;
 
-/* The points that are compared, and the tolerance within which two of them count as near. */
+/* The points that are compared, and the tolerance: points at most this far apart count as near. */
 typedef struct he_point_grid_points {
     const he_vec3 *at; /* positions of the points; borrowed while the grid is used */
     double tolerance;
@@ -46,7 +47,7 @@ HE_NODISCARD he_status he_point_grid_make(he_point_grid *out, const he_point_gri
                                           size_t most, he_progress *progress, he_error *err);
 void he_point_grid_clear(he_point_grid *grid);
 /* Finds the kept point of lowest number within the tolerance of p; HE_NONE if there is none. Sets
- * *home, which the caller must pass to he_point_grid_keep if it keeps p. */
+ * *home to the hash of p's cell, which the caller must pass to he_point_grid_keep if it keeps p. */
 uint32_t he_point_grid_find(const he_point_grid *grid, he_vec3 p, uint32_t *home);
 void he_point_grid_keep(he_point_grid *grid, uint32_t home, uint32_t number);
 

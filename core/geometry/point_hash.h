@@ -1,6 +1,5 @@
-/* point_hash.h - the hash of a point, for the tables of points (geometry/point_grid.h,
- * format/io/weld.h).
- */
+/* point_hash.h - the hash of a point, for hash tables of points (geometry/point_grid.h,
+ * format/io/weld.h). */
 #ifndef HE_GEOMETRY_POINT_HASH_H
 #define HE_GEOMETRY_POINT_HASH_H
 
@@ -18,8 +17,9 @@ static inline uint64_t he_point_hash_add(uint64_t h, double value)
     return h ^ h >> 32;
 }
 
-/* Returns the hash of a point: equal for equal coordinates, and 0 and -0 are equal. A client that
- * does not know `seed`, a random number, cannot choose many points with one hash. */
+/* Returns the hash of a point. Points with equal coordinates have equal hashes; 0 and -0 count as
+ * equal. A client that does not know `seed`, a random number, cannot choose many points with one
+ * hash. */
 static inline uint32_t he_point_hash(uint64_t seed, he_vec3 p)
 {
     uint64_t h = he_point_hash_add(he_point_hash_add(he_point_hash_add(seed, p.x), p.y), p.z);

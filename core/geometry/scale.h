@@ -9,8 +9,8 @@
 
 #define HE_PI 3.14159265358979323846
 
-/* Between HE_LEAST_PRODUCT and HE_MOST_PRODUCT, products of four lengths neither overflow nor lose
- * their digits. */
+/* Products of four lengths between these two limits neither overflow nor lose digits
+ * by underflow. */
 #define HE_LEAST_PRODUCT 1e-250
 #define HE_MOST_PRODUCT  1e250
 
@@ -35,8 +35,8 @@ static inline double he_clamped(double x)
     return fmax(fmin(x, DBL_MAX), -DBL_MAX);
 }
 
-/* Finds the unit vector of `a`, whatever its length. If `a` is zero, the result is zero and the
- * function returns false. */
+/* Finds the unit vector in the direction of `a`, whatever the length of `a`. If `a` is zero, the
+ * result is zero and the function returns false. */
 static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
 {
     double square = he_vec3_dot(a, a);

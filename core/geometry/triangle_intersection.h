@@ -4,13 +4,13 @@
 
 #include "geometry/vec3.h"
 
-/* Returns true if the triangle has area; exact, without rounding (orient.h). */
+/* Returns true if the triangle has area. The result is exact, without rounding (orient.h). */
 bool he_triangle_has_area(const he_vec3 t[3]);
 
-/* Returns true if the triangles share a point other than a common corner or a side between two
- * common corners. Corners are common if they are at one position. Triangles with three common
- * corners intersect; a triangle without area intersects nothing. The result is exact, without
- * rounding (orient.h). */
+/* Returns true if the triangles share a point other than a common corner or a point of a common
+ * side. Two corners are common if they are at one position; a side is common if its ends are common
+ * corners. Triangles with three common corners intersect; a triangle without area intersects
+ * nothing. The result is exact, without rounding (orient.h). */
 bool he_triangles_intersect(const he_vec3 a[3], const he_vec3 b[3]);
 
 #endif

@@ -1,13 +1,14 @@
 /* triangulation.h - chooses the triangles that fill a loop.
  *
- * A triangulation lists its triangles in such an order that each cuts one corner, the middle one of
- * its three, off the rest of the loop; the last triangle is what then is left.
+ * A triangulation lists its triangles in such an order that each triangle cuts its middle corner
+ * off the rest of the loop; the last triangle is all that is left of the loop.
  *
- * Loops of up to HE_EXACT_CORNERS corners get the triangulation with the fewest triangles that do
- * not turn left in the Newell plane (none for a simple polygon), and among those the one with the
- * shortest diagonals (G. T. Klincsek, "Minimal triangulations of polygonal domains", 1980).
+ * Loops of up to HE_EXACT_CORNERS corners get a triangulation with as few triangles as possible
+ * that do not turn left in the Newell plane (none for a simple polygon). If there are several such
+ * triangulations, they get the one with the shortest diagonals (G. T. Klincsek, "Minimal
+ * triangulations of polygonal domains", 1980).
  *
- * Longer loops are cut by ear clipping, see ears.h.
+ * Longer loops are cut by ear clipping (ears.h).
  *
  * With the flag HE_ANY_DIAGONALS short loops are cut by ear clipping, too, and the best
  * triangulation is searched only if ear clipping makes a flipped triangle. This is for callers that
@@ -15,16 +16,17 @@
  *
  * With the flag HE_AVOID_EDGES no diagonal joins two vertices that an edge of the mesh joins
  * already. In short loops such diagonals are avoided only if that flips no triangle. In long loops
- * an ear with such a diagonal is skipped; when only such ears are left the loop is refused, though
+ * an ear with such a diagonal is skipped; if only such ears are left, the loop is refused, although
  * another order of cuts might have succeeded. The flag changes nothing if the triangulation without
- * it has no such diagonal.
+ * the flag has no such diagonal.
  *
- * WORK. A short loop takes at most three tables of HE_EXACT_CORNERS^3 / 6 steps each, a long one of
- * n corners about n log n steps. Searching for edges costs a few steps for each diagonal; if it
+ * WORK. A short loop takes at most three tables of HE_EXACT_CORNERS^3 / 6 steps each, a long loop
+ * of n corners about n log n steps. Searching for edges costs a few steps for each diagonal; if it
  * costs more, an index of the edges at vertices of large degree is made (edge_lookup.h). So the
- * work for the loops of a mesh is bounded by its corners and needs no limit.
+ * work for all loops of a mesh is bounded by the number of its corners and needs no limit.
  *
- * If the mesh has a cache of long faces (long_faces.h), their triangulations are taken from it.
+ * If the mesh has a cache of long faces (long_faces.h), the triangulations of these faces are taken
+ * from the cache.
  *
  * The result depends only on the loop, its first half-edge and the mesh's edges. */
 #ifndef HE_GEOMETRY_TRIANGULATION_H
@@ -45,21 +47,21 @@ typedef struct he_triangulation {
     uint64_t steps;    /* number of steps that this triangulation took */
 } he_triangulation;
 
-/* State shared by many triangulations of a mesh; {0} begins it. The mesh must not change meanwhile,
- * except that the caller may make edges of diagonals, if it reports them to `own`
- * (he_edge_lookup_reserve, he_edge_lookup_add). */
+/* State that many triangulations of one mesh share; {0} is the state before the first
+ * triangulation. The mesh must not change meanwhile, except that the caller may turn diagonals into
+ * edges, if it reports them to `own` (he_edge_lookup_reserve, he_edge_lookup_add). */
 typedef struct he_triangulation_work {
     uint64_t steps;    /* steps taken, also for loops that were refused */
     uint64_t searched; /* how many of `steps` were spent searching for edges */
-    /* the index of edges that is used (`own` or the caller's); NULL: edges are searched around
-     * their ends */
+    /* the index of edges that is used: `own`, or one of the caller; NULL if there is none, and an
+     * edge is searched around its ends */
     const he_edge_lookup *lookup;
-    /* Index of edges, made when searches without it have cost as much as making it; the caller adds
-     * the diagonals that it makes. */
+    /* Index of edges, which is made when searches without it have cost as much as making it. The
+     * caller must add the diagonals that it turns into edges. */
     he_edge_lookup own;
     uint64_t sorted; /* value of `searched` when `own` was made */
-    /* The watch to which progress is reported as step `done` of `of`; the caller sets these two.
-     * `told` is the value of `steps` at the last report. */
+    /* `progress`: the watch to which progress is reported as step `done` of `of`; the caller sets
+     * these three members. `told`: the value of `steps` at the latest report. */
     he_progress *progress;
     uint64_t done, of, told;
 } he_triangulation_work;
@@ -79,8 +81,8 @@ void he_triangulation_work_clear(he_triangulation_work *work);
 
 /* --- functions for ears.c --- */
 
-/* Returns true if an edge of the mesh joins the corners i and k of a loop. Counts the steps of the
- * search. */
+/* Returns true if an edge of the mesh joins the vertices of the corners i and k of a loop. Adds the
+ * steps of the search to `work`. */
 bool he_diagonal_exists(const he_mesh *m, const he_planar_loop *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work);
 /* Reports progress; must be called between two cuts.

@@ -1,5 +1,5 @@
-/* vec3.h - arithmetic on points and directions, inline. Nothing here guards against overflow; if
- * the size of the coordinates is not known, geometry.h scales first. */
+/* vec3.h - inline arithmetic on points and vectors. These functions do not guard against overflow
+ * and underflow; the functions of geometry.h do, by scaling coordinates first. */
 #ifndef HE_GEOMETRY_VEC3_H
 #define HE_GEOMETRY_VEC3_H
 
@@ -31,7 +31,7 @@ static inline double he_vec3_length(he_vec3 a)
 {
     return sqrt(he_vec3_dot(a, a));
 }
-/* Returns the largest absolute value of a component. */
+/* Returns the largest absolute value among the three components of a vector. */
 static inline double he_vec3_extent(he_vec3 a)
 {
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
