@@ -1,8 +1,8 @@
 /* check.h - validation: decides whether a mesh satisfies the invariants of mesh.h.
  *
  * The check tests the invariants I1 to I13 on any mesh, even one with corrupt links, in time linear
- * in its size. If a link names no live element, only links of this kind are reported, because the
- * other tests would have to follow them. */
+ * in the size of the mesh. If a link names an element that is not live, only such links are
+ * reported, because the tests of the other invariants follow links. */
 #ifndef HE_MESH_CHECK_H
 #define HE_MESH_CHECK_H
 

@@ -1,17 +1,18 @@
-/* column.h - attribute columns: each row holds one value of 1 to 16 components of one type.
+/* column.h - attribute columns. A column has one value for each element of its domain; a value has
+ * 1 to 16 components of one type. A row of the column is the value of one element.
  *
- * A column belongs to a domain: vertices, half-edges (a corner's values belong to the half-edge
- * that leaves it inside its face), edges, faces, or the mesh (one row). Values are stored in the
- * machine's byte order, which is little-endian on all machines that hedge supports. A column with
- * labels (strings) is categorical: its values are indices of labels, such as the names of groups or
- * materials of a file.
+ * The domain of a column is vertices, half-edges (the values of a corner belong to the half-edge
+ * that leaves the corner inside its face), edges, faces, or the mesh (one row). Values are stored
+ * in the machine's byte order, which is little-endian on all machines that hedge supports. A column
+ * with labels (strings) is categorical: its values are indices of labels, such as the names of
+ * groups or materials of a file.
  *
- * The column's rule decides the values of elements that an edit makes:
- *   copy         the parent's value (the face that was split, the edge that was cut) interpolate
- *   interpolated linearly between two ends at a split, the mean at a collapse default      the
- *   column's default
- * When vertices are welded, the mean is never taken, whatever the rule: values that differ become
- * values of corners (edit/piece/keep.h). */
+ * The rule of a column decides the values of elements that an edit makes. With the rule `copy`, a
+ * new element gets the value of its parent (the face that was split, the edge that was cut). With
+ * `interpolate`, the value is interpolated linearly between the two ends at a split, and is the
+ * mean at a collapse. With `default`, a new element gets the column's default value. When vertices
+ * are welded, the mean is never taken, whatever the rule: values that differ become values of
+ * corners (edit/piece/keep.h). */
 #ifndef HE_MESH_COLUMN_H
 #define HE_MESH_COLUMN_H
 
@@ -43,13 +44,15 @@ struct he_column {
     he_type type;
     he_rule rule;
     uint32_t components;
-    uint32_t row_bytes;                          /* bytes of a row: components * size of the type */
+    /* bytes of one value: components * size of the type */
+    uint32_t row_bytes;
     unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default value of a row */
     /* The strings of which each value is an index; NULL if the column is not categorical. */
     he_labels *labels;
     unsigned char *data;
-    size_t rows;     /* number of rows in memory; every row beyond has the default value */
-    size_t capacity; /* number of rows that fit into the memory allocated */
+    /* number of rows in memory; elements without a row in memory have the default value */
+    size_t rows;
+    size_t capacity; /* number of rows that fit into the allocated memory */
 };
 
 const char *he_type_name(he_type type); /* "bool", "int32", "uint32", "float", "double" */
@@ -61,20 +64,21 @@ const char *he_rule_name(he_rule rule); /* "copy", "interpolate", "default" */
 HE_NODISCARD he_status he_column_new(const he_column_schema *schema, he_column **out,
                                      he_error *err);
 void he_column_free(he_column *column);
-/* Makes a column of `rows` default rows with the name, domain, type, rule and labels of
- * `column`. */
+/* Makes a column with the name, domain, type, rule, default and labels of `column`, and with `rows`
+ * rows of the default value. */
 HE_NODISCARD he_status he_column_like(const he_column *column, size_t rows, he_column **out,
                                       he_error *err);
 HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, he_error *err);
-/* Returns the capacity to which a table should grow so that `rows` fit: small tables grow by half,
- * large ones by an eighth, because a mesh keeps its spare capacity, and the system moves large
- * blocks by changing page tables rather than copying them. */
+/* Returns the number of rows for which an array should be allocated when it must grow so that
+ * `rows` fit. Small arrays grow by half, because that needs few allocations; large ones grow by an
+ * eighth, because a mesh keeps its spare memory, and the system moves large blocks by changing page
+ * tables instead of copying. */
 size_t he_rows_grown(size_t capacity, size_t rows);
 /* Allocates memory for `rows` rows in all. */
 HE_NODISCARD he_status he_column_reserve(he_column *column, size_t rows, he_error *err);
 /* Appends `rows` rows with the default value. */
 HE_NODISCARD he_status he_column_extend(he_column *column, size_t rows, he_error *err);
-/* Returns the value of any row; for a row that is not in memory, the default. */
+/* Returns the value of a row, or the default value if the row is not in memory. */
 static inline const unsigned char *he_column_value(const he_column *column, size_t row)
 {
     return row < column->rows ? column->data + row * column->row_bytes : column->fallback;
@@ -85,13 +89,13 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
     return column->data + row * column->row_bytes;
 }
 size_t he_column_bytes(const he_column *column);
-/* Returns the size in bytes of a column's rows, without labels and spare capacity. */
+/* Returns the size in bytes of a column with all its rows, without labels and spare memory. */
 size_t he_column_rows_bytes(const he_column *column);
 bool he_column_same_kind(
     const he_column *a,
-    const he_column *b); /* compares name, domain, type, rule, default and labels */
-/* Returns true if a row of one column can be copied to the other as it is: they have equal types,
- * components and labels. */
+    const he_column *b); /* compares name, domain, type, components, rule, default and labels */
+/* Returns true if a value of one column can be copied byte for byte to the other column: the
+ * columns have equal types and components, and share their labels. */
 bool he_column_same_values(const he_column *a, const he_column *b);
 /* Returns true if the column can be the material attribute: uint32, one component, with labels. */
 bool he_is_material_column(const he_column *column);
@@ -99,8 +103,8 @@ bool he_is_material_column(const he_column *column);
 bool he_is_normal_column(const he_column *column);
 /* Reverses the direction of the normal in a row of a normal column. */
 void he_normal_negate(const he_column *column, unsigned char *row);
-/* Makes a half-edge column called `name`, with `rows` rows, that otherwise equals `column`: type,
- * components, rule and labels. */
+/* Makes a column of half-edges called `name`, with `rows` rows of the default value. Its type,
+ * components, rule, default and labels are those of `column`. */
 HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
                                              he_column **out, he_error *err);
 /* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on; a name that is too long
@@ -112,8 +116,8 @@ he_labels *he_labels_new(void);
 he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
 size_t he_labels_count(const he_labels *labels);
-/* Returns how many bytes releasing this reference to labels would free: 0 while other references to
- * them exist, and 0 for NULL. */
+/* Returns how many bytes would be freed if the caller released its reference to the labels: 0 while
+ * other references to the labels exist, and 0 for NULL. */
 size_t he_labels_own_bytes(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
 /* Returns true if two lists of labels have equal strings in the same order. NULL equals only

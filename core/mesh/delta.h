@@ -1,26 +1,30 @@
-/* delta.h - a delta records what an edit wrote to a mesh, in the order in which it was written.
+/* delta.h - a delta is the log of an edit: it records everything that the edit wrote to a mesh, in
+ * the order in which it was written.
  *
- * A delta is a list of records of 16 bytes. Most say that one 32-bit word of one row of one column
- * changed from `before` to `after`: every column, links and doubles alike, is seen as rows of
- * words. Others say that a column was added or dropped, that a material was set, replaced or
- * removed, or that the whole content (he_content, all arrays of the mesh) was replaced. Such a
- * record names an object, which is a column, material or content. The delta owns the object that is
- * not in the mesh now: after the edit or a redo the old one, after an undo the new one. Lineage
- * records (this element came from that one, this one merged into that one) change nothing.
+ * A delta is a list of records of 16 bytes. Most records say that one 32-bit word in the entry
+ * (row) of one element in one array (column) of the mesh changed from `before` to `after`. Links,
+ * positions and attribute values are all taken as arrays of such words. Other records say that an
+ * attribute column was added or dropped, that a material was set, replaced or removed, or that the
+ * whole content (all arrays of the mesh, he_content) was replaced. Such a record names an object:
+ * the column, material or content. The delta owns the object if it is not in the mesh: after an
+ * edit or a redo the delta owns the old object, after an undo the new one. Lineage records (this
+ * element came from that one, this one was merged into that one) change nothing in the mesh.
  *
- * Applied backwards a delta undoes its edit, applied forwards it does it again, bit for bit. Rows
- * of elements that the edit created stay issued when it is undone: the elements are deleted then,
- * and only a redo revives them. he_delta_rollback is the exception, for edits that were never
- * published: it removes these rows, too. Undo, redo and rollback cannot fail.
+ * Applied backwards, a delta undoes its edit; applied forwards, it does the edit again, bit for
+ * bit. The ids of elements that an edit has made stay issued when the edit is undone: the elements
+ * are then deleted, and only a redo revives them. he_delta_rollback, which is for edits that were
+ * never published, withdraws these ids, too. Undo, redo and rollback cannot fail.
  *
- * Deleting an element overwrites its row in all columns, so a delta has all values that are needed
- * to revive the element. The size of a delta is proportional to the edit. */
+ * Deleting an element overwrites its entry in all arrays, so the delta of the edit has all values
+ * that are needed to revive the element. The size of a delta is proportional to the size of the
+ * edit. */
 #ifndef HE_MESH_DELTA_H
 #define HE_MESH_DELTA_H
 
 #include "mesh/mesh.h"
 
-/* The columns a record can name. Attribute column i is HE_COL_ATTRIBUTE + i. */
+/* What a record is about: an array of the mesh, or something else. The array of attribute column i
+ * has the number HE_COL_ATTRIBUTE + i. */
 typedef enum he_col {
     HE_COL_NEXT,
     HE_COL_PREV,
@@ -29,21 +33,23 @@ typedef enum he_col {
     HE_COL_VERTEX_HALFEDGE,
     HE_COL_FACE_HALFEDGE,
     HE_COL_POSITION,
-    /* The constants from here to HE_COL_REPLACED name no columns: records with them say something
-     * other than that a word changed. */
-    /* `row` is the new element, `before` its parent (the element it came from), `word` their
-     * kind */
+    /* The constants from here to HE_COL_REPLACED name no arrays. A record with such a constant does
+     * not say that a word changed. */
+    /* `row` is the id of a new element, `before` the id of its parent (the element it came from),
+     * `word` their kind */
     HE_COL_PARENT,
-    /* `row` is the deleted element, `before` the element it was merged into, `word` their kind */
+    /* `row` is the id of a deleted element, `before` the id of the element it was merged into,
+     * `word` their kind */
     HE_COL_MERGED,
-    /* `row` is the index of the column in the mesh, `before` its index in `objects` */
+    /* `row` is the index of the column in the mesh, `before` the column's index in `objects` */
     HE_COL_COLUMN_ADDED,
     HE_COL_COLUMN_DROPPED,
-    /* `row` is the index of the material in the mesh's table, `before` its index in `objects`,
-     * `after` the `mark` (hash) of the material that was there before the edit, 0 if none was */
+    /* `row` is the index of the material in the mesh's table, `before` the material's index in
+     * `objects`, `after` the `mark` (hash) of the material that was there before the edit, 0 if
+     * there was none */
     HE_COL_MATERIAL,
-    /* `before` is the index in `objects` of the content; `row` is 1 if ids name other elements than
-     * before the replacement */
+    /* `before` is the index in `objects` of the replaced content (all data of the mesh); `row` is 1
+     * if ids name other elements after the replacement than before it, else 0 */
     HE_COL_REPLACED,
     HE_COL_ATTRIBUTE
 } he_col;
@@ -55,12 +61,11 @@ typedef struct he_record {
 } he_record;
 
 /* The records of an edit. All code may read the members; only write.h, delta.c and core/stored
- * write them. */
+ * write to them. */
 struct he_delta {
     he_record *records;
     size_t count, capacity;
-    /* Each object is an he_column, he_material or he_content, depending on the record that names
-     * it. */
+    /* Columns, materials and contents; the record that names an object says what it is. */
     void **objects;
     size_t object_count, object_capacity;
 };
@@ -71,39 +76,41 @@ static inline bool he_has_object(const he_record *r)
     return r->column >= HE_COL_COLUMN_ADDED && r->column < HE_COL_ATTRIBUTE;
 }
 
-/* A point of a recording to which he_delta_rollback can return. */
+/* A point in the recording of a delta to which he_delta_rollback can return: the numbers of
+ * records, of objects and of issued ids at that point. */
 typedef struct he_savepoint {
     size_t records, objects;
     uint32_t issued[HE_KIND_COUNT];
 } he_savepoint;
 
-he_delta *he_delta_new(void); /* makes an empty delta; NULL if memory is out */
+he_delta *he_delta_new(void); /* makes an empty delta; returns NULL if memory is out */
 /* Allocates memory in a delta for `records` more records and `objects` more objects. */
 HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t objects,
                                         he_error *err);
 void he_delta_free(he_delta *delta);
-/* Removes the records of a delta but keeps the memory. */
+/* Removes all records of a delta, but keeps the memory for later records. */
 void he_delta_empty(he_delta *delta);
-/* Returns the size of a delta in bytes. Spare capacity counts for its records, but not for its
- * columns and contents, so that a delta that is read back from storage counts as much as it did
- * before it was stored. */
+/* Returns the size of a delta in bytes. The spare capacity of its array of records counts, but the
+ * spare capacity of its columns and contents does not, so that a delta that is read back from
+ * storage counts as much as before it was stored. */
 size_t he_delta_bytes(const he_delta *delta);
-/* Frees the capacity of a delta beyond its records; if memory is out, the capacity stays. */
+/* Frees the spare memory of a delta's array of records. If the array cannot be moved, because
+ * memory is out, it stays as it is. */
 void he_delta_trim(he_delta *delta);
 
-/* Shortens the part of a delta from record `from` on: all records of one word become one record,
+/* Combines the records of a delta from record `from` on: all records of one word become one record,
  * with the `before` of the first and the `after` of the last. Lineage records stay. Edits that
- * write a word many times use it, so that the delta has no more records than words that changed.
- * The caller must not roll back to a savepoint after `from`, and no column or content may have been
- * replaced since.
+ * write a word many times call this function, so that the delta has no more records than words that
+ * changed. The caller must not roll back to a savepoint after `from`, and no column or content may
+ * have been replaced since `from`.
  * Returns HE_NO_MEMORY if memory is out; the records are as they were.
- * Returns HE_CANCELLED if the work was cancelled; some records are folded, and undo and redo
+ * Returns HE_CANCELLED if the work was cancelled; some records are then combined, and undo and redo
  * still lead to equal states. */
 HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_progress *progress,
                                      he_error *err);
 
-/* From this call on, all writes to `mesh` are recorded in `delta`; NULL ends the recording. Returns
- * the delta that was recording before, or NULL. */
+/* Starts recording: from this call on, all writes to `mesh` are recorded in `delta`. If `delta` is
+ * NULL, ends the recording. Returns the delta that was recording before, or NULL. */
 he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 
 /* These functions undo and redo a delta without recording. The mesh must be in the state after the
@@ -111,71 +118,75 @@ he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 void he_delta_undo(he_delta *delta, he_mesh *mesh);
 void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
-/* Applies a delta forwards to a mesh that has not issued the delta's rows, such as one just loaded.
- * The delta must own the objects (columns, materials, a content) that its edit put into the mesh,
- * as after an undo; afterwards it owns the objects that the edit took out of the mesh. Afterwards
- * the mesh has also issued as many rows of each kind as `issued` says, and undo and redo work as
- * usual. On failure the mesh is as it was.
- * Returns HE_CORRUPT if the mesh is not in the state the edit was made on; *refused, which may be
- * NULL, is then the index of the first record that differs.
+/* Applies a delta forwards to a mesh in which the ids of the edit's new elements are not issued,
+ * such as a mesh just loaded. The delta must own the objects (columns, materials, a content) that
+ * its edit put into the mesh, as after an undo. Afterwards the delta owns the objects that the edit
+ * took out of the mesh, the mesh has issued as many ids of each kind as `issued` says, and undo and
+ * redo work as usual. On failure the mesh is as it was.
+ * Returns HE_CORRUPT if the mesh is not in the state from which the edit began; *refused, if
+ * `refused` is not NULL, is then the index of the first record that does not fit.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delta_forward(he_delta *delta, he_mesh *mesh,
                                         const uint32_t issued[HE_KIND_COUNT], size_t *refused,
                                         he_error *err);
 
-/* The caller must call this before it undoes or redoes a delta that replaced the content. It
- * extends the content that the delta owns by deleted elements, one for each id that `mesh` has
- * issued since the replacement. Otherwise these ids would be issued a second time.
+/* Prepares an undo or redo of a delta that replaced the content (all data of the mesh). The caller
+ * must call this function before he_delta_undo and he_delta_redo. It adds deleted elements to the
+ * content that the delta owns, one for each id that `mesh` has issued since the replacement.
+ * Otherwise these ids would be issued a second time.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err);
 
-/* Frees an object that a record with this `column` names; NULL is allowed. Only core/mesh calls
- * this. */
+/* Frees an object (column, material or content) that is named by a record with this `column`.
+ * `object` may be NULL. Only core/mesh calls this function. */
 void he_object_free(uint32_t column, void *object);
-/* Returns the bytes of memory of an object that a record with this `column` names. */
+/* Returns the bytes of memory of an object (column, material or content) that is named by a record
+ * with this `column`. */
 size_t he_object_bytes(uint32_t column, const void *object);
 
-/* Issues dead rows (rows of deleted elements) until the mesh has issued as many as `issued` says
- * for each kind; if it has issued more, nothing changes. A replay needs this for ids that were
- * issued and deleted before the revision at which it starts.
- * Returns HE_NO_MEMORY if memory is out; some of the rows may then be issued. */
+/* Issues ids of deleted elements until `mesh` has issued as many ids of each kind as `issued` says;
+ * if it has issued more, nothing changes. A replay needs this for ids that were issued and deleted
+ * before the revision at which the replay starts.
+ * Returns HE_NO_MEMORY if memory is out; some of the ids may then be issued. */
 HE_NODISCARD he_status he_mesh_issue(he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT],
                                      he_error *err);
 
-/* Returns the present end of the recorded delta, to which he_delta_rollback can return. The mesh
- * must be recording. */
+/* Returns a savepoint: the present end of the delta that is recording, to which he_delta_rollback
+ * can return. The mesh must be recording. */
 he_savepoint he_delta_mark(const he_mesh *mesh);
 void he_delta_rollback(he_mesh *mesh, he_savepoint to);
 
-/* The net effect of records on elements. Each list is sorted and has no repeats. An element is
- * modified if it exists before and after the records and one of its published links or values
+/* The net effect of edits on elements. Each list of ids is sorted and has no repeats. An element is
+ * modified if it exists before and after the edits and one of its published links or values
  * differs: a vertex's position, attributes or stored half-edge; an edge's ends, faces or
  * attributes; a face's corners, stored half-edge, attributes or attributes of corners. `parents`
  * has pairs (new element, element it came from), and `merged` has pairs (deleted element, element
- * it was merged into), in the order in which the edit recorded them. A pair is left out if its
- * first element is not in `created`, or not in `deleted`. */
+ * it was merged into), in the order in which the edits recorded them. A pair is left out if its
+ * first element is not in the list `created` (for `parents`) or `deleted` (for `merged`). */
 typedef struct he_changes {
     he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
-    bool replaced; /* all data of the mesh were replaced; the lists are empty */
-    /* all data of the mesh were replaced, and ids name other elements than before */
+    bool replaced; /* true if all data of the mesh were replaced; the lists are then empty */
+    /* true if all data of the mesh were replaced, and ids name other elements than before */
     bool renumbered;
-    /* There are changes that no list shows: a column or material was added or removed, or a value
-     * of the mesh, or a link or value of a boundary half-edge, differs. If a column with labels was
-     * added, removed or replaced by another with its name, `modified` has the elements whose label
-     * differs; where the column does not exist, an element counts as having the default label. */
+    /* True if there are changes that no list shows: a column or material was added or removed, or a
+     * value of the mesh, or a link or value of a boundary half-edge, differs. If a column with
+     * labels was added, removed, or replaced by another column with its name, `modified` has the
+     * elements whose labels differ. Where the column does not exist, an element counts as having
+     * the default label. */
     bool others;
 } he_changes;
 
-/* Finds the net changes of the records `from`..`to` of `delta`, with `mesh` in the state after
- * `to`. If `undone`, the records were undone: `mesh` is in the state before `from`, and the changes
- * are those that the undo made. The lists for HE_HALFEDGE stay empty, because half-edges change
- * with their edges. */
+/* Finds the net changes that the records `from` to `to` - 1 of `delta` made, with `mesh` in the
+ * state after record `to` - 1. If `undone` is true, the records were undone: `mesh` is in the state
+ * before record `from`, and the changes are those that the undo made. The lists for HE_HALFEDGE
+ * stay empty, because half-edges change with their edges. */
 HE_NODISCARD he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from,
                                        size_t to, bool undone, he_changes *out, he_error *err);
-/* A part of a delta, which was applied forwards or backwards. he_changes_sum finds the net changes
- * of several parts, in the order in which they were applied, with `mesh` in the state after the
- * last one; changes that cancel each other out are not listed. */
+/* Records of a delta, from index `from` to `to` - 1, that were applied forwards or, if `undone` is
+ * true, backwards. he_changes_sum finds the net changes of several such parts, in the order in
+ * which they were applied, with `mesh` in the state after the last part. Changes that cancel each
+ * other out are not listed. */
 typedef struct he_change_part {
     const he_delta *delta;
     size_t from, to;

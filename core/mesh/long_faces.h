@@ -1,12 +1,14 @@
-/* long_faces.h - a cache of the triangulations of long faces.
+/* long_faces.h - a cache of the triangulations of long faces, which are the faces of more than
+ * HE_EXACT_CORNERS corners.
  *
- * Triangulating a face of very many corners takes long, and several readers of one revision need
- * the result: the arrays for a renderer, each file format of triangles and the tree of boxes. A
- * mesh that many threads read and none writes, such as a snapshot (replay.h), caches the
- * triangulations of its faces of more than HE_EXACT_CORNERS corners the first time that a caller
- * wants all of them. he_triangulation_make reads the cache.
+ * Triangulating a face of very many corners takes long, and several readers of one revision of a
+ * mesh need the result: the arrays for a renderer, each file format of triangles and the tree of
+ * boxes. A mesh that many threads read and none writes, such as a snapshot (replay.h), may have
+ * this cache. It is filled with the triangulations of all long faces the first time that a caller
+ * needs them (he_long_faces_keep). he_triangulation_make reads the cache.
  *
- * The cache belongs to the mesh. Its memory comes from he_mem, so it is counted. */
+ * The cache belongs to the mesh. Its memory comes from he_mem, so it counts in the
+ * memory budget. */
 #ifndef HE_MESH_LONG_FACES_H
 #define HE_MESH_LONG_FACES_H
 

@@ -25,8 +25,8 @@
 enum {
     HE_MATERIALS = 4096,
     HE_MATERIAL_NAME = 1023
-    /* HE_MATERIALS: the most slots of a table; HE_MATERIAL_NAME: the most bytes of a material's
-       name */
+    /* HE_MATERIALS: the most entries of a table of materials; HE_MATERIAL_NAME: the most bytes of a
+     * material's name */
 };
 
 typedef struct he_look {
@@ -39,7 +39,7 @@ typedef struct he_look {
 /* The default look: white, neither metallic nor shiny, no emission, one-sided. */
 extern const he_look he_plain_look;
 
-/* A material. All code may read the members, which never change. */
+/* A material. Its members never change, and all code may read them. */
 typedef struct he_material {
     atomic_uint references; /* private */
     /* Hash (FNV-1a) of the name and of the numbers of the look, as little-endian bytes; never 0. */
@@ -67,11 +67,12 @@ bool he_look_equal(const he_look *a, const he_look *b);
  * is cut. */
 void he_material_number_name(const char *name, unsigned number, char out[HE_MATERIAL_NAME + 1]);
 /* Brings every number of the look into its range: a number that is not finite becomes the default
- * (he_plain_look), a number out of range the nearer end of its range. Returns true if a number has
- * changed. */
+ * (he_plain_look), and a number out of range becomes the nearer end of its range. Returns true if a
+ * number has changed. */
 bool he_look_clamp(he_look *look);
 
-/* A table of materials: an array of slots, each NULL if its material was removed. {0} is empty. */
+/* A table of materials. Its entries are called slots; a slot is NULL if its material was removed.
+ * {0} is an empty table. */
 typedef struct he_materials {
     he_material **rows;
     size_t count, capacity;
@@ -82,23 +83,24 @@ void he_materials_clear(he_materials *materials);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_materials *out,
                                          he_error *err);
-/* Copies the materials of a table one after another, without the free slots between them. */
+/* Copies the materials of a table without the free slots, so that materials may change
+ * their slots. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
 /* Returns the number of materials, without free slots. */
 size_t he_materials_count(const he_materials *materials);
 size_t he_materials_bytes(const he_materials *materials);
 bool he_materials_equal(const he_materials *a,
-                        const he_materials *b); /* ignores free slots at the end */
-/* Returns the slot of the material with this name, SIZE_MAX if there is none. */
+                        const he_materials *b); /* ignores free slots at the end of a table */
+/* Returns the index of the slot of the material with this name, SIZE_MAX if there is none. */
 size_t he_materials_find(const he_materials *materials, const char *name, size_t length);
-/* Returns the first free slot, or the slot after the last. */
+/* Returns the index of the first free slot, or of the slot after the last if no slot is free. */
 size_t he_materials_free_slot(const he_materials *materials);
-/* Allocates memory in a table for `slots` slots in all.
+/* Allocates memory for a table of `slots` slots in all.
  * Returns HE_LIMIT if that is more than HE_MATERIALS.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_reserve(he_materials *materials, size_t slots, he_error *err);
-/* Adds a material to a table, in the first free slot; no material of the table may have its name.
+/* Puts a material into the first free slot of a table. No material of the table may have its name.
  * On success the table owns the material. Fails as he_materials_reserve does. */
 HE_NODISCARD he_status he_materials_add(he_materials *materials, he_material *takes, he_error *err);
 

@@ -8,7 +8,7 @@
  *                  \    ^|
  *                   \  h||            face(h) lies to the LEFT of h; a face's half-edges run
  *        face(h)     \  ||twin(h)     counter-clockwise about it. A half-edge without a face is
- *                     \ |v            a boundary half-edge: its next and prev walk the hole.
+ *                     \ |v            a boundary half-edge: its next and prev run around the hole.
  *                        o
  *                     origin(h)
  *
@@ -33,16 +33,18 @@
  *   I9   turning about v from halfedge(v) visits every half-edge that leaves v.
  *   I10  an edge joins two different vertices, and no other edge joins the same two.
  *   I11  positions are finite.
- *   I12  a dead row holds HE_DEAD in every link, the origin as its position and defaults as its
- *        attributes; the live counts are right.
- *   I13  materials have names, no two the same, and numbers in their ranges.
+ *   I12  a deleted element has HE_DEAD in every link, the origin of coordinates as its position and
+ *        default values as its attributes; the numbers of live elements are right.
+ *   I13  materials have different names, which are not empty, and numbers in their ranges.
  *
- * IDS. A row is issued at the end of its table and its number is the element's id. It never moves
- * and is never issued again; deleting an element leaves a dead row. Only he_compact renumbers.
- * An id below `issued` is live or deleted; one at or above it was never issued.
+ * IDS. The id of an element is its index in the arrays of the mesh, in which it has a row (one
+ * entry in each array). A new element gets a row after the last one: this issues the next id. A row
+ * never moves, and an id is never issued twice; a deleted element leaves a dead row. Only
+ * he_compact renumbers elements. An id below `issued` is that of a live or deleted element; an id
+ * of `issued` or more was never issued.
  *
- * ATTRIBUTES. Attributes are columns of values with one row for each element (see column.h).
- * Positions are built in: three doubles for each vertex.
+ * ATTRIBUTES. Attributes are columns with one value for each element (column.h). Positions are
+ * built in: three doubles for each vertex.
  *
  * MATERIALS. A mesh has a table of materials, which say how surfaces look; faces name them
  * (material.h).
@@ -63,8 +65,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Each kind of element has its own type of id, so that the compiler refuses one kind of element
- * where another is expected. */
+/* Each kind of element has its own type of id, so that the compiler reports an error if an id of
+ * one kind is used where another kind is expected. */
 typedef struct he_vertex {
     uint32_t i;
 } he_vertex;
@@ -82,7 +84,8 @@ typedef struct he_face {
 #define HE_NONE UINT32_MAX
 /* The value that all links of a deleted element have. */
 #define HE_DEAD (UINT32_MAX - 1u)
-/* Most rows of a table: half-edge 2e + 1 of the last edge must have an id below HE_DEAD. */
+/* The most elements of one kind: half-edge 2e + 1 of the last edge must have an id
+ * below HE_DEAD. */
 #define HE_MAX_ROWS (UINT32_MAX / 2u - 1u)
 
 typedef struct he_vec3 {
@@ -97,30 +100,30 @@ typedef struct he_delta he_delta;
 /* Returns an empty mesh, or NULL if memory is out. */
 he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
-/* Makes an independent copy with equal ids, deleted elements and attributes; no delta records what
- * is written to the copy. */
+/* Makes an independent copy of a mesh, with equal ids, deleted elements and attributes. Writes to
+ * the copy are not recorded in a delta. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
-/* Copies a mesh like he_mesh_copy, with `progress` (which may be NULL), which afterwards is the
- * watch of the copy (he_mesh_set_progress). */
+/* Copies a mesh like he_mesh_copy. Progress is reported to `progress`, which may be NULL and which
+ * becomes the watch of the copy (he_mesh_set_progress). */
 HE_NODISCARD he_status he_mesh_copy_with_progress(const he_mesh *mesh, he_progress *progress,
                                                   he_mesh **out, he_error *err);
-/* Returns true if two meshes are equal in every issued row of every column and have issued equally
- * many ids of each kind. */
+/* Returns true if two meshes are equal in every element and attribute value, deleted elements
+ * included, and have issued equally many ids of each kind. */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
 /* Compares like he_mesh_equal, but ignores deleted elements whose ids only one of the meshes has
  * issued. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
-/* Makes all long work with this mesh report its progress to the watch `progress` (progress.h),
- * which may cancel the work: it then fails with HE_CANCELLED. NULL removes the watch. No other
- * thread may use the mesh, and the watch must exist until it is removed. */
+/* Makes all long work with this mesh report its progress to the watch `progress` (progress.h). The
+ * watch may cancel the work, which then fails with HE_CANCELLED. NULL removes the watch. No other
+ * thread may use the mesh during this call, and the watch must exist until it is removed. */
 void he_mesh_set_progress(he_mesh *mesh, he_progress *progress);
 /* Declares that the mesh is a private copy which its owner frees as soon as an edit is cancelled.
  * After this call a cancelled edit leaves the mesh half edited, because a rollback would take about
  * as long as the edit did. Any other failure leaves the mesh as it was. */
 void he_mesh_expend(he_mesh *mesh);
 
-/* Returns the bytes of memory of a mesh, counted from the capacities of its columns. */
+/* Returns the bytes of memory that a mesh takes, spare capacity included. */
 size_t he_mesh_bytes(const he_mesh *mesh);
 
 /* These functions return the numbers of live elements. There are twice as many half-edges as
@@ -141,15 +144,15 @@ uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from);
 HE_NODISCARD he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id,
                                        he_error *err);
 
-/* These functions give access to the attribute columns, which are in the order in which they were
- * added. he_mesh_find_column returns NULL if no column has that domain and name. */
+/* These functions give access to the attribute columns, in the order in which they were added.
+ * he_mesh_find_column returns NULL if no column has that domain and name. */
 size_t he_mesh_columns(const he_mesh *mesh);
-/* Returns the column in slot i, NULL if it was dropped. */
+/* Returns the attribute column in slot (array entry) i; NULL if the column was dropped. */
 const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
 const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
-/* Returns the slot of a column of the mesh. */
+/* Returns the index of the slot in which the mesh holds an attribute column. */
 size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column);
-/* Returns the table of materials, valid until a material is added or removed. */
+/* Returns the mesh's table of materials, which is valid until a material is added or removed. */
 const he_materials *he_mesh_materials(const he_mesh *mesh);
 
 #endif

@@ -1,21 +1,22 @@
-/* replay.h - a copy of a mesh that moves from revision to revision along the log of the mesh's
- * deltas.
+/* replay.h - a copy of a mesh that moves from revision to revision, by undoing and redoing the
+ * mesh's edits. Each edit has a delta (the log of what it wrote; delta.h); the deltas of successive
+ * revisions are the log of the mesh.
  *
  * The deltas belong to the original mesh, which may be edited meanwhile; the copy only reads them.
  * The copy crosses one delta at a time, forwards (as the edit was made) or backwards (as it is
- * undone), and then equals the mesh at that point of the log: every live row, every column, and the
- * high-water marks.
+ * undone). Afterwards the copy equals the mesh at that point of the log in every live element, in
+ * every column, and in the numbers of issued ids.
  *
  *     log     ... 40 --D--> 41 --E--> 42 --D undone ...      crossing D at 42 again leads to 41's
  *     copy              <------- 42                          links, but keeps what 42 has issued
  *
- * A record of a word has both values, before and after the change. A column or content that was
- * replaced does not fit into a record: the delta owns it as an object, but only the object from
- * before or from after the edit, whichever the mesh does not hold now. So when the copy first
- * crosses such a delta, the delta must own the objects that are in the mesh after the crossing
- * (he_crossing.held). From then on the copy keeps the objects that each crossing has taken out of
- * it. Crossings of one delta alternate between forwards and backwards, because undo and redo of one
- * edit do. */
+ * A record of a changed word has the values before and after the change. A column or content (all
+ * data of a mesh) that was replaced does not fit into a record: the delta owns it as an object. A
+ * delta owns only one of the two objects, the one from before or the one from after the edit,
+ * whichever is not in the mesh now. So when the copy crosses such a delta for the first time, the
+ * delta must own the objects that are in the mesh after the crossing (he_crossing.held). From then
+ * on the copy keeps the objects that each crossing has taken out of it. Crossings of one delta
+ * alternate between forwards and backwards, because undo and redo of one edit alternate. */
 #ifndef HE_MESH_REPLAY_H
 #define HE_MESH_REPLAY_H
 
@@ -45,10 +46,10 @@ const he_mesh *he_replay_mesh(const he_replay *replay);
 /* Returns the bytes of memory of the copy and of the objects it keeps. */
 size_t he_replay_bytes(const he_replay *replay);
 
-/* Moves the copy across one delta.
- * Returns HE_UNSUPPORTED if the objects that the copy needs are neither kept from an earlier
- * crossing nor `held` by the delta; the copy is then as it was.
- * Returns HE_NO_MEMORY if memory is out; the copy is then between two points, and the caller can
+/* Moves the copy across one delta: undoes or redoes one edit.
+ * Returns HE_UNSUPPORTED if the objects (columns, materials, a content) that the copy needs are
+ * neither kept from an earlier crossing nor `held` by the delta; the copy is then as it was.
+ * Returns HE_NO_MEMORY if memory is out; the copy is then between two revisions, and the caller can
  * only free it. */
 HE_NODISCARD he_status he_replay_cross(he_replay *replay, const he_crossing *crossing,
                                        he_error *err);

@@ -1,4 +1,4 @@
-/* walk.h - inline functions that read a mesh. The caller must pass live elements of this mesh,
+/* walk.h - inline functions that read a mesh. The caller must pass live elements of the mesh,
  * because these functions check nothing. An id that a client has sent must first pass
  * he_mesh_require. */
 #ifndef HE_MESH_WALK_H
@@ -54,13 +54,13 @@ static inline he_vec3 he_position(const he_mesh *m, he_vertex v)
     return m->c.position[v.i];
 }
 
-/* Returns the next half-edge counter-clockwise that leaves the same origin. */
+/* Returns the half-edge that follows h in counter-clockwise order around h's origin. */
 static inline he_halfedge he_swing_ccw(const he_mesh *m, he_halfedge h)
 {
     return he_twin(he_prev(m, h));
 }
 
-/* Returns the half-edge that precedes h in counter-clockwise order around their origin. */
+/* Returns the half-edge that precedes h in counter-clockwise order around h's origin. */
 static inline he_halfedge he_swing_cw(const he_mesh *m, he_halfedge h)
 {
     return (he_halfedge){m->c.next[h.i ^ 1u]};
@@ -68,7 +68,7 @@ static inline he_halfedge he_swing_cw(const he_mesh *m, he_halfedge h)
 
 /* An edit at a random place of a large mesh spends most of its time waiting for memory. The
  * prefetch functions request all array entries that the edit will read at once, so that the edit
- * waits once and not for each entry. They accept any id, also of deleted elements. */
+ * waits once and not for each entry. These functions accept any id, also of deleted elements. */
 static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
 {
     if (h.i < 2u * m->c.edges.issued) {
@@ -104,9 +104,9 @@ static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
     }
 }
 
-/* Prefetches for a loop that edits edges and knows which ones come next: edge `next` follows
- * directly after the present edge, edge `soon` later. Their memory is then read while the present
- * edge is edited. */
+/* Prefetches for a loop that edits edges and knows which edges it will edit after the present one:
+ * edge `next` directly afterwards, edge `soon` later. The processor then reads the memory of these
+ * edges while the present edge is edited. */
 static inline void he_prefetch_coming(const he_mesh *m, he_edge next, he_edge soon)
 {
     he_prefetch_links(m, he_edge_halfedge(soon, 0));
@@ -130,7 +130,8 @@ static inline bool he_is_isolated(const he_mesh *m, he_vertex v)
 {
     return m->c.vertex_halfedge[v.i] == HE_NONE;
 }
-/* Returns true if a vertex is on the boundary; an isolated vertex counts as on the boundary. */
+/* Returns true if a vertex is on the boundary. An isolated vertex counts as on the
+ * boundary, too. */
 static inline bool he_is_boundary_vertex(const he_mesh *m, he_vertex v)
 {
     uint32_t h = m->c.vertex_halfedge[v.i];
@@ -159,20 +160,21 @@ static inline bool he_is_triangle(const he_mesh *m, he_halfedge h)
 uint32_t he_vertex_degree(const he_mesh *m, he_vertex v);
 /* Returns the number of corners of a face, in time linear in that number. */
 uint32_t he_face_degree(const he_mesh *m, he_face f);
-/* Returns the number of half-edges in the loop of h, the border of a face or a hole, in time linear
- * in that number. */
+/* Returns the number of half-edges in the loop of h, which is the border of a face or of a hole, in
+ * time linear in that number. */
 uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
-/* Returns the number of fans at a vertex: 0 if isolated, 1 if manifold, more at a bow-tie. */
+/* Returns the number of fans at a vertex (mesh.h): 0 if the vertex is isolated, 1 if it is
+ * manifold, more if it is a bow-tie. */
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
-/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. Searches around a; if a
- * has many edges, it searches around a and b alternately, so the time is linear in the smaller
- * degree. */
+/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. The function searches
+ * around a; if a has many edges, it searches around a and b alternately, so the time is linear in
+ * the smaller degree of a and b. */
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
-/* Finds the half-edge to vertex `to` from the origin of the half-edge `leaving`, like
+/* Finds the half-edge from the origin of the half-edge `leaving` to vertex `to`, like
  * he_find_halfedge. */
 he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to);
-/* Finds a half-edge like he_find_halfedge and adds the cost of the search to `*steps`, for callers
- * with a budget. */
+/* Finds a half-edge like he_find_halfedge, and adds the number of steps of the search to `*steps`,
+ * for callers that limit their work. */
 he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps);
 
 #endif

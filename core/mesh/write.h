@@ -1,10 +1,10 @@
 /* write.h - the functions through which all writes to a mesh go. Only core/ may use them.
  *
  * An edit runs in three parts:
- *     CHECK    every precondition; a refusal leaves through he_fail.
- *     RESERVE  he_reserve with everything the third part will use, records included.
- *     COMMIT   the functions below. They cannot fail.
- * Between he_new_* and the end of COMMIT every link of a new row must be set.
+ *     CHECK    tests every precondition; a refusal leaves through he_fail.
+ *     RESERVE  calls he_reserve to allocate all memory that COMMIT will use, also for records.
+ *     COMMIT   calls the functions below, which cannot fail.
+ * At the end of COMMIT, every link of every element that he_new_* made must have been set.
  *
  * If an edit consists of several edits and a later one may be refused, they must stand between
  * he_edit_begin and he_edit_end; if one fails, he_edit_end rolls back all of them. */
@@ -17,25 +17,27 @@
 #include <assert.h>
 #include <string.h>
 
-/* The most rows (array entries of new elements) and records that the COMMIT part of an edit will
- * need. he_reserve adds the records for the links, positions and attributes of new rows itself. */
+/* The upper limits of what the COMMIT part of an edit will need: `vertices`, `edges` and `faces`
+ * are the numbers of new elements. he_reserve itself adds the records for the links, positions and
+ * attributes of new elements. */
 typedef struct he_reservation {
     uint32_t vertices, edges, faces;
-    /* Upper bounds of the numbers of elements that the edit deletes. */
+    /* Upper limits of the numbers of elements that the edit deletes. */
     size_t deleted_vertices, deleted_edges, deleted_faces;
-    /* upper bound of the number of links written in elements that are neither new nor deleted */
+    /* upper limit of the number of links written in elements that are neither new nor deleted */
     size_t links;
-    /* upper bound of the number of positions written in vertices that are neither new nor
-     * deleted */
+    /* upper limit of the number of positions written in vertices that are neither new
+     * nor deleted */
     size_t positions;
-    /* Upper bound of the number of elements, neither new nor deleted, whose attributes are written;
-     * each counts once, however many columns it has. */
+    /* Upper limit of the number of elements, neither new nor deleted, whose attributes are written.
+     * Each element counts once, however many attributes it has. */
     size_t attributes;
-    size_t lineage; /* upper bound of the number of calls of he_note_parent and he_note_merged */
+    size_t lineage; /* upper limit of the number of calls of he_note_parent and he_note_merged */
 } he_reservation;
 
-/* The most records that COMMIT makes for each new or deleted element, without its attributes. These
- * numbers are larger than an element's number of links, because an edit may write a link twice. */
+/* The most records that COMMIT makes for each new or deleted element, without records of its
+ * attributes. These numbers are larger than the number of an element's links, because an edit may
+ * write a link twice. */
 enum {
     HE_POSITION_RECORDS = sizeof(he_vec3) / 4,
     HE_VERTEX_RECORDS = 2 + HE_POSITION_RECORDS,
@@ -43,12 +45,13 @@ enum {
     HE_FACE_RECORDS = 2
 };
 
-/* The slow part of he_reserve, which allocates. Most edits find enough memory without it. On
+/* The slow part of he_reserve, which allocates memory. Most edits find enough memory without it. On
  * failure the mesh is as it was.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_reservation *need, he_error *err);
-/* Returns true if the mesh has no attributes and has enough memory for the edit already. */
+/* Returns true if the mesh has no attributes, and its arrays and its delta have enough memory for
+ * the edit already. */
 static inline bool he_has_room(const he_mesh *m, const he_reservation *need)
 {
     const he_content *c = &m->c;
@@ -68,9 +71,10 @@ static inline he_status he_reserve(he_mesh *m, he_reservation need, he_error *er
     return he_has_room(m, &need) ? HE_OK : he_reserve_more(m, &need, err);
 }
 
-/* Adds `count` records to the delta, which the caller fills in. Returns NULL if no delta is
- * recording. It is faster to take the records of several writes in one call: each further call
- * would wait for the processor to finish writing the count of the call before. */
+/* Adds `count` records to the delta that is recording, and returns a pointer to them, so that the
+ * caller can fill them in; returns NULL if no delta is recording. Several records should be added
+ * by one call, because each further call would wait until the processor has written the count of
+ * the call before. */
 static inline he_record *he_record_take(he_mesh *m, size_t count)
 {
     he_delta *d = m->delta;
@@ -129,7 +133,7 @@ static inline void he_set_face(he_mesh *m, he_halfedge h, he_face f)
     m->c.boundary_halfedges += (uint32_t)(f.i == HE_NONE) - (uint32_t)(before == HE_NONE);
     m->c.face[h.i] = f.i;
 }
-/* Writes all links of a half-edge, whether it is new or is being deleted. */
+/* Writes all links of a half-edge, which may be new or be about to be deleted. */
 static inline void he_set_halfedge(he_mesh *m, he_halfedge h, he_halfedge next, he_halfedge prev,
                                    he_vertex origin, he_face f)
 {
@@ -166,11 +170,12 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
     }
     m->c.position[v.i] = position;
 }
-/* Writes a value of row_bytes bytes to a row of the attribute column in this slot. */
+/* Writes the attribute value of element `row` to the column in slot (array entry) `slot` of the
+ * mesh. `value` has row_bytes bytes. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
-/* These functions set all links of an element to HE_DEAD. A new element has such links until the
- * caller writes others. */
+/* These functions set all links of an element to HE_DEAD, which marks a deleted element. A new
+ * element has such links until the caller writes its links. */
 static inline void he_clear_vertex(he_content *c, uint32_t v)
 {
     c->position[v] = (he_vec3){0, 0, 0};
@@ -187,8 +192,8 @@ static inline void he_clear_face(he_content *c, uint32_t f)
     c->face_halfedge[f] = HE_DEAD;
 }
 
-/* Appends rows with the default value to every attribute column, until the column has as many rows
- * as its domain; he_reserve must have allocated memory for these rows. */
+/* Appends default values to every attribute column until it has a value for each element of its
+ * domain; he_reserve must have allocated memory for these values. */
 void he_issue_values(he_mesh *m);
 static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
 {
@@ -201,8 +206,8 @@ static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
     return row;
 }
 
-/* Issues a vertex. Its links are dead until the caller writes them, and its attributes have their
- * defaults. he_reserve must have allocated memory for it. */
+/* Makes a vertex with a new id. Its links are HE_DEAD until the caller writes them, and its
+ * attributes have their default values. he_reserve must have allocated memory for the vertex. */
 static inline he_vertex he_new_vertex(he_mesh *m)
 {
     uint32_t v = he_issue(m, &m->c.vertices);
@@ -221,14 +226,14 @@ static inline he_face he_new_face(he_mesh *m)
     he_clear_face(&m->c, f);
     return (he_face){f};
 }
-/* Deletes a vertex: writes dead or default values to all columns of its row. No live element may
- * still link to it. */
+/* Deletes a vertex: sets its links to HE_DEAD, and its position and attributes to their default
+ * values. No live element may still have a link to the vertex. */
 void he_delete_vertex(he_mesh *m, he_vertex v);
 void he_delete_edge(he_mesh *m, he_edge e);
 void he_delete_face(he_mesh *m, he_face f);
 
-/* These functions record in the delta which element a new one came from, and which element a
- * deleted one was merged into. They do nothing if no delta is recording. */
+/* These functions record in the delta from which element (the parent) a new element came, and into
+ * which element a deleted element was merged. They do nothing if no delta is recording. */
 static inline void he_note_parent(he_mesh *m, he_kind kind, uint32_t child, uint32_t parent)
 {
     he_record_word(m, HE_COL_PARENT, (uint32_t)kind, child, parent, 0);
@@ -238,11 +243,12 @@ static inline void he_note_merged(he_mesh *m, he_kind kind, uint32_t gone, uint3
     he_record_word(m, HE_COL_MERGED, (uint32_t)kind, gone, into, 0);
 }
 
-/* These functions set the attributes of row `to`, in every column of the kind of element, by the
- * column's rule. The functions named `between` interpolate from row a (t = 0) to row b (t = 1), or
- * copy a (t < 1) or b, or leave the default; those named `copy` copy unless the rule is default.
- * The kind may be HE_VERTEX, HE_HALFEDGE, HE_EDGE or HE_FACE. In a mesh without attributes each
- * call costs one test. */
+/* These functions set the attributes of element `to`, in every column of its kind, by the column's
+ * rule. The functions named `between` interpolate from element a (t = 0) to element b (t = 1) if
+ * the rule is interpolate; they copy the value of a (t < 1) or of b if the rule is copy, and write
+ * the default value if the rule is default. The functions named `copy` copy the value unless the
+ * rule is default. The kind may be HE_VERTEX, HE_HALFEDGE, HE_EDGE or HE_FACE. In a mesh without
+ * attributes each call costs one test. */
 void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
 static inline void he_attributes_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a,
                                          uint32_t b, double t)
@@ -258,11 +264,12 @@ static inline void he_attributes_copy(he_mesh *m, he_kind kind, uint32_t to, uin
         he_values_copy(m, kind, to, from);
     }
 }
-/* Sets the attributes of row `to` to the mean of the n rows in `from`, or copies the first row if
- * the column's rule is copy. */
+/* Sets the attributes of element `to` by each column's rule: to the mean of the n elements in
+ * `from` if the rule is interpolate, to the values of the first of them if it is copy. */
 void he_attributes_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
-/* Mixes the attributes of `row` with those of `other`: columns with the rule interpolate get the
- * value between `other` (t = 0) and `row` (t = 1); all other columns keep the value of `row`. */
+/* Mixes the attributes of element `row` with those of element `other`. In columns with the rule
+ * interpolate, `row` gets the value between `other` (t = 0) and `row` (t = 1); in all other columns
+ * it keeps its value. */
 void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
 static inline void he_attributes_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other,
                                      double t)
@@ -271,7 +278,8 @@ static inline void he_attributes_mix(he_mesh *m, he_kind kind, uint32_t row, uin
         he_values_mix(m, kind, row, other, t);
     }
 }
-/* Merges the values of row `gone` into row `into` by he_values_mix, unless `into` is locked. */
+/* Mixes the attributes of element `gone` into element `into` like he_values_mix, unless `into` is
+ * locked (marks.h). */
 void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
 static inline void he_attributes_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone,
                                        double t)
@@ -280,8 +288,8 @@ static inline void he_attributes_merge(he_mesh *m, he_kind kind, uint32_t into, 
         he_values_merge(m, kind, into, gone, t);
     }
 }
-/* Copies the attributes of row `from` to row `to` whatever the rule. A corner that moves to another
- * half-edge needs this. */
+/* Copies all attributes of element `from` to element `to`, whatever the rules of the columns. A
+ * corner that moves to another half-edge needs this. */
 void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
 static inline void he_attributes_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
@@ -293,36 +301,40 @@ static inline void he_attributes_move(he_mesh *m, he_kind kind, uint32_t to, uin
  * that is made often can skip the functions above that set attributes. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 
-/* Allocates the records that he_set_attribute needs for `rows` rows of one column.
+/* Allocates memory for the records of calls of he_set_attribute that write `rows` values of one
+ * column.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err);
 
-/* These functions add or drop an attribute column, and record it in the delta. On success the mesh
- * owns `takes`, which must have as many rows as its domain has issued. The column gets the first
- * free slot (entry of the mesh's array of columns). A slot may be used again, because the history
- * is linear: a record that names a slot is only applied while the column of which it tells is in
+/* These functions add or drop an attribute column, and record this in the delta. On success the
+ * mesh owns `takes`, which must have one value for each id issued in its domain. The column gets
+ * the first free slot (entry of the mesh's array of columns). A slot may be used for another column
+ * later. This does not confuse undo and redo, because they run through the history in order: a
+ * record that names a slot is only applied while the column that the record means is in
  * that slot. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
-/* Puts a material into a slot of the mesh's table, in place of the one that is there; with NULL the
- * slot becomes free. The slot may be the one after the last, which is then added. No other material
- * may have the name. On success the mesh owns `takes`.
+/* Puts a material into a slot (entry) of the mesh's table of materials, in place of the material
+ * that is there; if `takes` is NULL, the slot becomes unused. `slot` may be the index after the
+ * last slot, which then is added to the table. No other material may have the name of the material.
+ * On success the mesh owns `takes`.
  * Returns HE_LIMIT if there would be more than HE_MATERIALS slots.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,
                                             he_error *err);
-/* Says how he_mesh_replace changes ids. That function replaces the content (all data) of a mesh by
- * the content of `takes`, which is freed on success. The delta keeps the old content; if no delta
- * is recording, the old content is freed. HE_KEEPS_IDS promises that every id issued before is
- * issued in `takes` and names the same element or a deleted one, and that columns keep their slots.
- * Such a replacement can be undone and redone among other edits, after he_delta_ready. */
+/* Says whether he_mesh_replace changes ids. he_mesh_replace replaces the content (all data) of a
+ * mesh by the content of `takes`, which is freed on success. The delta keeps the old content; if no
+ * delta is recording, the old content is freed. HE_KEEPS_IDS promises that every id issued in the
+ * mesh is also issued in `takes` and there names the element that it named before or a deleted
+ * element, and that columns keep their slots. Such a replacement can be undone and redone among
+ * other edits, after he_delta_ready. */
 typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
 HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 
 /* The state between he_edit_begin and he_edit_end, which enclose several edits that succeed or fail
- * together. If no delta was recording, `own` is a delta that does, so that the edits can be rolled
- * back. he_edit_end returns `status` unchanged. A cancelled edit of an expendable mesh
- * (he_mesh_expend) is not rolled back. */
+ * together. If no delta was recording at the beginning, `own` is a delta that records, so that the
+ * edits can be rolled back. he_edit_end returns `status` unchanged. Cancelled edits of an
+ * expendable mesh (he_mesh_expend) are not rolled back. */
 typedef struct he_bracket {
     he_delta *own;
     he_savepoint mark;
