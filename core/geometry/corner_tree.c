@@ -6,7 +6,7 @@
 
 static const he_corner_box EMPTY = {{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
 
-/* --- the order of corners along the Z curve --- */
+/* --- sorting corners along the Z curve --- */
 
 typedef struct keyed {
     uint64_t key;

@@ -25,9 +25,10 @@
 
 enum {
     HE_CORNER_LEAF = 6,
-    HE_CORNER_FEW = 128, /* up to this many corners are kept in a list instead of a tree */
-    /* in a list that began with up to this many corners, a search finds the first one in the order
-     * of the list */
+    /* up to this many corners of a loop are kept in a list instead of a tree */
+    HE_CORNER_FEW = 128,
+    /* in a list made of at most this many corners, a search finds the first suitable corner in the
+     * order of the list and not along the Z curve */
     HE_CORNER_UNSORTED = 16
 };
 
@@ -40,7 +41,7 @@ typedef struct he_corner_box {
 /* A tree, or a list, of corners of a loop. {0} holds no corners. */
 typedef struct he_corner_tree {
     const he_planar_loop *flat;
-    void *memory;         /* one block that contains the arrays below */
+    void *memory;         /* one block of memory that contains the arrays below */
     he_corner_box *boxes; /* the box of each node of the tree; a list has none */
     /* In a list: the coordinates of the corners, in the order of the list. Further entries, up to
      * the next multiple of 8, are infinite. Unused in a tree. */

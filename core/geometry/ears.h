@@ -27,7 +27,8 @@
 #include "geometry/triangulation.h"
 
 enum {
-    HE_ANY_CORNER = 4, /* a further flag of he_ears_cut: cut any corner rather than get stuck */
+    /* a flag of he_ears_cut: if there is no ear, cut off any corner instead of giving up */
+    HE_ANY_CORNER = 4,
     HE_EAR_STEPS = 8
 };
 

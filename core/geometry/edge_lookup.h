@@ -16,14 +16,14 @@ enum { HE_EDGE_LOOKUP_DEGREE = 32 };
 
 /* An index of the edges between vertices of large degree. {0} is empty. */
 typedef struct he_edge_lookup {
-    /* for each vertex its index among the vertices of large degree; HE_NONE if its degree is not
-     * large */
+    /* for each vertex, its index among the vertices of large degree; HE_NONE if the vertex's degree
+     * is not large */
     uint32_t *rank;
-    /* for each vertex of large degree the index in `lists` at which its list begins; one more entry
-     * says where the last list ends */
+    /* for each vertex of large degree, the index in `lists` at which the vertex's list begins; one
+     * more entry says where the last list ends */
     uint32_t *starts;
-    /* one list after another: for each vertex of large degree, its neighbours of large degree
-     * with smaller ids */
+    /* the lists of all vertices of large degree, one after another: a list has the ids of the
+     * vertex's neighbours that have large degrees and smaller ids than the vertex */
     uint32_t *lists;
     /* hash table of pairs of vertices that got an edge after the lookup was made; an unused entry
      * is 0 */
@@ -42,8 +42,8 @@ HE_NODISCARD he_status he_edge_lookup_reserve(he_edge_lookup *lookup, size_t ext
 /* Adds an edge that was made between a and b. he_edge_lookup_reserve must have allocated memory for
  * it. */
 void he_edge_lookup_add(he_edge_lookup *lookup, he_vertex a, he_vertex b);
-/* Returns true if an edge joins a and b. Adds the cost of the search to `*steps`. If `lookup` is
- * NULL or empty, the function searches around a and b instead. */
+/* Returns true if an edge joins the vertices a and b. Adds the number of steps of the search to
+ * `*steps`. If `lookup` is NULL or empty, the function searches around a and b instead. */
 bool he_edge_lookup_has(const he_mesh *m, const he_edge_lookup *lookup, he_vertex a, he_vertex b,
                         uint64_t *steps);
 

@@ -69,9 +69,10 @@ he_vec3 he_face_centroid(const he_mesh *m, he_face f);
 
 /* How the faces around a vertex are weighted in the vertex's normal. */
 typedef enum he_weight {
-    HE_WEIGHT_AREA,   /* the weight is the face's area */
-    HE_WEIGHT_ANGLE,  /* the weight is the corner's angle (Thuermer and Wuethrich 1998) */
-    HE_WEIGHT_UNIFORM /* all faces weigh the same */
+    HE_WEIGHT_AREA, /* the weight is the face's area */
+    /* the weight is the angle of the face's corner at the vertex (Thuermer and Wuethrich 1998) */
+    HE_WEIGHT_ANGLE,
+    HE_WEIGHT_UNIFORM /* all faces have equal weights */
 } he_weight;
 
 /* Finds the unit normal of a vertex. If the vertex is isolated, if all its faces are degenerate, or
@@ -114,12 +115,12 @@ typedef struct he_box {
     he_vec3 min, max;
 } he_box;
 
-/* Finds the box around all live vertices, isolated ones included. If there are none, the box is
- * zero and the function returns false. */
+/* Finds the smallest box around all live vertices, isolated ones included. If the mesh has no
+ * vertices, the box is zero and the function returns false. */
 bool he_mesh_box(const he_mesh *m, he_box *out);
-/* Finds the box around the vertices that have edges. Scales and tolerances are derived from this
- * box, so that an isolated vertex far away has no influence on them. If there are no edges, the box
- * is zero and the function returns false. */
+/* Finds the smallest box around the vertices that have edges. Scales and tolerances are derived
+ * from this box, so that an isolated vertex far away has no influence on them. If the mesh has no
+ * edges, the box is zero and the function returns false. */
 bool he_surface_box(const he_mesh *m, he_box *out);
 
 /* The area of a mesh, which is the sum of the areas of its faces, and the volume that a closed mesh
@@ -132,7 +133,7 @@ bool he_surface_box(const he_mesh *m, he_box *out);
 typedef struct he_measures {
     double area;
     double volume;   /* 0 unless the mesh is closed */
-    bool has_volume; /* the mesh is closed: it has faces and no boundary half-edge */
+    bool has_volume; /* true if the mesh is closed: it has faces and no boundary half-edge */
 } he_measures;
 
 HE_NODISCARD he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err);

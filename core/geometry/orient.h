@@ -10,16 +10,17 @@
 
 #include "mesh/mesh.h"
 
-/* Returns the sign, -1, 0 or 1, of the volume of the tetrahedron a, b, c, d: 1 if a, b, c turn
- * clockwise as seen from d, 0 if all four lie in a plane. */
+/* Returns the sign (-1, 0 or 1) of the volume of the tetrahedron a, b, c, d: 1 if a, b, c turn
+ * clockwise as seen from d, -1 if they turn counter-clockwise, 0 if all four points lie in
+ * a plane. */
 int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d);
 
 typedef struct he_vec2 {
     double x, y;
 } he_vec2;
 
-/* Returns the sign of the area of the triangle a, b, c: 1 if it turns counter-clockwise, 0 if its
- * corners lie on a line. */
+/* Returns the sign (-1, 0 or 1) of the area of the triangle a, b, c: 1 if the triangle turns
+ * counter-clockwise, -1 if clockwise, 0 if its corners lie on a line. */
 int he_orient2(he_vec2 a, he_vec2 b, he_vec2 c);
 
 #endif

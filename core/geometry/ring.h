@@ -5,7 +5,8 @@
 
 #include "geometry/scale.h"
 
-/* The sums over one walk around a face; coordinates are multiplied by a scale. */
+/* Sums that are collected by one walk around a face, from coordinates that are multiplied by a
+ * scale. */
 typedef struct he_ring {
     he_vec3 vector; /* twice the area vector */
     he_vec3 sum;    /* sum of the positions of the corners */
@@ -38,7 +39,7 @@ double he_ring_area(const he_ring *r, int exponent);
  * half-edge `first`. */
 he_vec3 he_ring_centroid(const he_mesh *m, uint32_t first, const he_ring *found, int exponent);
 
-/* Returns HE_CORRUPT, saying that the links of the face do not close. */
+/* Returns HE_CORRUPT with a message that the half-edges of the face do not form a loop. */
 HE_NODISCARD he_status he_ring_corrupt(uint32_t face, he_error *err);
 
 #endif

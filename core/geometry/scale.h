@@ -14,8 +14,8 @@
 #define HE_LEAST_PRODUCT 1e-250
 #define HE_MOST_PRODUCT  1e250
 
-/* Returns the exponent e for which extent / 2^e is in [1/2, 1). It is at least -1000, so that the
- * factor 2^-e stays finite. */
+/* Returns the exponent e for which extent / 2^e is in [1/2, 1). The exponent is at least -1000, so
+ * that 2^-e is finite in a double. */
 static inline int he_exponent_of(double extent)
 {
     int exponent = 0;
@@ -50,11 +50,13 @@ static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
         square = he_vec3_dot(a, a);
     }
     double length = sqrt(square);
-    *out = (he_vec3){a.x / length, a.y / length, a.z / length}; /* exactly 1 along an axis */
+    /* a vector along an axis gives exactly 1 */
+    *out = (he_vec3){a.x / length, a.y / length, a.z / length};
     return true;
 }
 
-/* Returns the angle between two vectors; accurate also near 0 and pi, where acos is not. */
+/* Returns the angle between two vectors. The result is accurate also near 0 and pi, where acos is
+ * not. */
 static inline double he_vec3_angle(he_vec3 a, he_vec3 b)
 {
     return atan2(he_vec3_length(he_vec3_cross(a, b)), he_vec3_dot(a, b));

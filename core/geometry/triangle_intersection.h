@@ -1,4 +1,4 @@
-/* triangle_intersection.h - intersection test of two triangles. */
+/* triangle_intersection.h - tests whether two triangles in space intersect. */
 #ifndef HE_GEOMETRY_TRIANGLE_INTERSECTION_H
 #define HE_GEOMETRY_TRIANGLE_INTERSECTION_H
 

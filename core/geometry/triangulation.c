@@ -7,7 +7,7 @@
 #include <float.h>
 #include <string.h>
 
-/* --- state that the triangulations of several loops share --- */
+/* --- work that the triangulations of several loops share --- */
 
 /* Progress is reported each time that this many steps were taken, which takes less than a
  * millisecond. */

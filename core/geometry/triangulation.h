@@ -42,9 +42,10 @@ typedef struct he_triangulation {
     /* The loop, projected into its plane; x and y are not filled if the triangulation is from the
      * cache. */
     he_planar_loop flat;
-    uint32_t *corners; /* three for each of the flat.n - 2 triangles, counter-clockwise */
-    bool degenerate;   /* some triangle has no area in the plane, or is flipped */
-    uint64_t steps;    /* number of steps that this triangulation took */
+    uint32_t *corners; /* three corners for each of the flat.n - 2 triangles, counter-clockwise */
+    /* true if a triangle has no area in the plane, or is flipped (does not turn left) */
+    bool degenerate;
+    uint64_t steps; /* number of steps that this triangulation took */
 } he_triangulation;
 
 /* State that many triangulations of one mesh share; {0} is the state before the first
@@ -59,7 +60,7 @@ typedef struct he_triangulation_work {
     /* Index of edges, which is made when searches without it have cost as much as making it. The
      * caller must add the diagonals that it turns into edges. */
     he_edge_lookup own;
-    uint64_t sorted; /* value of `searched` when `own` was made */
+    uint64_t sorted; /* the value of `searched` when `own` was made */
     /* `progress`: the watch to which progress is reported as step `done` of `of`; the caller sets
      * these three members. `told`: the value of `steps` at the latest report. */
     he_progress *progress;
@@ -85,12 +86,12 @@ void he_triangulation_work_clear(he_triangulation_work *work);
  * steps of the search to `work`. */
 bool he_diagonal_exists(const he_mesh *m, const he_planar_loop *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work);
-/* Reports progress; must be called between two cuts.
+/* Reports progress, and makes the index of edges if it pays. Must be called between two cuts.
  * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_NO_MEMORY if memory for the index of edges is out. */
 HE_NODISCARD he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work,
                                              he_error *err);
-/* Returns HE_DOUBLED_EDGE with a message about the loop. */
+/* Returns HE_DOUBLED_EDGE with a message that a diagonal of the loop would double an edge. */
 HE_NODISCARD he_status he_diagonals_refuse(const he_mesh *m, const he_planar_loop *flat,
                                            he_error *err);
 

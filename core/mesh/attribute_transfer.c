@@ -92,9 +92,9 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
  * weights of these elements. */
 typedef struct mixture {
     const uint32_t *rows;
-    const double *weights; /* weight of each row; NULL if all weights are equal */
+    const double *weights; /* the weight of each element; NULL if all weights are equal */
     size_t n;
-    uint32_t nearest; /* the row whose value is copied if the column's rule is copy */
+    uint32_t nearest; /* the element whose value is copied if the column's rule is copy */
 } mixture;
 
 /* Sets the attributes of element `to`. In each attribute column for this kind of element, the

@@ -1,5 +1,5 @@
-/* changes.c - finds the net effect of deltas (records of edits) on elements: he_changes of
- * delta.h. */
+/* changes.c - finds the net effect on elements of one or several deltas (logs of edits): he_changes
+ * of delta.h. */
 #include "mesh/delta.h"
 
 #include "mesh/column.h"

@@ -46,8 +46,9 @@ struct he_column {
     uint32_t components;
     /* bytes of one value: components * size of the type */
     uint32_t row_bytes;
-    unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default value of a row */
-    /* The strings of which each value is an index; NULL if the column is not categorical. */
+    unsigned char fallback[HE_COLUMN_ROW_BYTES]; /* the default value of an element */
+    /* The strings (labels) of which each value is an index; NULL if the column is
+     * not categorical. */
     he_labels *labels;
     unsigned char *data;
     /* number of rows in memory; elements without a row in memory have the default value */
@@ -59,7 +60,7 @@ const char *he_type_name(he_type type); /* "bool", "int32", "uint32", "float", "
 size_t he_type_bytes(he_type type);
 const char *he_rule_name(he_rule rule); /* "copy", "interpolate", "default" */
 
-/* Makes a column without rows; its default is zero.
+/* Makes a column without values. Its default value is zero.
  * Returns HE_BAD_VALUE if the name is empty or too long, or `components` is outside 1..16. */
 HE_NODISCARD he_status he_column_new(const he_column_schema *schema, he_column **out,
                                      he_error *err);
@@ -74,16 +75,16 @@ HE_NODISCARD he_status he_column_copy(const he_column *column, he_column **out, 
  * eighth, because a mesh keeps its spare memory, and the system moves large blocks by changing page
  * tables instead of copying. */
 size_t he_rows_grown(size_t capacity, size_t rows);
-/* Allocates memory for `rows` rows in all. */
+/* Allocates memory for `rows` values in all. */
 HE_NODISCARD he_status he_column_reserve(he_column *column, size_t rows, he_error *err);
-/* Appends `rows` rows with the default value. */
+/* Appends `rows` default values to the column. */
 HE_NODISCARD he_status he_column_extend(he_column *column, size_t rows, he_error *err);
 /* Returns the value of a row, or the default value if the row is not in memory. */
 static inline const unsigned char *he_column_value(const he_column *column, size_t row)
 {
     return row < column->rows ? column->data + row * column->row_bytes : column->fallback;
 }
-/* Returns a row that is in memory. */
+/* Returns the value in a row; the row must be in memory. */
 static inline unsigned char *he_column_row(const he_column *column, size_t row)
 {
     return column->data + row * column->row_bytes;
@@ -101,7 +102,7 @@ bool he_column_same_values(const he_column *a, const he_column *b);
 bool he_is_material_column(const he_column *column);
 /* Returns true if the column is the attribute "normal", of three floats or doubles. */
 bool he_is_normal_column(const he_column *column);
-/* Reverses the direction of the normal in a row of a normal column. */
+/* Reverses the direction of a normal: `row` is a value of the attribute "normal". */
 void he_normal_negate(const he_column *column, unsigned char *row);
 /* Makes a column of half-edges called `name`, with `rows` rows of the default value. Its type,
  * components, rule, default and labels are those of `column`. */
@@ -111,7 +112,7 @@ HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char
  * is cut. */
 void he_column_number_name(const char *name, unsigned number, char out[HE_COLUMN_NAME]);
 
-/* Returns labels without strings and with one reference; NULL if memory is out. */
+/* Returns an empty list of labels with one reference; NULL if memory is out. */
 he_labels *he_labels_new(void);
 he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
@@ -123,10 +124,11 @@ const char *he_labels_get(const he_labels *labels, size_t i);
 /* Returns true if two lists of labels have equal strings in the same order. NULL equals only
  * NULL. */
 bool he_labels_equal(const he_labels *a, const he_labels *b);
-/* Finds the index of a string. Returns false if the labels do not contain it. */
+/* Finds the index of a string in a list of labels. Returns false if the list does not contain the
+ * string. */
 bool he_labels_find(const he_labels *labels, const char *text, size_t length, uint32_t *out);
-/* Finds the index of a string and adds the string if it is new. The caller must hold the only
- * reference. */
+/* Finds the index of a string in a list of labels, and adds the string if it is new. The caller
+ * must hold the only reference to the list. */
 HE_NODISCARD he_status he_labels_add(he_labels *labels, const char *text, size_t length,
                                      uint32_t *out, he_error *err);
 

@@ -5,8 +5,8 @@
 
 #include "mesh/mesh.h"
 
-/* Maps every id that was ever issued to its new id, or to HE_NONE if its element was deleted.
- * Half-edge 2e + s becomes 2 * edge[e] + s. {0} is empty. */
+/* Maps the id of every element before he_compact to its new id, or to HE_NONE if the element was
+ * deleted. Half-edge 2e + s becomes 2 * edge[e] + s. {0} is empty. */
 typedef struct he_maps {
     uint32_t *vertex, *edge, *face;
     /* numbers of entries of the arrays `vertex`, `edge` and `face` */

@@ -105,8 +105,8 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
-/* The number of records that are folded (combined by he_delta_fold) between two reports of
- * progress; folding a record takes a few cache misses. */
+/* The number of records that he_delta_fold combines between two reports of progress. Combining one
+ * record costs a few cache misses. */
 enum { FOLD_STRIDE = 16 * HE_PROGRESS_STRIDE };
 
 /* Combines all records that changed one 32-bit word into one record, and does so for every word. A
@@ -153,8 +153,8 @@ he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_erro
             table[at] = kept;
         }
     }
-    /* If the work was cancelled, the records that were not folded are moved behind the folded
-     * records. */
+    /* If the work was cancelled, the records that were not combined yet are moved directly behind
+     * the combined records. */
     memmove(d->records + kept, d->records + i, (d->count - i) * sizeof *d->records);
     d->count -= i - kept;
     he_mem_free(table);

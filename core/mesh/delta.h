@@ -70,7 +70,7 @@ struct he_delta {
     size_t object_count, object_capacity;
 };
 
-/* Returns true if the record names an object of its delta (a column, material or content). */
+/* Returns true if the record names an object (column, material or content) of its delta. */
 static inline bool he_has_object(const he_record *r)
 {
     return r->column >= HE_COL_COLUMN_ADDED && r->column < HE_COL_ATTRIBUTE;
@@ -113,8 +113,8 @@ HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_progress *
  * NULL, ends the recording. Returns the delta that was recording before, or NULL. */
 he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 
-/* These functions undo and redo a delta without recording. The mesh must be in the state after the
- * delta for an undo, before the delta for a redo. */
+/* These functions undo and redo the edit of a delta, without recording. For he_delta_undo the mesh
+ * must be in the state after the edit, for he_delta_redo in the state before the edit. */
 void he_delta_undo(he_delta *delta, he_mesh *mesh);
 void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
@@ -195,7 +195,7 @@ typedef struct he_change_part {
 HE_NODISCARD he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts,
                                       size_t count, he_changes *out, he_error *err);
 void he_changes_clear(he_changes *changes);
-/* Returns true if there are no changes at all. The store then makes no revision. */
+/* Returns true if there are no changes at all. The store then makes no new revision of the mesh. */
 bool he_changes_none(const he_changes *changes);
 
 #endif

@@ -35,7 +35,8 @@ size_t he_content_issued(const he_content *content, he_kind domain);
 
 struct he_mesh {
     he_content c;
-    he_delta *delta;       /* the delta that records all writes; NULL if no delta does */
+    /* the delta in which all writes are recorded; NULL if writes are not recorded */
+    he_delta *delta;
     he_progress *progress; /* receives the progress of long work and may cancel it; may be NULL */
     bool expendable;       /* see he_mesh_expend */
     /* The cache of long faces of a mesh that is never edited (long_faces.h); NULL if the mesh has

@@ -4,8 +4,8 @@
 
 #include <stdatomic.h>
 
-/* The cache of a mesh. The pointer in it is set once, by the first thread that has made the
- * triangulations. */
+/* The cache of the triangulations of a mesh's long faces. The pointer is NULL until the first
+ * thread that has made the triangulations sets it. */
 struct he_kept {
     _Atomic(he_long_faces *) long_faces;
 };

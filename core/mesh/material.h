@@ -42,7 +42,7 @@ extern const he_look he_plain_look;
 /* A material. Its members never change, and all code may read them. */
 typedef struct he_material {
     atomic_uint references; /* private */
-    /* Hash (FNV-1a) of the name and of the numbers of the look, as little-endian bytes; never 0. */
+    /* Hash (FNV-1a) of the name and of the numbers in `look`, as little-endian bytes; never 0. */
     uint32_t mark;
     he_look look;
     size_t length;
@@ -63,8 +63,8 @@ size_t he_material_bytes(const he_material *material); /* returns 0 for NULL */
 /* Returns true if the names and numbers of two materials are equal. NULL equals only NULL. */
 bool he_material_equal(const he_material *a, const he_material *b);
 bool he_look_equal(const he_look *a, const he_look *b);
-/* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on; a name that is too long
- * is cut. */
+/* Makes a numbered name of a material: writes NAME for number 1, else NAME_2 and so on. A name that
+ * is too long is cut. */
 void he_material_number_name(const char *name, unsigned number, char out[HE_MATERIAL_NAME + 1]);
 /* Brings every number of the look into its range: a number that is not finite becomes the default
  * (he_plain_look), and a number out of range becomes the nearer end of its range. Returns true if a
@@ -79,7 +79,7 @@ typedef struct he_materials {
 } he_materials;
 
 void he_materials_clear(he_materials *materials);
-/* Copies the materials of a table; each keeps its slot.
+/* Copies the materials of a table; each material keeps its slot (its entry of the table).
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_materials *out,
                                          he_error *err);
@@ -87,7 +87,7 @@ HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_mater
  * their slots. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
-/* Returns the number of materials, without free slots. */
+/* Returns the number of materials of a table; free slots (unused entries) do not count. */
 size_t he_materials_count(const he_materials *materials);
 size_t he_materials_bytes(const he_materials *materials);
 bool he_materials_equal(const he_materials *a,

@@ -110,8 +110,8 @@ HE_NODISCARD he_status he_mesh_copy_with_progress(const he_mesh *mesh, he_progre
 /* Returns true if two meshes are equal in every element and attribute value, deleted elements
  * included, and have issued equally many ids of each kind. */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
-/* Compares like he_mesh_equal, but ignores deleted elements whose ids only one of the meshes has
- * issued. */
+/* Compares two meshes like he_mesh_equal, but ignores deleted elements whose ids only one of the
+ * meshes has issued. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
 /* Makes all long work with this mesh report its progress to the watch `progress` (progress.h). The
@@ -133,14 +133,15 @@ uint32_t he_mesh_edges(const he_mesh *mesh);
 uint32_t he_mesh_faces(const he_mesh *mesh);
 uint32_t he_mesh_boundary_halfedges(const he_mesh *mesh);
 uint32_t he_mesh_count(const he_mesh *mesh, he_kind kind);
-/* Returns the high-water mark of a kind: how many ids of elements of that kind were ever issued. */
+/* Returns how many ids of elements of a kind were ever issued, deleted elements included. */
 uint32_t he_mesh_issued(const he_mesh *mesh, he_kind kind);
 bool he_mesh_is_live(const he_mesh *mesh, he_kind kind, uint32_t id);
-/* Returns the first live id of a kind at or after `from`, HE_NONE if there is none. */
+/* Returns the id of the first live element of a kind at or after the id `from`; HE_NONE if there is
+ * none. */
 uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from);
-/* Returns HE_OK if the element is live; an error names the element.
+/* Returns HE_OK if the element is live; otherwise the message in `err` names the element.
  * Returns HE_NO_SUCH_ELEMENT if the id was never issued.
- * Returns HE_DELETED_ELEMENT if the element is dead. */
+ * Returns HE_DELETED_ELEMENT if the element was deleted. */
 HE_NODISCARD he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id,
                                        he_error *err);
 

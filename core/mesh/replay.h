@@ -28,7 +28,7 @@ typedef struct he_crossing {
     /* A number that identifies the delta among all deltas that the copy will ever cross. */
     uint64_t key;
     const he_delta *delta;
-    bool undo; /* the delta is crossed backwards */
+    bool undo; /* true if the delta is crossed backwards: its edit is undone */
     /* true if the delta owns the objects (columns, materials, a content) that are in the mesh
      * after the crossing */
     bool held;
@@ -40,10 +40,11 @@ typedef struct he_crossing {
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_replay_new(const he_mesh *mesh, he_replay **out, he_error *err);
 void he_replay_free(he_replay *replay);
-/* Returns the copy at its present point. The pointer is always the same, and valid as long as the
- * replay exists. */
+/* Returns the copy of the mesh, at the revision to which it was moved last. The pointer is always
+ * the same, and is valid as long as the replay exists. */
 const he_mesh *he_replay_mesh(const he_replay *replay);
-/* Returns the bytes of memory of the copy and of the objects it keeps. */
+/* Returns the bytes of memory of the copy and of the objects (columns, materials, contents) that it
+ * keeps for later crossings. */
 size_t he_replay_bytes(const he_replay *replay);
 
 /* Moves the copy across one delta: undoes or redoes one edit.

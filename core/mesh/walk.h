@@ -78,8 +78,8 @@ static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
         __builtin_prefetch(&m->c.face[h.i], 1);
     }
 }
-/* Prefetches what an edit of edge e reads: the half-edges before and after its two half-edges, its
- * faces, and the stored half-edges of its ends. */
+/* Prefetches the memory that an edit of edge e reads: the links of the half-edges before and after
+ * its two half-edges, and the stored half-edges of its faces and ends. */
 static inline void he_prefetch_about(const he_mesh *m, he_edge e)
 {
     for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
@@ -94,7 +94,7 @@ static inline void he_prefetch_about(const he_mesh *m, he_edge e)
     }
 }
 
-/* Prefetches the positions of an edge's ends. */
+/* Prefetches the positions of the two ends of an edge. */
 static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
 {
     for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {

@@ -195,7 +195,8 @@ void he_delete_face(he_mesh *m, he_face f)
     m->c.faces.live--;
 }
 
-/* Returns the first free slot for an attribute column, or the slot after the last. */
+/* Returns the index of the first free slot (entry) in the array of attribute columns, or the index
+ * after the last slot. */
 static size_t free_slot(const he_content *c)
 {
     size_t slot = 0;
