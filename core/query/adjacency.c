@@ -8,14 +8,16 @@
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 typedef struct he_gather {
-    /* Ids of the elements whose neighbours are wanted; NULL: every live element. */
+    /* Ids of the elements whose neighbours are listed. NULL: the neighbours of every live element
+     * are listed. */
     const uint32_t *of;
-    size_t count; /* number of entries of `of`; if `of` is NULL, number of ids ever issued */
+    size_t count; /* number of entries of `of`; if `of` is NULL, the number of ids ever issued */
     he_ids *ids;
-    /* Where the next offset (index in `ids`) goes; NULL: no offsets are wanted. */
+    /* Where the next offset is written: the index in `ids` at which the neighbours of an element
+     * end. NULL if no offsets are needed. */
     uint32_t *offsets;
     uint64_t budget; /* number of half-edges that may still be visited */
-    bool capped;     /* true if `budget` follows from the size of the mesh */
+    bool capped;     /* true if the size of the mesh limits `budget`, not the caller */
     unsigned flags;
 } he_gather;
 
@@ -44,9 +46,11 @@ static void turn_clockwise(he_ids *ids, size_t from)
     }
 }
 
-/* What each half-edge of a walk contributes to the list of neighbours. */
+/* What a walk over half-edges lists for each half-edge that it visits: the half-edge itself, its
+ * twin, edge, origin, target or face. */
 typedef enum reading { ITSELF, TWIN, EDGE, ORIGIN, TARGET, FACE } reading;
-/* How a walk goes on from a half-edge: about its origin, or around its face. */
+/* Which half-edge a walk visits next: TURN is the next half-edge around the origin, NEXT the next
+ * half-edge around the face. */
 typedef enum way { TURN, NEXT } way;
 
 static ALWAYS_INLINE uint32_t read(const he_mesh *m, uint32_t h, reading what)
@@ -68,7 +72,7 @@ static ALWAYS_INLINE uint32_t read(const he_mesh *m, uint32_t h, reading what)
     return HE_NONE;
 }
 
-/* Returns the half-edge from which the walk for an element of this kind starts; HE_NONE at an
+/* Returns the half-edge at which the walk around an element begins; HE_NONE if the element is an
  * isolated vertex. */
 static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t id)
 {
@@ -78,10 +82,11 @@ static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t 
     return kind == HE_FACE ? m->c.face_halfedge[id] : id;
 }
 
-/* The walk that all relations share. It is inlined into the function of each relation with constant
- * `kind`, `path` and `what`, so a query for a million vertices never branches on these three. A
- * link that is dead or absent is an id past the end of the tables, which is tested before a row is
- * read. */
+/* Lists the neighbours of elements by walking over half-edges. The function is inlined into the
+ * function of each relation with constant `kind`, `path` and `what`, so a query for a million
+ * vertices never branches on these three parameters. Where a link is missing or leads to a deleted
+ * element, it holds an id beyond all half-edges, so each id is compared with `end` before it is
+ * used as an index. */
 static ALWAYS_INLINE he_status walk(const he_mesh *m, he_gather *g, he_kind kind, way path,
                                     reading what, he_error *err)
 {
@@ -191,12 +196,12 @@ static he_status halfedge_ring(const he_mesh *m, he_gather *g, he_error *err)
     return walk(m, g, HE_HALFEDGE, TURN, ITSELF, err);
 }
 
-/* Up to this many neighbours are compared one by one to find repeats; more are put into the set
- * `seen`. */
+/* As long as an element has fewer neighbours than FEW, each new neighbour is compared with all
+ * earlier ones to find repeats. With more neighbours, the repeats are found by the set `seen`. */
 enum { FEW = 16 };
 
-/* Appends `face` to the neighbours of an element, which begin at index `from`, unless it is among
- * them already. */
+/* Appends `face` to the neighbours of an element unless `face` is already one of these neighbours,
+ * which begin at index `from`. */
 static he_status add_once(he_ids *ids, size_t from, he_idmap *seen, uint32_t face, he_error *err)
 {
     uint32_t index;
@@ -264,8 +269,9 @@ static he_status face_faces(const he_mesh *m, he_gather *g, he_error *err)
     return HE_OK;
 }
 
-/* Appends what the two half-edges of each edge contribute. Two elements have one cyclic order, so
- * nothing needs to be done to list them clockwise. */
+/* Lists what `what` selects of the two half-edges of each edge: their faces, for example. A list of
+ * at most two elements is both clockwise and counter-clockwise, so the flag HE_CLOCKWISE changes
+ * nothing. */
 static ALWAYS_INLINE he_status sides(const he_mesh *m, he_gather *g, reading what, he_error *err)
 {
     for (size_t i = 0; i < g->count; i++) {
@@ -367,9 +373,10 @@ he_status he_relation_append(const he_mesh *m, const he_relation *relation, uint
     return status;
 }
 
-/* Returns an upper bound of the number of neighbours that a relation gives for all elements
- * together; the bound is exact for most relations. Returns 0 if the mesh's size gives no bound: in
- * the relation `loop` each half-edge of a large face lists the whole loop. */
+/* Returns an upper bound of the number of neighbours that a relation lists for all elements of the
+ * mesh together; the bound is exact for most relations. Returns 0 for relations of half-edges, for
+ * which the size of the mesh gives no bound: the relation `loop` lists a whole loop for each
+ * half-edge of the loop. */
 static uint64_t bound(const he_mesh *m, const he_relation *relation)
 {
     return relation->of == HE_HALFEDGE ? 0 : 2u * (uint64_t)m->c.edges.live;

@@ -9,15 +9,16 @@
 
 enum {
     BINS = 16,
-    /* The size of the stack of pairs of nodes. Each step down the tree leaves at most two pairs on
-     * the stack, and in a pair either node may be replaced by its children. */
+    /* Capacity of the stack of pairs of nodes. A pair is replaced by at most three pairs, of which
+     * two wait on the stack while the third is handled. A pair can be replaced once for each level
+     * of the tree below either of its two nodes. */
     PAIRS = 6 * HE_BOXES_STACK
 };
 
 typedef struct builder {
     he_boxes tree;
-    const he_bounds *boxes; /* the box of each thing */
-    const uint32_t *group;  /* the group of each thing; NULL if there are no groups */
+    const he_bounds *boxes; /* box of each item; the items of the tree are triangles, for example */
+    const uint32_t *group;  /* group of each item; NULL if there are no groups */
     he_bounds *group_boxes;
     size_t capacity; /* number of nodes for which there is memory */
     he_budget *budget;
@@ -51,15 +52,16 @@ static double middle(const he_bounds *b, int axis)
 
 /* --- splitting --- */
 
-/* A run of entries of `order`, the list of all things, that will become a node of the tree. */
+/* A run of consecutive entries of `order`, the list of all items, that becomes one node of the
+ * tree. */
 typedef struct run {
     uint32_t node, first, count, depth;
-    uint32_t least, most; /* lowest and highest group number of the things in the run */
+    uint32_t least, most; /* lowest and highest group number of the items in the run */
 } run;
 
 typedef struct cut {
-    int axis; /* axis of the cut; -1 if none was found */
-    int bin;  /* things in bins with lower numbers than this go to the left part */
+    int axis; /* axis across which the run is cut; -1 if no cut was found */
+    int bin;  /* items in bins with a lower number than this go to the left part */
     double low, factor;
 } cut;
 
@@ -68,8 +70,8 @@ static uint32_t group_of(const builder *b, uint32_t thing)
     return b->group == NULL ? 0 : b->group[thing];
 }
 
-/* Returns the box that decides to which side a thing goes when its run is divided: the thing's own
- * box, or the box of its group. */
+/* Returns the box that decides whether an item goes to the left or the right part when its run is
+ * divided: the box of the item, or the box of the item's group. */
 static const he_bounds *place_of(const builder *b, const run *r, uint32_t i)
 {
     uint32_t thing = b->tree.order[r->first + i];
@@ -83,8 +85,8 @@ static int bin_of(const cut *c, const he_bounds *b)
     return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* Finds the cheapest cut of a run in two along one axis. Returns the cost of the cut; DBL_MAX if
- * every cut would leave all things on one side. */
+/* Finds the cheapest cut of a run into two parts along one axis. Returns the cost of the cut;
+ * DBL_MAX if every cut would leave one part empty. */
 static double cut_along(const builder *b, const run *r, cut *c)
 {
     uint32_t counts[BINS] = {0};
@@ -157,8 +159,7 @@ static bool goes_left(const builder *b, const run *r, const cut *c, uint32_t i)
     return bin_of(c, place_of(b, r, i)) < c->bin;
 }
 
-/* Divides a run of things in two by the cheapest cut; returns how many things are in the left
- * part. */
+/* Divides a run into two parts by the cheapest cut. Returns how many items are in the left part. */
 static uint32_t divide(builder *b, const run *r)
 {
     cut c = {.axis = -1};
@@ -179,7 +180,7 @@ static uint32_t divide(builder *b, const run *r)
     return left;
 }
 
-/* Makes room for two more nodes. */
+/* Allocates memory for two more nodes. */
 static he_status grow(builder *b, he_error *err)
 {
     size_t need = (size_t)b->tree.node_count + 2;
@@ -195,7 +196,7 @@ static he_status grow(builder *b, he_error *err)
     return HE_OK;
 }
 
-/* Return the nearest float that is not greater than x, and the nearest that is not less. */
+/* Returns the largest float that is not greater than x. */
 static float downward(double x)
 {
     float near = (float)x;
@@ -207,7 +208,7 @@ static float upward(double x)
     return -downward(-x);
 }
 
-/* Finds the box around all things of a run, and whether they belong to several groups. */
+/* Finds the box around all items of a run, and the lowest and highest number of their groups. */
 static he_bounds look(const builder *b, run *r)
 {
     he_bounds bounds = he_bounds_none();
@@ -286,8 +287,8 @@ he_status he_boxes_make(const he_boxed *things, he_budget *budget, he_boxes *out
 {
     const uint32_t count = things->count, *group = things->group;
     builder b = {.boxes = things->boxes, .group = group, .budget = budget};
-    /* Memory is first allocated for slightly more nodes than a tree has whose leaves are mostly
-     * full. */
+    /* Most trees have full leaves and need fewer nodes than this; `grow` allocates more if
+     * necessary. */
     b.capacity = count / 2 + 4;
     b.tree.nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree.nodes);
     b.tree.order = he_mem_array(NULL, count, sizeof *b.tree.order);
@@ -330,7 +331,8 @@ static bool apart(const he_box_node *a, const he_box_node *b)
     return false;
 }
 
-/* Splits a pair of nodes, not both of them leaves, into pairs of their children. */
+/* Replaces a pair of nodes, of which at least one is no leaf, by pairs in which a node is replaced
+ * by its children. */
 static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
 {
     const he_box_node *a = &nodes[p.a], *b = &nodes[p.b];
@@ -340,8 +342,9 @@ static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
         out[2] = (node_pair){a->first, a->first + 1};
         return 3;
     }
-    /* If one node of the pair is a leaf, the other node is split. If neither is a leaf, the node
-     * with the lower number is split, which is higher up in the tree. */
+    /* If one node of the pair is a leaf, the node that is no leaf is split. If neither node is a
+     * leaf, the node with the lower number is split, because it is nearer to the root of the
+     * tree. */
     bool first = b->count > 0 || (a->count == 0 && p.a < p.b);
     for (uint32_t side = 0; side < 2; side++) {
         out[side] = first ? (node_pair){a->first + side, p.b} : (node_pair){p.a, b->first + side};

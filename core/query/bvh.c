@@ -75,8 +75,9 @@ static uint32_t end_of_face(const he_bvh *tree, uint32_t i)
     return i;
 }
 
-/* Makes a group of the triangles of each face that has many triangles, and numbers these groups.
- * Triangles are listed face by face. Returns the number of groups, including group 0. */
+/* Puts the triangles of each face that has many triangles into a group, and numbers these groups.
+ * The list of triangles is sorted by face. Returns the number of groups, including group 0 of all
+ * other triangles. */
 static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
 {
     uint32_t groups = 1;
@@ -91,9 +92,9 @@ static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
     return groups;
 }
 
-/* Makes a group of the triangles that meet at each hub, a position of very many triangles (hubs.h),
- * and numbers these groups. A triangle at several hubs belongs to the group of the hub with the
- * most triangles. */
+/* Puts the triangles that meet at a hub (a position at which very many triangles meet, hubs.h) into
+ * a group, and numbers these groups. A triangle at several hubs belongs to the group of the hub
+ * with the most triangles. */
 static uint32_t group_spokes(const he_bvh *tree, uint32_t groups, uint32_t *group)
 {
     const he_hubs *hubs = &tree->hubs;
@@ -120,8 +121,8 @@ static bool has_wide_faces(const he_bvh *tree)
     return false;
 }
 
-/* Finds the groups of triangles that boxes cannot separate. *group stays NULL if all triangles are
- * of group 0, which means no group. */
+/* Finds the groups of triangles that boxes cannot separate. *group stays NULL if there are no such
+ * groups; group 0 has the triangles that need no group. */
 static he_status find_groups(he_bvh *tree, const he_mesh *m, he_budget *budget, uint32_t **group,
                              uint32_t *groups, he_error *err)
 {
@@ -170,7 +171,8 @@ static bool arrange(he_bvh *tree, he_boxes *boxes)
     if (tree->discs == NULL) {
         return false;
     }
-    /* The array of nodes is shrunk to its size; if that fails, the larger array is kept. */
+    /* The array of nodes is shrunk to the number of nodes; if shrinking fails, the larger array is
+     * kept. */
     he_box_node *nodes = he_mem_array(boxes->nodes, boxes->node_count, sizeof *nodes);
     tree->nodes = nodes == NULL ? boxes->nodes : nodes;
     tree->node_count = boxes->node_count;

@@ -7,7 +7,8 @@ static double square(he_vec3 a)
     return he_vec3_dot(a, a);
 }
 
-/* Returns where on the segment from a to b the point nearest to p is: 0 at a, 1 at b. */
+/* Returns where the point of the segment from a to b that is nearest to p lies: 0 at a, 1 at b,
+ * linear in between. */
 static double along(he_vec3 p, he_vec3 a, he_vec3 b)
 {
     he_vec3 ab = he_vec3_sub(b, a);
@@ -15,8 +16,8 @@ static double along(he_vec3 p, he_vec3 a, he_vec3 b)
     return t > 0 ? (t < 1 ? t : 1) : 0; /* if a and b are equal, t is NaN, and the result is 0 */
 }
 
-/* Finds the point inside a triangle nearest to p, the foot of the perpendicular. Returns false if
- * the foot is outside, or if the triangle is too thin to decide. */
+/* Projects p perpendicularly onto the plane of a triangle. Returns false if the projected point is
+ * outside the triangle, or if the triangle is too thin to decide that. */
 static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     he_vec3 u = he_vec3_sub(c[1], c[0]), v = he_vec3_sub(c[2], c[0]), w = he_vec3_sub(p, c[0]);
@@ -31,8 +32,8 @@ static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
     return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
 }
 
-/* The best result of a search for the nearest point so far, and the vector from there back to the
- * query's point. */
+/* The best result so far of a search for the point of the mesh nearest to a query point: the
+ * nearest point, and the vector from it to the query point. */
 typedef struct approach {
     he_vec3 p, back;
     he_bvh_found best;
@@ -46,7 +47,7 @@ static he_vec3 from_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
     return he_vec3_sub(p, q);
 }
 
-/* Returns the vector to p from the nearest point of a triangle. */
+/* Returns the vector from the nearest point of a triangle to p. */
 static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     if (over(p, c, weight)) {
@@ -71,11 +72,13 @@ static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
     return back;
 }
 
-/* Rounding may make a box seem farther than a triangle in it, by at most this factor. */
+/* By rounding, the computed distance to a box may exceed that to a triangle in the box by at most
+ * this factor. */
 static const double SLACK = 1 + 16 * DBL_EPSILON;
 
-/* Returns true if a triangle is behind the plane that passes through the best point so far at a
- * right angle to the vector from there to the query's point. Then it is farther away. */
+/* Returns true if a triangle lies behind the plane that passes through the best point so far and is
+ * perpendicular to the vector from this point to the query point. Such a triangle is farther away
+ * than the best point. */
 static bool is_behind(const approach *a, const he_vec3 c[3])
 {
     double far = a->best.far * SLACK;
@@ -104,8 +107,8 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
     }
 }
 
-/* Returns a lower bound of the squared distance from p to the triangles below a node. Once it
- * exceeds `far`, the bound is returned as it is, without being improved. */
+/* Returns a lower bound of the squared distance from p to the triangles below a node of the tree. A
+ * first bound that exceeds `far` is returned at once; otherwise a better bound is computed. */
 static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -150,7 +153,7 @@ static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, he_budg
             uint32_t left = node->first, right = left + 1;
             double to_left = to_node(a->p, tree, left, far),
                    to_right = to_node(a->p, tree, right, far);
-            bool swap = to_left <= to_right; /* puts the nearer child on top */
+            bool swap = to_left <= to_right; /* the nearer child must be on top of the stack */
             stack[depth].node = swap ? right : left;
             stack[depth++].near = swap ? to_right : to_left;
             stack[depth].node = swap ? left : right;
@@ -171,7 +174,7 @@ he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, do
     he_vec3 p = {ldexp(point.x, -tree->exponent), ldexp(point.y, -tree->exponent),
                  ldexp(point.z, -tree->exponent)};
     if (!(he_vec3_extent(p) < HE_BVH_FAR)) {
-        /* From so far away, only the direction of the point decides which point of the mesh is
+        /* The query point is so far away that only its direction decides which point of the mesh is
          * nearest. */
         he_vec3_normalise(point, &p);
         p = he_vec3_scale(p, HE_BVH_FAR);

@@ -2,8 +2,9 @@
 
 #include "query/bvh_walk.h"
 
-/* Discs around up to this many triangles are computed from the triangles; discs of larger nodes are
- * computed from the discs of their children, which makes them looser with each level. */
+/* The disc around at most PATCH triangles is computed from the triangles. The disc of a larger node
+ * is computed from the discs of its two children, which makes it a little larger than necessary at
+ * each level of the tree. */
 enum { PATCH = 256 };
 
 /* Twice the rounding error of a disc's normal, which is stored in floats. */
@@ -21,14 +22,16 @@ static void to_floats(he_vec3 v, float out[3])
     out[2] = (float)v.z;
 }
 
-/* Returns a float that is not less than x, with a margin for the rounding of the terms of x. */
+/* Returns a float that is not less than x. A margin is added, because the terms from which x was
+ * computed may be rounded. */
 static float upward(double x)
 {
     return nextafterf((float)(x * (1 + 1e-6)), HUGE_VALF);
 }
 
-/* Finds how far a point is from the centre of a disc: along the disc's normal (`high`) and across
- * it (`wide`). */
+/* Finds the distance of a point from the centre of a disc: `high` is its part along the disc's
+ * normal, `wide` its part perpendicular to the normal. `from` is the vector from the centre to the
+ * point. */
 static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
 {
     double along = he_vec3_dot(from, normal);
@@ -39,7 +42,7 @@ static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
 static void set(he_bvh_disc *disc, const he_box_node *node, he_vec3 normal, double thick,
                 double radius)
 {
-    /* A disc never needs to reach farther than the box of its node. */
+    /* A disc never needs to be larger than the box of its node. */
     double half[3], diagonal = 0, support = 0;
     const double along[3] = {fabs(normal.x), fabs(normal.y), fabs(normal.z)};
     for (int k = 0; k < 3; k++) {
@@ -76,7 +79,7 @@ static uint32_t end_of(const he_bvh *tree, const he_box_node *node)
     return node->first + node->count;
 }
 
-/* Computes the disc around all triangles below a node. */
+/* Computes the disc with this normal around all triangles below a node. */
 static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node, he_vec3 normal,
                   he_bvh_disc *disc)
 {
@@ -105,13 +108,14 @@ static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_box_node *
         sum = he_vec3_add(sum, he_vec3_cross(he_vec3_sub(c[1], c[0]), he_vec3_sub(c[2], c[0])));
     }
     if (!he_vec3_normalise(sum, &normal)) {
-        normal = (he_vec3){0, 0, 1}; /* any direction is valid */
+        /* The triangles have no area, so any direction can be the normal. */
+        normal = (he_vec3){0, 0, 1};
     }
     about(tree, m, node, normal, disc);
 }
 
-/* Returns the mean of the normals of a node's two children, weighted by the areas of their
- * discs. */
+/* Returns the normal of a node's disc: the mean of the normals of the discs of its two children,
+ * weighted by the areas of these discs. */
 static he_vec3 mean_normal(const he_bvh_disc children[2])
 {
     he_vec3 sum = {0, 0, 0}, normal;
@@ -125,7 +129,7 @@ static he_vec3 mean_normal(const he_bvh_disc children[2])
     return normal;
 }
 
-/* Computes a node's disc around the discs of both its children. */
+/* Computes the disc of a node so that it contains the discs of its two children. */
 static void about_children(const he_box_node *node, const he_bvh_disc children[2], he_vec3 normal,
                            he_bvh_disc *disc)
 {
@@ -148,7 +152,8 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
 he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, he_error *err)
 {
     he_status status = HE_OK;
-    /* Children have greater numbers than their parent, so counting down handles them first. */
+    /* Children have higher numbers than their parent, so a loop from the highest number to the
+     * lowest handles children before their parent. */
     for (uint32_t i = tree->node_count; i-- > 0 && status == HE_OK;) {
         const he_box_node *node = &tree->nodes[i];
         he_bvh_disc *disc = &tree->discs[i];

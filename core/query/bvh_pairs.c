@@ -11,7 +11,8 @@ typedef struct prism {
     double min[3], max[3];
 } prism;
 
-/* What all triangles below a node have in common: their hubs (hubs.h), and their face. Unused
+/* The hubs at which all triangles below a node of the tree have a corner (a hub is a position at
+ * which very many triangles meet, hubs.h), and the face to which all these triangles belong. Unused
  * entries are HE_NONE. */
 enum { HUBS = HE_HUBS_OF, COMMON = HUBS + 1 };
 
@@ -21,13 +22,15 @@ typedef struct common {
 
 typedef struct walk {
     he_pair_search search;
-    /* What the triangles below each node have in common; NULL: no hubs or large faces. */
+    /* For each node the hubs and the face that all triangles below it share. NULL if the mesh has
+     * neither hubs nor faces of very many triangles. */
     common *commons;
-    uint32_t done;   /* number of triangles that were tried with all triangles after them */
-    uint32_t leaves; /* number of leaves whose triangles were tried with one another */
+    /* number of triangles that were tested against all triangles after them in the tree */
+    uint32_t done;
+    uint32_t leaves; /* number of leaves whose triangles were tested against one another */
 } walk;
 
-/* Progress is reported after each TOLD leaves. */
+/* Progress is reported once for every TOLD leaves. */
 enum { TOLD = 1024 };
 
 /* --- triangles --- */
@@ -92,7 +95,8 @@ static prism load(const he_pair_search *s, uint32_t triangle)
     return p;
 }
 
-/* Tries the triangles of leaf a with those of leaf b, which may be the same leaf. */
+/* Tests each triangle of leaf a against each triangle of leaf b for intersection. Leaf a and leaf b
+ * may be one leaf. */
 static he_status try_leaves(void *context, const he_box_node *a, const he_box_node *b,
                             he_error *err)
 {
@@ -158,8 +162,9 @@ static common of_triangle(const he_pair_search *s, uint32_t i)
     return out;
 }
 
-/* Finds what the triangles below each node have in common. Children have greater numbers than their
- * parent, so counting down handles them first. */
+/* Finds for each node of the tree the hubs and the face that all triangles below the node share.
+ * Children have higher numbers than their parent, so the loop runs from the highest number to the
+ * lowest. */
 static void find_commons(walk *w)
 {
     for (uint32_t at = w->search.tree->node_count; at-- > 0;) {
@@ -176,8 +181,8 @@ static void find_commons(walk *w)
     }
 }
 
-/* Returns true if the box lies outside the slab between the two planes of a disc. The test has a
- * margin that is larger than the rounding of the disc's normal to floats (bvh_disc.c). */
+/* Returns true if the box lies outside the slab between the two parallel planes that bound a disc.
+ * The test has a margin larger than the rounding of the disc's normal to floats (bvh_disc.c). */
 static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
 {
     double off = 0, reach = slab->thick, size = 0;
@@ -191,16 +196,17 @@ static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
     return fabs(off) > reach + 1e-6 * size;
 }
 
-/* Returns true if no triangle below one node needs to be tried with one below the other. It is used
- * only if there are hubs or faces of many triangles: in other meshes the boxes separate enough. */
+/* Returns true if no triangle below node a needs to be tested against a triangle below node b. The
+ * function is used only if there are hubs or faces of very many triangles; in other meshes the
+ * boxes separate triangles well enough. */
 static bool is_needless(void *context, uint32_t a, uint32_t b)
 {
     const walk *w = context;
     const he_bvh *tree = w->search.tree;
     common shared = both(&w->commons[a], &w->commons[b]);
     if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
-        /* Pairs that meet at one hub are left to he_pairs_at_hub; triangles of one face are never
-         * tried with one another. */
+        /* Triangles that meet at a hub are tested by he_pairs_at_hub; triangles of one face are
+         * never tested against one another. */
         return true;
     }
     return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||

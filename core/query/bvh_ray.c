@@ -1,9 +1,10 @@
 #include "query/bvh_walk.h"
 
-/* A ray, prepared for tests of boxes and triangles, in the tree's coordinates. */
+/* A ray in the tree's coordinates, with the values that the tests of boxes and triangles use again
+ * and again. */
 typedef struct ray {
     double origin[3], direction[3], inverse[3];
-    /* Numbers of the axes (0 to 2), exchanged so that the ray runs mostly along axis z. */
+    /* Numbers of the axes (0 to 2), permuted so that the ray runs mostly along the axis `z`. */
     int x, y, z;
     double shear_x, shear_y, shear_z;
 } ray;
@@ -15,7 +16,7 @@ static void as_array(he_vec3 v, double out[3])
     out[2] = v.z;
 }
 
-/* Prepares a ray, whose direction has length 1, for the tests. */
+/* Computes the values of a ray that all later tests use. The direction has length 1. */
 static ray prepare(he_vec3 origin, he_vec3 direction)
 {
     ray r = {.z = 0};
@@ -35,12 +36,12 @@ static ray prepare(he_vec3 origin, he_vec3 direction)
     return r;
 }
 
-/* The relative rounding error of a distance at which a box is entered or left. */
+/* The relative rounding error of the distance at which a ray enters or leaves a box. */
 static const double SLACK = 32 * DBL_EPSILON;
 
-/* Returns where the ray enters the box, at least 0; HUGE_VAL if it misses the box or enters beyond
- * `far`. For a ray that lies in the plane of a side of the box, the distance to that plane is NaN,
- * which counts as inside. */
+/* Returns the distance along the ray at which the ray enters the box, at least 0; HUGE_VAL if the
+ * ray misses the box or enters it beyond `far`. If the ray lies in the plane of a side of the box,
+ * the distance to that plane is NaN, which the comparisons treat as inside. */
 static double enter(const ray *r, const he_box_node *node, double far)
 {
     double near = 0, out = far;
@@ -70,8 +71,8 @@ static void meet(const ray *r, const he_bvh *tree, const he_mesh *m, uint32_t tr
         x[k] = p[r->x] - r->origin[r->x] - r->shear_x * z[k];
         y[k] = p[r->y] - r->origin[r->y] - r->shear_y * z[k];
     }
-    /* The two faces beside an edge compute exactly these two products for it, so they agree on
-     * which side of the edge the ray passes: there is no crack between them. */
+    /* The two triangles beside an edge compute exactly equal products for the edge. So they agree
+     * on which side of the edge the ray passes, and no ray passes between the two triangles. */
     double side[3];
     for (int k = 0; k < 3; k++) {
         int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -126,7 +127,7 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
             uint32_t a = node->first, b = node->first + 1;
             double to_a = enter(r, &tree->nodes[a], best->far);
             double to_b = enter(r, &tree->nodes[b], best->far);
-            bool swap = to_a <= to_b; /* puts the nearer child on top */
+            bool swap = to_a <= to_b; /* the nearer child must be on top of the stack */
             stack[depth].node = swap ? b : a;
             stack[depth++].near = swap ? to_b : to_a;
             stack[depth].node = swap ? a : b;
@@ -136,10 +137,10 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
     return HE_OK;
 }
 
-/* Moves the origin of a ray that starts far away to where the ray enters the box of all faces.
- * Returns the distance; HUGE_VAL if the ray misses the box. The coordinate of the new origin across
- * the side by which the ray enters is exactly that of the side, although doubles so far away are
- * coarse. */
+/* Moves the origin of a ray that starts far away to the point where the ray enters the box of all
+ * faces. Returns the distance from the old origin to the new one; HUGE_VAL if the ray misses the
+ * box. The new origin lies exactly in the plane of the side of the box through which the ray
+ * enters, although doubles are coarse at such distances. */
 static double approach(ray *r, const he_box_node *root)
 {
     double near = enter(r, root, HUGE_VAL), latest = -HUGE_VAL;

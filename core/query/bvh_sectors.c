@@ -16,17 +16,17 @@
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
 
-/* The rounding error of the coordinates of a direction, and of values computed from these
- * coordinates here, is below ROUNDING. */
+/* An upper bound of the rounding error of the coordinates of a direction, and of the values that
+ * this file computes from directions. */
 static const double ROUNDING = 1e-14;
 
 typedef struct sectors {
     he_pair_search *search;
     uint32_t hub;
-    uint32_t *spokes; /* triangles that have area */
+    uint32_t *spokes; /* the spokes (triangles at the hub) that have area */
     he_bounds *arcs;  /* box around the arc of directions of each spoke */
     uint32_t count;
-    /* Indices of the spokes, in the order of the leaves of the tree over their arcs. */
+    /* Indices of `spokes`, in the order of the leaves of the tree of the arcs' boxes. */
     const uint32_t *order;
 } sectors;
 
@@ -41,8 +41,9 @@ static bool same(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Returns a box around the arc from u to v. A point of the arc is a point of the chord, pushed out
- * to length 1: along any axis it moves by no more than the middle of the chord does. */
+/* Returns a box around the arc from u to v on the unit sphere. Each point of the arc is a point of
+ * the chord from u to v, scaled to length 1. Along any axis, this scaling moves a point by no more
+ * than it moves the middle of the chord. */
 static he_bounds about_arc(he_vec3 u, he_vec3 v)
 {
     he_bounds bounds = he_bounds_none();
@@ -52,8 +53,8 @@ static he_bounds about_arc(he_vec3 u, he_vec3 v)
     return bounds;
 }
 
-/* Returns the box around a triangle's arc of directions, from its two corners that are not at the
- * hub. */
+/* Returns the box around the arc of a triangle's directions, which runs between the directions to
+ * the two corners that are not at the hub. */
 static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
 {
     int at = same(corner[0], hub) ? 0 : same(corner[1], hub) ? 1 : 2;
@@ -63,8 +64,8 @@ static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
     return about_arc(u, v);
 }
 
-/* Moves the mean of all directions to the origin, so that the floats of the boxes can separate
- * directions that are nearly equal. */
+/* Translates all boxes so that the mean of all directions is at the origin. The floats of the boxes
+ * are finest there and can separate directions that are nearly equal. */
 static void center(sectors *s)
 {
     he_bounds all = he_bounds_none();

@@ -7,13 +7,14 @@
 
 /* --- chosen elements --- */
 
-/* The elements whose curvature is computed. Each element has one row in the array of sums: the
- * row's index is the id of the element if all are chosen, else its rank among the chosen
- * elements. */
+/* The elements whose curvature is computed. The sums of an element are in an array, at the index
+ * that row_of returns: the id of the element if all elements are chosen, else the index of the id
+ * in `ids`. */
 typedef struct chosen {
     bool all;
     he_ids ids;   /* sorted, each once; empty if all elements are chosen */
-    he_ids faces; /* faces beside the chosen elements, sorted, each once; empty if all are chosen */
+    /* faces beside the chosen elements, sorted, each once; empty if all elements are chosen */
+    he_ids faces;
 } chosen;
 
 static void clear(chosen *c)
@@ -22,7 +23,8 @@ static void clear(chosen *c)
     he_ids_clear(&c->faces);
 }
 
-/* Returns the row of sums of an element; HE_NONE if the element is not chosen. */
+/* Returns the index at which the sums of an element are stored; HE_NONE if the element is not
+ * chosen. */
 static uint32_t row_of(const chosen *c, uint32_t id)
 {
     if (c->all) {
@@ -90,15 +92,16 @@ static size_t rows_of(const chosen *c, const he_mesh *m, he_kind kind)
 
 typedef struct triangle {
     uint32_t corner[3];
-    bool is_side[3]; /* is the side from corner i to the next one an edge of the mesh? */
+    bool is_side[3]; /* true if the side from corner i to the next corner is an edge of the mesh */
     double length[3];
     double angle[3], cosine[3], sine[3]; /* angles at the corners, with their cosines and sines */
-    he_vec3 along[3];                    /* unit vectors along its sides */
-    he_vec3 normal;                      /* unit vector, unless degenerate */
+    he_vec3 along[3];                    /* unit vectors along the sides */
+    /* unit normal of the triangle; zero if the triangle is degenerate */
+    he_vec3 normal;
     bool degenerate;
 } triangle;
 
-/* If the sine of the angle between two sides is below this, they count as parallel. */
+/* Two sides count as parallel if the sine of the angle between them is at most this. */
 static const double THIN = 16 * DBL_EPSILON;
 
 static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_ROW])
@@ -129,9 +132,9 @@ static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_R
     }
 }
 
-/* Returns a coordinate frame for cutting one face into triangles. The frame depends on this face
- * alone, so the curvature of an element does not depend on whether it is computed alone or together
- * with all other elements. */
+/* Returns the coordinate frame in which one face is cut into triangles. The frame depends on this
+ * face alone, so the curvature of an element is equal whether it is computed alone or together with
+ * all other elements. */
 static he_frame frame_of(const he_mesh *m, uint32_t first)
 {
     he_vec3 base = m->c.position[m->c.origin[first]];
@@ -195,8 +198,8 @@ static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_p
 
 /* --- curvature --- */
 
-/* The sums over the triangles at one vertex. They are in lengths divided by 2^exponent, where the
- * exponent is that of the longest side so far. */
+/* Sums over the triangles at one vertex. Lengths are divided by 2^exponent, which is about the
+ * longest side that was added so far, so that the sums neither overflow nor underflow. */
 typedef struct sums {
     double angle, area;
     he_vec3 bend;   /* sum of cotangents times the side vectors that point towards the vertex */
@@ -224,9 +227,10 @@ static void rescale(sums *s, int exponent)
     }
 }
 
-/* Returns the share that corner i gets of the triangle's area (the mixed area of curvature.h): the
- * part of the triangle nearer to this corner than to the others if no angle is obtuse; else half of
- * the area at the obtuse angle, and a quarter at each other corner. */
+/* Returns the share of the triangle's area that belongs to corner i (mixed area, curvature.h). If
+ * no angle is obtuse, this is the area of the points of the triangle that are nearer to corner i
+ * than to the other two corners. In an obtuse triangle the corner with the obtuse angle gets half
+ * of the area, and each other corner a quarter. */
 static double share(const triangle *t, int i, double ahead, double behind)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -258,8 +262,8 @@ static void add_bend(const triangle *t, void *context)
         double behind = ldexp(t->length[k], -s->exponent);
         s->area += share(t, i, ahead, behind);
         s->normal = he_vec3_add(s->normal, he_vec3_scale(t->normal, t->angle[i]));
-        /* In the cotangent formula the side ahead of the corner is opposite to corner k, and the
-         * side behind it is opposite to corner j. */
+        /* The cotangent formula weights each side by the cotangent of the opposite angle. Corner k
+         * is opposite to the side ahead of the corner, corner j to the side behind the corner. */
         s->bend = he_vec3_add(
             s->bend, he_vec3_sub(he_vec3_scale(t->along[k], behind * t->cosine[j] / t->sine[j]),
                                  he_vec3_scale(t->along[i], ahead * t->cosine[k] / t->sine[k])));

@@ -11,9 +11,11 @@
 typedef struct shell {
     uint32_t face; /* the component's face with the lowest id */
     bool open;
-    /* Corner of the box of the component; like all fields below, in coordinates times the scale. */
+    /* Two opposite corners of the bounding box of the component. All lengths in this struct are in
+     * coordinates of the mesh multiplied by `scale`. */
     double min[3], max[3];
-    /* `volume` is six times the volume; `reach` bounds the sum of its absolute terms */
+    /* `volume` is six times the volume of the component; `reach` is at least the sum of the
+     * absolute values of the terms of `volume` */
     double volume, reach;
 } shell;
 
@@ -25,8 +27,7 @@ typedef struct survey {
     shell *shells;
 } survey;
 
-/* A volume smaller than this part of `reach` (a bound of the sum of the absolute terms) may be
- * rounding noise. */
+/* A volume smaller than this fraction of `reach` may be only rounding errors. */
 static const double NOISE = 1e-10;
 
 static he_vec3 corner(const survey *s, uint32_t h)
@@ -59,8 +60,8 @@ static void add_face(survey *s, uint32_t f)
         own->open |= s->m->c.face[h ^ 1u] == HE_NONE;
         h = next;
     } while (h != first);
-    /* The volume is summed from a point near the component, because from far away the terms would
-     * cancel out. */
+    /* The volume is the sum of pyramids whose common apex is a point of the component. With an apex
+     * far away, large positive and negative terms would cancel out. */
     he_vec3 from = he_vec3_sub(apex, corner(s, s->m->c.face_halfedge[own->face]));
     own->volume += he_vec3_dot(from, vector);
     own->reach += he_vec3_length(from) * he_vec3_length(vector);

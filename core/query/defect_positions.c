@@ -1,4 +1,5 @@
-/* defect_positions.c - finds vertices that lie at one position, or closer than the threshold. */
+/* defect_positions.c - finds groups of vertices that have equal positions, or whose distance is
+ * below a threshold. */
 #include "query/defects.h"
 
 #include "geometry/point_grid.h"

@@ -58,8 +58,9 @@ static he_status of_vertices(const he_mesh *m, he_progress *progress, he_defects
         if (h == HE_NONE) {
             he_defects_add(out, HE_DEFECT_ISOLATED, v, HE_NONE, 0);
         } else if (h != HE_DEAD && m->c.face[h] == HE_NONE) {
-            /* Only vertices on the boundary can have several fans (runs of connected faces), so
-             * other vertices are skipped. */
+            /* A fan is a run of faces around a vertex, each of which shares an edge with the next.
+             * Only a vertex on the boundary can have several fans, so other vertices are
+             * skipped. */
             uint32_t fans = he_vertex_fans(m, (he_vertex){v});
             if (fans > 1) {
                 he_defects_add(out, HE_DEFECT_BOWTIE, v, HE_NONE, fans);
@@ -91,8 +92,9 @@ static he_status of_edges(const he_mesh *m, double merge, he_progress *progress,
 
 /* --- faces --- */
 
-/* What is needed to measure faces. Lengths are multiplied by `scale`, a power of two that brings
- * the mesh near the unit cube. */
+/* The mesh whose faces are measured, and the values that the functions below need. All lengths are
+ * multiplied by `scale`, a power of two by which the mesh becomes about as large as the unit
+ * cube. */
 typedef struct measure {
     const he_mesh *m;
     int exponent;
@@ -104,7 +106,7 @@ static he_vec3 corner(const measure *s, uint32_t h)
     return he_vec3_scale(s->m->c.position[s->m->c.origin[h]], s->scale);
 }
 
-/* Returns twice the area of a face divided by its longest edge, which is its width. */
+/* Returns the width of a face: twice its area divided by the length of its longest edge. */
 static double width_of(const measure *s, uint32_t first, double area)
 {
     double longest = 0;
@@ -118,7 +120,8 @@ static double width_of(const measure *s, uint32_t first, double area)
     return longest > 0 ? 2 * area / longest : 0;
 }
 
-/* Returns the largest distance of a corner of a face from the plane through the point `about`. */
+/* Returns the largest distance of a corner of a face from the plane through the point `about` with
+ * the given normal. */
 static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 normal)
 {
     double most = 0;
@@ -134,7 +137,7 @@ static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 
 static void of_face(const measure *s, uint32_t f, he_defects *out)
 {
     uint32_t first = s->m->c.face_halfedge[f], budget = he_ring_budget(s->m);
-    int exponent; /* lengths in the mesh are lengths computed with `r` times 2^exponent */
+    int exponent; /* A length in the mesh is the length computed from `r` times 2^exponent. */
     he_ring r = he_ring_measure(s->m, first, &budget, &exponent);
     he_vec3 normal;
     bool degenerate = !he_ring_normal(&r, &normal);

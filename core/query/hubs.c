@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A vertex at whose position there may be a hub. */
+/* A vertex that may be at a hub, a position at which very many triangles meet. */
 typedef struct candidate {
     he_vec3 place;
     uint32_t vertex, corners;
@@ -18,7 +18,8 @@ typedef struct search {
     const uint32_t *triangles;
     size_t stride;
     uint32_t count;
-    /* The number of triangle corners at each vertex; later the number of the vertex's hub. */
+    /* The number of triangle corners at each vertex; number_hubs overwrites it with the number of
+     * the hub at which the vertex is, or HE_NONE. */
     uint32_t *corners;
     he_budget *budget;
 } search;
@@ -61,10 +62,11 @@ static he_status count_corners(const search *s, he_error *err)
     return status;
 }
 
-/* Lists the vertices at which hubs may be. A small table, with one slot for each hash of a
- * position, counts the corners of triangles at all vertices; several positions may share a slot. A
- * slot with few corners contains no hub. Vertices in the other slots are listed to be compared
- * exactly; they are few unless a file was made to fill these slots. */
+/* Lists the vertices that may be at a hub, a position at which very many triangles meet. A small
+ * table counts triangle corners by the hash of their position. Several positions may have one hash,
+ * so the count for a hash is at least the count of each position: if it is too small for a hub,
+ * there is no hub at any of these positions. All other vertices are listed, and number_hubs
+ * compares their positions exactly. In an ordinary mesh few vertices are listed. */
 static he_status list_candidates(const search *s, candidate **out, size_t *count, he_error *err)
 {
     uint32_t vertices = s->m->c.vertices.issued;
@@ -120,8 +122,9 @@ static he_status list_candidates(const search *s, candidate **out, size_t *count
     return HE_OK;
 }
 
-/* Numbers the hubs among the sorted candidates, and overwrites the number of corners of each vertex
- * with the number of its hub, or HE_NONE. Returns the number of hubs. */
+/* Numbers the hubs (positions at which very many triangles meet) among the sorted candidates.
+ * Overwrites s->corners of each vertex with the number of its hub, or HE_NONE if the vertex is at
+ * no hub. Returns the number of hubs. */
 static uint32_t number_hubs(const search *s, const candidate *list, size_t count, he_vec3 *places)
 {
     uint32_t hubs = 0;
@@ -142,8 +145,8 @@ static uint32_t number_hubs(const search *s, const candidate *list, size_t count
     return hubs;
 }
 
-/* Writes the hubs (positions at which very many triangles meet) at which this triangle has corners,
- * each only once. Returns how many there are. */
+/* Writes to `out` the numbers of the hubs (positions at which very many triangles meet) at which
+ * this triangle has corners, each hub once. Returns the number of hubs written. */
 static int hubs_at(const search *s, uint32_t triangle, uint32_t out[3])
 {
     const uint32_t *t = triangle_of(s, triangle);
@@ -186,8 +189,10 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u vertices",
                              hubs->count);
     }
-    /* first[h] counts the spokes of hub h. It first becomes the end of this hub's run of entries in
-     * `spokes`; as the run is filled from its last entry, first[h] falls to the run's beginning. */
+    /* first[h] is the number of spokes (triangles) of hub h here. The sum over all hubs up to h
+     * then makes it the index in `spokes` at which the entries of hub h end. The loop after that
+     * fills these entries from the last to the first and decrements first[h] for each, so at the
+     * end first[h] is the index at which they begin. */
     uint32_t sum = 0;
     for (uint32_t h = 0; h < hubs->count; h++) {
         sum += hubs->first[h];

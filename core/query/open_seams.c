@@ -3,10 +3,10 @@
 #include "geometry/point_hash.h"
 #include "mesh/walk.h"
 
-/* An entry of the hash table: boundary half-edges between two positions for which no half-edge that
- * runs the other way was found yet. */
+/* An entry of the hash table: the boundary half-edges that run from one position to another and for
+ * which no half-edge in the opposite direction was found yet. */
 typedef struct slot {
-    uint32_t halfedge; /* id of the half-edge found first, plus 1; 0 in a free slot */
+    uint32_t halfedge; /* id of the first such half-edge, plus 1; 0 if the entry is free */
     uint32_t waiting;
 } slot;
 
@@ -20,8 +20,8 @@ static bool same(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Returns the entry of the half-edges that run from position `from` to `to`, or the free entry
- * where they belong. */
+/* Returns the entry for half-edges that run from position `from` to position `to`. If there is
+ * none, returns the free entry in which it must be stored. */
 static slot *find(const table *t, const he_mesh *m, he_vec3 from, he_vec3 to)
 {
     uint64_t seed = (uint64_t)(uintptr_t)t->slots;

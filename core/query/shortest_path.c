@@ -14,12 +14,13 @@ static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
                    he_kind_name(kind), id);
 }
 
-/* A vertex that the search has reached; its index in `nodes` is the index that the idmap gave to
- * its id. */
+/* A vertex that the search has reached. The idmap `met` maps the id of the vertex to its index in
+ * the array `nodes`. */
 typedef struct node {
     double distance;
-    uint32_t via; /* the half-edge by which the best path arrives; HE_NONE at the start */
-    /* Index of the vertex in the heap; HE_NONE once its shortest path is known (it is settled). */
+    uint32_t via; /* the last half-edge of the shortest path found so far; HE_NONE at the start */
+    /* Index of the node in the heap; HE_NONE once the node is settled, which means that its
+     * shortest path is known. */
     uint32_t place;
 } node;
 
@@ -27,7 +28,8 @@ typedef struct search {
     he_idmap met;
     node *nodes;
     size_t capacity;
-    uint32_t *heap; /* indices of nodes, the nearest node first; there is room for all of `nodes` */
+    /* binary heap of indices of `nodes`, the nearest first; it has room for all nodes */
+    uint32_t *heap;
     uint32_t count; /* number of entries of the heap */
     uint32_t steps; /* number of half-edges visited */
 } search;
@@ -39,8 +41,8 @@ static void search_clear(search *s)
     he_mem_free(s->heap);
 }
 
-/* Returns true if node a comes before node b in the heap. Equal distances are in the order of
- * arrival, so the answer is equal on every machine. */
+/* Returns true if node a comes before node b in the heap. Of two nodes at equal distances, the node
+ * that was reached first comes first, so the result is equal on every machine. */
 static bool nearer(const search *s, uint32_t a, uint32_t b)
 {
     double x = s->nodes[a].distance, y = s->nodes[b].distance;
@@ -114,8 +116,8 @@ static he_status search_grow(search *s, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for a search over %zu vertices", capacity);
 }
 
-/* Updates `vertex` if the path of length `distance`, which arrives by half-edge `via`, is the
- * shortest so far. */
+/* Stores for `vertex` the path of length `distance` whose last half-edge is `via`, if no shorter
+ * path to the vertex was found before. */
 static he_status reach(search *s, uint32_t vertex, double distance, uint32_t via, he_error *err)
 {
     if (s->met.ids.count >= s->capacity) {
@@ -147,8 +149,8 @@ static bool has_ends(const he_mesh *m, uint32_t h)
     return m->c.origin[h] < m->c.vertices.issued && m->c.origin[h ^ 1u] < m->c.vertices.issued;
 }
 
-/* Settles vertices by Dijkstra's algorithm until `to` is settled. `*goal` is the node of `to`;
- * HE_NONE if it cannot be reached. */
+/* Finds the shortest path to the vertex `to` by Dijkstra's algorithm. *goal is set to the index of
+ * the node of `to`, or to HE_NONE if no path leads to it. */
 static he_status dijkstra(const he_mesh *m, uint32_t from, uint32_t to, he_measure by, search *s,
                           uint32_t *goal, he_error *err)
 {
@@ -194,8 +196,8 @@ static he_status trace_back(const he_mesh *m, const search *s, uint32_t goal, he
             break;
         }
         n = he_idmap_find(&s->met, m->c.origin[via]);
-        /* No path has more edges than vertices were settled (their shortest paths found), unless
-         * links of the mesh are broken. */
+        /* A path cannot have more edges than there are vertices on it; a longer path means that
+         * links of the mesh are damaged. */
         if (n == HE_NONE || out->edges.count >= s->met.ids.count) {
             return corrupt(HE_HALFEDGE, via, err);
         }

@@ -21,9 +21,9 @@ static he_status broken(he_kind kind, uint32_t id, he_error *err)
 
 /* --- components: union-find in one array --- */
 
-/* Returns the root of the tree of element i, by union-find with path halving (van Leeuwen and van
- * der Weide 1977). The root is the lowest member: elements of one component have close ids, so
- * paths stay short without ranks. */
+/* Returns the root of the union-find tree of element i, with path halving (van Leeuwen and van der
+ * Weide 1977). The root is the element with the lowest id in the tree. No ranks are needed to keep
+ * paths short, because elements of one component usually have close ids. */
 static uint32_t root_of(uint32_t *parent, uint32_t i)
 {
     while (parent[i] != i) {
@@ -33,7 +33,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-/* Joins the trees of elements a and b; returns true if they were separate. */
+/* Joins the trees of elements a and b. Returns true if these were two different trees. */
 static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
 {
     a = root_of(parent, a);
@@ -46,8 +46,9 @@ static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
     return a != b;
 }
 
-/* Makes a union-find forest of the vertices, joined along edges (HE_VERTEX), or of the faces,
- * joined across edges (HE_FACE). Counts how often two trees were joined. */
+/* Makes a union-find forest whose trees are the connected components. For HE_VERTEX its elements
+ * are the vertices, joined by edges; for HE_FACE its elements are the faces, joined where they
+ * share an edge. *joins is set to the number of times that two trees were joined. */
 static he_status join_all(const he_mesh *m, he_kind kind, uint32_t **out, uint32_t *joins,
                           he_error *err)
 {
@@ -111,14 +112,15 @@ static he_status add_component(he_components *list, he_component component, he_e
     return HE_OK;
 }
 
-/* Returns the root of the union-find tree that contains face f. */
+/* Returns the root of the union-find tree to which face f belongs. */
 static uint32_t tree_of(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t f)
 {
     return root_of(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
 }
 
-/* Numbers the trees of the union-find forest, which are the components, in the order of their
- * lowest faces; label[f] of that lowest face f gets the number. Counts the faces of each tree. */
+/* Numbers the components, which are the trees of the union-find forest, in the order of their
+ * lowest face ids, and counts the faces of each. label[r] of the root r of a tree is set to the
+ * number of the component. */
 static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t *label,
                              he_components *list, he_error *err)
 {
@@ -143,10 +145,10 @@ static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *paren
     return HE_OK;
 }
 
-/* Counts each vertex once in every component that has a face at this vertex. If faces are joined by
- * vertices, a vertex has one component; otherwise each fan of faces at it may be in another.
- * last[c] is the vertex that was counted last in component c, so that a component with two fans at
- * one vertex counts the vertex once. */
+/* Counts the vertices of each component: those at which the component has a face. If faces that
+ * share a vertex are joined, all faces at a vertex are in one component; otherwise each fan of
+ * faces at a vertex may be in a different component. last[c] is the vertex that was last counted
+ * for component c, so that a vertex at which the component has two fans is counted once. */
 static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *parent,
                                 const uint32_t *label, uint32_t *last, he_components *list,
                                 he_error *err)
@@ -246,9 +248,9 @@ he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *cou
     if (status != HE_OK) {
         return status;
     }
-    /* Each entry of `label` holds the face's parent in the forest until the component's number
-     * overwrites it. A parent has a lower id than its face, so the parent's entry is a number by
-     * then. */
+    /* label[f] is at first the parent of face f in the union-find forest, and is overwritten by the
+     * number of the component of f. The parent of a face has a lower id than the face, so
+     * label[parent] is already the number of a component here. */
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             label[f] = HE_NONE;
@@ -278,8 +280,9 @@ static he_status add_loop(he_boundaries *list, he_boundary loop, he_error *err)
     return HE_OK;
 }
 
-/* Follows the boundary loop of half-edge `first` and measures its length. Each boundary half-edge
- * may be visited only once, so loops that run into one another are noticed. */
+/* Follows the boundary loop of half-edge `first` and sets *length to the number of its half-edges.
+ * A half-edge that was visited before means that the links are damaged and two loops run into each
+ * other. */
 static he_status follow_hole(const he_mesh *m, uint32_t first, uint64_t *seen, uint32_t *length,
                              he_error *err)
 {
@@ -339,8 +342,9 @@ void he_boundaries_clear(he_boundaries *boundaries)
 
 /* --- bow-ties --- */
 
-/* Finds the bow-ties: each open fan has one boundary half-edge that leaves the vertex, so a vertex
- * that two boundary half-edges leave has two fans. */
+/* Finds the bow-ties, the vertices with more than one fan of faces. From a vertex on the boundary
+ * one boundary half-edge leaves for each fan, so a bow-tie is a vertex that at least two boundary
+ * half-edges leave. */
 static he_status mark_bowties(const he_mesh *m, uint64_t *once, uint64_t *twice, uint32_t *count,
                               he_error *err)
 {
@@ -364,7 +368,7 @@ static he_status mark_bowties(const he_mesh *m, uint64_t *once, uint64_t *twice,
     return HE_OK;
 }
 
-/* Finds and counts the bow-ties. `list` may be NULL if only the number is needed. */
+/* Lists and counts the bow-ties. `list` may be NULL if only their number is needed. */
 static he_status find_bowties(const he_mesh *m, he_ids *list, uint32_t *count, he_error *err)
 {
     *count = 0;
@@ -396,8 +400,8 @@ he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err)
 
 /* --- the whole topology in one call --- */
 
-/* Counts the faces of each degree: faces_of[d] counts those of degree d. The array grows to the
- * largest degree, which is at most the number of half-edges. */
+/* Counts the faces of each degree (number of corners): faces_of[d] is the number of faces with d
+ * corners. The array has an entry for each degree up to the largest. */
 static he_status tally(const he_mesh *m, uint32_t **faces_of, size_t *size, he_error *err)
 {
     const uint32_t end = halfedge_end(m);
@@ -492,7 +496,9 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
     if (status == HE_OK) {
         status = count_components(m, HE_FACE, t.faces, &t.components_by_edge, err);
     }
-    /* Components by vertex differ from components by edge only if there are bow-ties. */
+    /* Faces that are connected through vertices but not across edges exist only if there are
+     * bow-ties. Without bow-ties the number of components is therefore equal for both kinds of
+     * connection. */
     if (status == HE_OK && t.bowties > 0) {
         status = count_components(m, HE_VERTEX, used, &t.components, err);
     } else {

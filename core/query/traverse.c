@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-/* Returns the end of the valid ids of half-edges. A link with this value or a higher one is absent,
- * or leads to a dead row or to a row that was never issued. */
+/* Returns the number of half-edges ever issued. A link that is not below this number leads to no
+ * half-edge. */
 static uint32_t halfedge_end(const he_mesh *m)
 {
     return 2u * m->c.edges.issued;
@@ -54,8 +54,8 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_path_ste
             return corrupt(HE_HALFEDGE, from.i, err);
         }
         for (size_t i = 0; i < steps->count && status == HE_OK; i++) {
-            /* The length of the path is not known, so there is no progress to report; a report only
-             * asks whether to go on. */
+            /* The number of steps is not known in advance, so no progress is reported; the call
+             * only checks whether the request was cancelled. */
             status = he_progress_at(progress, taken, UINT64_MAX, err);
             if (status != HE_OK) {
                 return status;
@@ -121,7 +121,8 @@ he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_ids *out, he_e
     return status;
 }
 
-/* The elements that a breadth-first walk has reached, in order, with their depths. */
+/* The elements that a breadth-first walk has reached, in the order in which it reached them, and
+ * the depth of each. */
 typedef struct flood {
     he_idmap met;
     he_ids depths;
@@ -147,8 +148,8 @@ static he_status meet(flood *f, uint32_t id, uint32_t depth, he_error *err)
     return status;
 }
 
-/* Visits elements breadth first from `from`. All steps together visit each half-edge at most once,
- * which bounds the walk even if links are broken. */
+/* Visits elements in breadth-first order from the element `walk->from`. The whole walk visits each
+ * half-edge at most once; if it would visit more, links of the mesh are damaged. */
 static he_status flood_from(const he_mesh *m, const he_breadth_first *walk, flood *f, he_error *err)
 {
     const he_kind kind = walk->kind;
@@ -211,12 +212,12 @@ he_status he_traverse_breadth_first(const he_mesh *m, const he_breadth_first *wa
     return status;
 }
 
-/* A function that continues an edge loop or an edge ring. Returns the half-edge after `h`; HE_NONE
- * if the walk ends there, HE_DEAD if links are broken. */
+/* A function that returns the half-edge after `h` in an edge loop or an edge ring. It returns
+ * HE_NONE if the loop or ring ends at `h`, HE_DEAD if links of the mesh are damaged. */
 typedef uint32_t (*onward)(const he_mesh *m, uint32_t h);
 
-/* Continues an edge loop: goes straight on through the target of `h`, if that is interior and has
- * four edges. */
+/* Continues an edge loop beyond the target of `h`: if the target is inside the mesh and has four
+ * edges, returns the half-edge opposite to `h` there. */
 static uint32_t straight_on(const he_mesh *m, uint32_t h)
 {
     uint32_t around[5] = {h ^ 1u};
@@ -235,8 +236,8 @@ static uint32_t straight_on(const he_mesh *m, uint32_t h)
     return around[4] == around[0] ? around[2] : HE_NONE;
 }
 
-/* Continues an edge ring: goes into the face of `h` and out of its opposite side, if the face has
- * four sides. */
+/* Continues an edge ring across the face of `h`: if the face has four sides, returns the twin of
+ * the side opposite to `h`. */
 static uint32_t across(const he_mesh *m, uint32_t h)
 {
     if (m->c.face[h] == HE_NONE) {
@@ -255,8 +256,8 @@ static uint32_t across(const he_mesh *m, uint32_t h)
     return around[4] == h ? around[2] ^ 1u : HE_NONE;
 }
 
-/* Appends the edges of an edge loop or ring after `first`, until the walk ends or comes back to
- * `first`. */
+/* Appends to `out` the edges of an edge loop or edge ring after `first`, until the loop or ring
+ * ends or returns to `first`. */
 static he_status follow(const he_mesh *m, uint32_t first, onward step, he_ids *out, bool *closed,
                         he_error *err)
 {
