@@ -1,17 +1,18 @@
-/* bvh_sectors.c - finds the intersecting pairs among the triangles that meet at one hub (hubs.h).
+/* bvh_sectors.c - finds the intersecting pairs among the triangles that meet at one hub, a position
+ * at which very many triangles meet (hubs.h).
  *
- * Two such triangles, the hub's spokes, share points other than the hub exactly if the SECTORS of
- * directions in which they leave it intersect: a common point is on a ray from the hub along which
- * both triangles begin.
+ * Such a triangle, called a spoke, covers a SECTOR of the directions from the hub. Two spokes share
+ * a point other than the hub exactly if their sectors share a direction, because near the hub a ray
+ * in that direction lies in both triangles.
  *
- *         .--u           A sector is an arc from u to v of a great circle of the unit sphere around
- *       .'   |           the hub, shorter than half of it. Boxes around arcs separate spokes that
- *     hub    | arc       boxes around triangles do not: around a disc or cone of n spokes each box
- *       '.   |           intersects those of a few neighbours, and n log n steps are enough.
- *         '--v
+ *         .--u        On a unit sphere around the hub, the directions of a sector are an arc of a
+ *       .'   |        great circle from u to v, shorter than half of the circle. Boxes around arcs
+ *     hub    | arc    separate spokes that boxes around triangles do not: if n spokes form a disc
+ *       '.   |        or cone, the box of each arc intersects only the boxes of a few neighbours,
+ *         '--v        so n log n steps are enough.
  *
- * The boxes are rounded outward; pairs that they do not separate are tried exactly, like all
- * others. */
+ * The boxes are rounded outward, so intersecting spokes always have intersecting boxes. Pairs of
+ * spokes with intersecting boxes are then tested exactly. */
 #include "geometry/triangle_intersection.h"
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"

@@ -1,10 +1,11 @@
-/* advise.c - finds which repairs a refused soup needs, by trying each on a copy of its faces. */
+/* advise.c - finds which repairs a polygon soup needs that cannot become a mesh, by trying repairs
+ * on a copy of its faces. */
 #include "build/soup_check.h"
 #include "repair/mend.h"
 
 #include <string.h>
 
-/* Copies the faces of a soup; the copy shares the array of positions with the soup. */
+/* Copies the faces of a polygon soup. The copy uses the array of positions of the original. */
 static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
 {
     *out = (he_soup){.limits = soup->limits,
@@ -26,8 +27,8 @@ static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
     return HE_OK;
 }
 
-/* The numbers of faces that run along an edge from its lower vertex to its higher one (`up`) and in
- * the opposite direction (`down`). */
+/* How many faces run along an edge from its vertex with the lower id to its vertex with the higher
+ * id (`up`), and how many run in the opposite direction (`down`). */
 typedef struct runs {
     uint32_t up, down;
 } runs;
@@ -45,8 +46,8 @@ static void count_runs(const he_soup *soup, const uint64_t *gone, const uint32_t
     }
 }
 
-/* Returns true if face f has an edge that is invalid (too many faces run along it) now, and valid
- * after the duplicates are dropped. */
+/* Returns true if face f has an edge that is invalid before the duplicate faces are dropped,
+ * because too many faces run along it, and that is valid afterwards. */
 static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, const runs *before,
                        const runs *after)
 {
@@ -58,9 +59,9 @@ static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, c
     return mends;
 }
 
-/* Decides whether dropping each of the duplicate faces makes an invalid edge valid. Dropping the
- * wall between two solids does not make one valid: both solids need the wall, and the soup must be
- * split instead. */
+/* Decides whether dropping each duplicate face makes an invalid edge valid. If two solids touch and
+ * each has the wall between them, the wall is a duplicate face, but dropping it leaves the edges
+ * invalid: such a soup needs the repair `split` instead. */
 static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *out, he_error *err)
 {
     size_t edges = 0;
@@ -99,14 +100,15 @@ static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *ou
     return status;
 }
 
-/* `some`: whether the soup has duplicate faces; `mend`: whether dropping each of these faces makes
- * an invalid edge valid. */
+/* What find_needs learns about duplicate faces. `some`: the soup has duplicate faces. `mend`:
+ * dropping each of the duplicate faces makes an invalid edge valid. */
 typedef struct duplicates {
     bool some, mend;
 } duplicates;
 
-/* Finds which repairs a soup of valid faces needs. If `dropped` is not NULL, duplicate faces are
- * dropped first; if there are none, dropped->some is false, and nothing else is tested. */
+/* Finds which of the repairs `split` and `orient` a soup of valid faces needs. If `dropped` is not
+ * NULL, duplicate faces are dropped before these repairs are tried. If there are no duplicate
+ * faces, dropped->some becomes false and no repair is tried. */
 static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *out, he_error *err)
 {
     he_soup copy;
@@ -146,8 +148,8 @@ static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *
     return status;
 }
 
-/* Advises to drop duplicate faces if the repair split or orient is then unnecessary, or if each
- * duplicate makes an edge invalid. */
+/* Advises to drop duplicate faces if the repair `split` or `orient` then becomes unnecessary, or if
+ * each duplicate face makes an edge invalid. */
 static he_status advise_proper(const he_soup *soup, unsigned *out, he_error *err)
 {
     unsigned as_is, less = 0;

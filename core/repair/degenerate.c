@@ -1,21 +1,23 @@
-/* degenerate.c - the repair drop_degenerate: a face that repeats a vertex keeps the parts that have
- * area, or is dropped.
+/* degenerate.c - the repair drop_degenerate: removes from each face that repeats a vertex the parts
+ * without area, or drops the face if no other part is left.
  *
- *     1 2 3 3  ->  1 2 3            the same vertex twice in a row
- *     1 2 3 4 3  ->  1 2 3          a spike, there and back
+ *     1 2 3 3  ->  1 2 3            a vertex twice in a row
+ *     1 2 3 4 3  ->  1 2 3          a spike: from 3 to 4 and straight back
  *
- *     3-----------2    0 1 2 3 0 4 7 6 5 4: a keyhole, whose rim runs to a hole and back along
- *     | 7-----6   |    the same edge, and other loops that come to a vertex twice, are cut into
- *     | |     |   |    triangles, as if each corner had a vertex of its own. A triangle that has
- *     | 4-----5   |    two copies of a vertex has no area; it is left out, and its neighbours
- *     |/          |    then meet.
+ *     3-----------2    A keyhole such as 0 1 2 3 0 4 7 6 5 4 runs around its outer rim, along an
+ *     | 7-----6   |    edge to the rim of a hole, around the hole, and back along that edge. Such a
+ *     | |     |   |    loop, which visits a vertex twice, is cut into triangles; for this, each
+ *     | 4-----5   |    corner gets a vertex of its own. A triangle with two copies of one vertex
+ *     |/          |    has no area and is left out, so that its neighbours meet.
  *     0-----------1
  *
- * Loops that touch in a vertex, 0 1 2 0 3 4, become separate faces if all of them have the same
- * orientation; otherwise one is a hole of another, and the whole is cut.
+ * A loop such as 0 1 2 0 3 4, whose parts touch in a vertex, becomes separate faces if its parts
+ * have one orientation. Otherwise a part is a hole in another part, and the whole loop is cut into
+ * triangles.
  *
- * A loop that runs along an edge twice in one direction, such as one that goes round twice, bounds
- * nothing and is dropped; so is one that cannot be cut into triangles without such an edge. */
+ * A loop that runs along an edge twice in one direction, for example because it goes around twice,
+ * bounds no area and is dropped. A loop is also dropped if its triangles run along an edge twice in
+ * one direction. */
 #include "build/soup_check.h"
 #include "geometry/triangulation.h"
 #include "geometry/vec3.h"
@@ -24,23 +26,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The degenerate faces, in order, and the parts that they keep. */
+/* Data of the repair: the degenerate faces in their order, and the loops (parts of these faces)
+ * that are kept. */
 typedef struct mending {
     const he_mend *m;
     uint64_t *bad;   /* one bit for each face: set if the face is degenerate */
     uint32_t *stamp; /* a mark for each vertex, used by he_soup_find_repeat */
-    he_ids loops;    /* numbers of the corners that are kept, loop after loop, face by face */
-    he_ids ends;     /* where in `loops` each loop ends */
-    /* The number of the face of `flat` that each loop became; HE_NONE if the loop is not cut. */
+    he_ids loops;    /* the corners of all kept loops: their numbers in the soup, loop after loop */
+    he_ids ends;     /* index in `loops` at which each loop ends */
+    /* For each loop the number of the face in `flat` that is cut into triangles in its place;
+     * HE_NONE if the loop stays one face. */
     he_ids cut;
-    he_ids done;     /* for each degenerate face, where in `ends` its loops end */
+    /* for each degenerate face, the number of loops of all degenerate faces up to it */
+    he_ids done;
     he_ids stack;    /* corners of the loop that is being divided */
-    uint32_t *place; /* where in `stack` each vertex is */
-    /* The loops to be cut into triangles, as faces with a vertex of its own for every corner. */
+    uint32_t *place; /* index in `stack` of the last corner at each vertex */
+    /* The loops that are cut into triangles, as faces of which each corner has a vertex of its
+     * own. */
     he_soup flat;
     he_mesh *mesh;  /* mesh made from `flat` */
-    he_ids list;    /* the vertices of the loop being tested, or of its triangles */
-    uint64_t *runs; /* the edges of `list`, sorted by their ends */
+    he_ids list;    /* the vertices of the loop, or of its triangles, that run_twice tests */
+    uint64_t *runs; /* the edges of `list`, each as a pair of vertices, sorted */
     size_t run_capacity;
 
     he_soup made; /* the faces after the repair */
@@ -53,8 +59,9 @@ static uint32_t vertex(const mending *g, size_t i)
     return g->m->soup->corners[g->loops.ids[i]];
 }
 
-/* Removes repeated corners and spikes (there and back along an edge) at the end of the loop that
- * consists of corners `from` to loops.count - 1 of `loops`. */
+/* Shortens the last loop of `loops`, whose first corner is at index `from`, at its end: removes
+ * corners that repeat the vertex before them, and spikes, which run along an edge and straight
+ * back. */
 static void shorten_end(mending *g, size_t from)
 {
     he_ids *loops = &g->loops;
@@ -70,8 +77,9 @@ static void shorten_end(mending *g, size_t from)
     }
 }
 
-/* Removes pairs of edges that run back on each other where the end of the loop meets its beginning.
- * Returns the index at which the shortened loop begins. */
+/* Shortens the last loop of `loops`, whose first corner is at index `from`, where its end meets its
+ * beginning: removes repeated vertices and spikes (edges that run back on each other) there.
+ * Returns the index of the first corner that is left. */
 static size_t shorten_both(mending *g, size_t from)
 {
     he_ids *loops = &g->loops;
@@ -90,8 +98,8 @@ static size_t shorten_both(mending *g, size_t from)
     }
 }
 
-/* Adds the loop of a face to `loops`, leaving out corners that repeat the vertex of the corner
- * before, and spikes (there and back along an edge). */
+/* Adds the corners of face f to `loops`, except corners that repeat the vertex of the corner before
+ * and spikes, which run along an edge and straight back. */
 static he_status add_loop(mending *g, uint32_t f, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -114,7 +122,7 @@ static he_status add_loop(mending *g, uint32_t f, he_error *err)
     return HE_OK;
 }
 
-/* Ends a loop: it consists of all corners that were added to `loops` after the previous loop
+/* Ends a loop, which consists of all corners that were added to `loops` since the previous loop
  * ended. */
 static he_status end_loop(mending *g, uint32_t cut, he_error *err)
 {
@@ -130,8 +138,8 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Decides whether loops of `degree` vertices, one after another in `list`, run along an edge twice
- * in one direction. */
+/* Decides whether loops run along an edge twice in one direction. The array `list` has the vertices
+ * of these loops, one loop after another, each of `degree` vertices. */
 static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
 {
     const uint32_t *list = g->list.ids;
@@ -150,7 +158,7 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
         g->runs[i] = (uint64_t)list[i] << 32 | list[next];
     }
     *out = false;
-    if (count > 0) { /* qsort must not get NULL */
+    if (count > 0) { /* qsort must not be called with NULL */
         qsort(g->runs, count, sizeof *g->runs, compare);
     }
     for (size_t i = 1; i < count; i++) {
@@ -159,7 +167,8 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
     return HE_OK;
 }
 
-/* Returns twice the vector area of the loop of corners `from` to `end` - 1 of `loops`. */
+/* Returns twice the vector area of the loop whose corners are the entries `from` to `end` - 1 of
+ * `loops`. */
 static he_vec3 area_of(const mending *g, size_t from, size_t end)
 {
     const he_vec3 *p = g->m->soup->positions;
@@ -172,8 +181,8 @@ static he_vec3 area_of(const mending *g, size_t from, size_t end)
     return sum;
 }
 
-/* Returns true if all loops from number `first` on have the orientation of the loop that was
- * divided into them. */
+/* Returns true if the loops from number `first` on, into which one loop was divided, all have the
+ * orientation of the undivided loop. */
 static bool agree(const mending *g, size_t from, size_t first)
 {
     he_vec3 sum = {0, 0, 0};
@@ -188,7 +197,8 @@ static bool agree(const mending *g, size_t from, size_t first)
     return good;
 }
 
-/* Ends a loop, which consists of the corners on the stack from index `at` on. */
+/* Ends a loop, which consists of the corners on the stack from index `at` on, and takes these
+ * corners off the stack. */
 static he_status pop_loop(mending *g, size_t at, he_error *err)
 {
     for (size_t i = at; i < g->stack.count; i++) {
@@ -198,8 +208,9 @@ static he_status pop_loop(mending *g, size_t at, he_error *err)
     return end_loop(g, HE_NONE, err);
 }
 
-/* Divides the loop that begins at `from` where it passes a vertex again, if its parts can be
- * separate faces; otherwise it stays whole. */
+/* Divides the last loop of `loops`, whose first corner is at index `from`, at the vertices that it
+ * visits more than once. If the parts cannot be separate faces, because their orientations differ,
+ * the loop stays whole and *apart becomes false. */
 static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
 {
     const uint32_t *corners = g->m->soup->corners;
@@ -217,8 +228,8 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     g->stack.count = 0;
     for (size_t i = from; i < end && status == HE_OK; i++) {
         uint32_t c = g->loops.ids[i], at = g->place[corners[c]];
-        /* The array `place` may still have an index from another loop, or from corners that were
-         * removed, which is not valid in this stack. */
+        /* place[v] may be an index that was stored for another loop or for corners that have left
+         * the stack, so the entry of the stack is checked. */
         if (at < g->stack.count && corners[g->stack.ids[at]] == corners[c]) {
             status = pop_loop(g, at, err);
         }
@@ -232,7 +243,7 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
         return status;
     }
     *apart = agree(g, end, first);
-    if (*apart) { /* the parts, which were added after the whole loop, take its place */
+    if (*apart) { /* moves the parts, which were added behind the whole loop, over the whole loop */
         memmove(g->loops.ids + from, g->loops.ids + end, count * sizeof *g->loops.ids);
         for (size_t i = first; i < g->ends.count; i++) {
             g->ends.ids[i] -= (uint32_t)count;
@@ -244,8 +255,9 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     return HE_OK;
 }
 
-/* Adds a loop that still passes a vertex twice: it must be cut into triangles, or nothing of it is
- * kept. */
+/* Ends the last loop of `loops`, whose first corner is at index `from`. If the loop visits a vertex
+ * twice, it is divided into separate faces, or else cut into triangles. It is dropped if it runs
+ * along an edge twice in one direction. */
 static he_status add_cut(mending *g, size_t from, uint32_t mark, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -283,7 +295,8 @@ static he_status add_cut(mending *g, size_t from, uint32_t mark, he_error *err)
     return status == HE_OK ? end_loop(g, (uint32_t)g->flat.face_count - 1, err) : status;
 }
 
-/* Finds the faces that repeat a vertex or have too few vertices, and the parts that they keep. */
+/* Finds the degenerate faces, which repeat a vertex or have fewer than three vertices, and the
+ * loops of them that are kept. */
 static he_status find(mending *g, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -329,7 +342,7 @@ static he_status add_face(mending *g, const uint32_t *corners, size_t count, uin
                            : status;
 }
 
-/* Adds the triangles of the loop that begins at `from`. */
+/* Adds the triangles of the loop whose first corner is at index `from` of `loops`. */
 static he_status add_triangles(mending *g, uint32_t face, uint32_t cut, size_t from, he_error *err)
 {
     he_triangulation triangles;
@@ -341,7 +354,8 @@ static he_status add_triangles(mending *g, uint32_t face, uint32_t cut, size_t f
         return status;
     }
     size_t count = 3 * ((size_t)triangles.flat.n - 2), kept = 0;
-    /* Vertices of `flat` first; later overwritten with corners of the soup. */
+    /* The entries are corners of the triangulation at first; the loop below overwrites them with
+     * corners of the soup. */
     uint32_t *corners = triangles.corners;
     bool twice = true;
     g->list.count = 0;
@@ -461,8 +475,8 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
         status = find(&g, err);
     }
     if (status == HE_OK && g.done.count > 0) {
-        /* The list of the faces' old numbers is allocated even if no face is left, because a list
-         * that is not NULL says that the soup was repaired. */
+        /* An array face_from that is not NULL says that the repair changed the soup, so it is
+         * allocated even if no face is left. */
         status = he_ids_reserve(&g.face_from, 1, err);
         if (status == HE_OK && m->has_corner_values) {
             status = he_ids_reserve(&g.corner_from, 1, err);

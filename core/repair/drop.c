@@ -1,4 +1,5 @@
-/* drop.c - the repair drop_duplicates: drops all but the first of equal faces. */
+/* drop.c - the repair drop_duplicates: of several faces with equal vertices keeps only the
+ * first. */
 #include "build/soup_check.h"
 #include "repair/mend.h"
 
@@ -7,7 +8,8 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu faces", soup->face_count);
 }
 
-/* Removes the faces whose bit is set in `gone`, and moves the others up. */
+/* Removes the faces whose bit is set in `gone`, and closes the gaps in the arrays of faces and
+ * corners. */
 static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
 {
     he_soup *soup = m->soup;
@@ -28,8 +30,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
         if (he_bits_get(gone, f)) {
             continue;
         }
-        /* Faces are moved up in place; what is written never passes what is read next: faces <= f
-         * and corners <= begin. */
+        /* The remaining faces move towards the beginning of the array. No entry is overwritten
+         * before it is read, because faces <= f and corners <= begin. */
         soup->starts[faces] = corners;
         out->face_from[faces++] = out->face_from[f];
         for (uint32_t c = begin; c < end; c++, corners++) {
@@ -44,8 +46,9 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
     return HE_OK;
 }
 
-/* The order in which a face's corners are compared, equal for all duplicates of the face: from its
- * lowest vertex towards the lower of that vertex's two neighbours. */
+/* The order in which the corners of a face are read to compare faces: from the corner with the
+ * lowest vertex towards that of its two neighbours which has the lower vertex. Faces with equal
+ * loops are read in equal orders, even if one of the faces is reversed. */
 typedef struct way {
     const uint32_t *corners;
     uint32_t count, first;
@@ -96,13 +99,13 @@ static bool same(const way *a, const way *b)
 }
 
 typedef struct slot {
-    /* `hash` is the hash of a face's corners, `face` the face's number + 1; both are 0 in a free
-     * slot */
+    /* `hash`: the hash of a face's vertices; `face`: number of the face, plus 1. In a free slot
+     * `hash` and `face` are 0. */
     uint32_t hash, face;
 } slot;
 
-/* Returns the earlier face that face f repeats. If there is none, adds f to the table and returns
- * HE_NONE. */
+/* Returns the earlier face that has the vertices of face f. If there is none, adds f to the table
+ * and returns HE_NONE. */
 static uint32_t find(const he_soup *soup, slot *slots, size_t mask, uint32_t f)
 {
     way w = way_of(soup, f);

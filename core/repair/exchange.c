@@ -1,42 +1,52 @@
-/* exchange.c - exchanges the partners of mates (corners of two faces that stay joined along an
- * edge) where two pairs of them would double an edge.
+/* exchange.c - exchanges the mates of corners where the repair split would otherwise make two edges
+ * between one pair of vertices.
  *
- * Corners x and y run along one edge, and both ends of their pairs are in the same fans, so x's and
- * y's pairs would be two edges between two vertices. If x gets y's mate, and y gets x's, the
- * corners that followed x in the fan follow y, and the reverse: the fan falls into two, one with x
- * and one with y, and so does that at the other end.
+ * Two corners are mates if their half-edges run along one edge in opposite directions and their
+ * faces stay joined there. A fan is a run of faces around a vertex that are joined in this way; the
+ * repair gives each fan a vertex of its own.
+ *
+ * Let x and y be corners whose half-edges run along one edge in one direction. If these half-edges
+ * begin in one fan and end in one fan, the repair would make two edges between two vertices. To
+ * prevent this, x gets the mate of y, and y gets the mate of x. In the order around the vertex, the
+ * corners that followed x then follow y, and the corners that followed y follow x. So the fan falls
+ * into two fans, one with x and one with y:
  *
  *     ... x | a ... y | b ...      ->      x | b ...      and      y | a ... (and on to y)
  *
- * No fan is ever joined to another. So separate edges stay separate, each edge is settled once, and
- * corners that had mates still have some: a closed surface stays closed. Either both x and y have
- * mates, or they are the ends of two fans.
+ * The fan at the far end of the edge falls into two fans as well. No exchange joins two fans, so
+ * edges that are separate stay separate, and each edge is handled only once. The number of corners
+ * with mates does not change, so a closed surface stays closed.
  *
- * The corners of an edge are settled (tested, and given another mate if needed) one by one, by the
- * numbers of the fans at both ends. The smaller part of a fan that falls in two gets a new number,
- * so that a corner gets one few times: n log n in all. */
+ * The corners of an edge are settled one by one: each is compared with the settled corners of the
+ * edge by the numbers of the fans at the two ends of its half-edge, and exchanges its mate if
+ * necessary. If a fan falls into two parts, the smaller part gets a new number. A corner is thus
+ * renumbered few times, and all exchanges together take n log n steps. */
 #include "repair/split.h"
 
 #include <assert.h>
 
-/* A settled corner (tested, and given another mate if needed) of the edge being handled, with the
- * numbers of the fans at both ends when the corner was settled; these may have changed since. */
+/* An entry of a hash table for a settled corner of the edge being handled. A corner is settled once
+ * it was compared with the other corners of its edge and got another mate if necessary. The numbers
+ * of the fans at the two ends of the corner's half-edge are those at that time and may have changed
+ * since. */
 typedef struct slot {
-    uint32_t epoch; /* number of the edge being handled + 1; a slot with another value is free */
+    /* number of the edge being handled, plus 1; the entry is free if the value differs */
+    uint32_t epoch;
     uint32_t corner, from, to;
 } slot;
 
 typedef struct exchanging {
     he_splitting *s;
-    uint32_t *edge_of; /* edge of each corner */
-    /* Where the corners of each edge begin in `list`, which has only corners of edges with more
-     * than two corners. */
+    uint32_t *edge_of; /* the edge along which the half-edge of each corner runs */
+    /* Index at which the corners of each edge begin in `list`. The list omits edges that have at
+     * most two corners. */
     uint32_t *begin;
     uint32_t *list;
     size_t edges;
-    uint32_t fans; /* number of fans so far, with those that resulted from exchanges */
+    uint32_t fans; /* number of fans so far, including the fans that resulted from exchanges */
     bool any;
-    /* The edge being handled, and the vertex that most of its corners leave. */
+    /* The edge being handled, and one of its two vertices: the one at which most of the edge's
+     * corners are. */
     uint32_t edge, origin;
     uint64_t *settled; /* one bit for each corner: set if the corner is settled */
     slot *slots;
@@ -58,8 +68,8 @@ static bool is_valid(const exchanging *x, const slot *at)
            s->to[he_corner_after(s, at->corner)] == at->to;
 }
 
-/* Returns the slot of a settled corner of the edge being handled between two fans, or a free
- * slot. */
+/* Returns the index in `slots` of a settled corner of the edge being handled whose half-edge runs
+ * from fan `from` to fan `to`; if there is none, the index of a free slot. */
 static size_t slot_of(const exchanging *x, uint32_t from, uint32_t to)
 {
     uint64_t sum = (uint64_t)(uintptr_t)x->slots * 0x94D049BB133111EB;
@@ -81,8 +91,8 @@ static void put(exchanging *x, uint32_t corner)
     x->slots[at] = (slot){x->edge + 1, corner, from, to};
 }
 
-/* Makes room for what a fan that falls in two may add to the table: a few entries for each settled
- * corner. */
+/* Makes room in the hash table for `more` more entries. If the table is too full, it is replaced by
+ * another one without the entries that are obsolete. */
 static he_status make_room(exchanging *x, size_t more, he_error *err)
 {
     if (x->slots != NULL && 2 * (x->used + more) <= x->mask) {
@@ -115,14 +125,14 @@ static he_status make_room(exchanging *x, size_t more, he_error *err)
 
 /* --- fans --- */
 
-/* A walk over the corners of a fan: from a corner to the fan's end, then from that corner
- * backwards. */
+/* A walk over the corners of a fan. It begins at `start` and goes around the vertex until the fan
+ * ends, then continues from `start` in the opposite direction (`back`). */
 typedef struct walk {
     uint32_t start, at;
     bool back;
 } walk;
 
-/* Takes one step of the walk. Returns false when all corners were visited. */
+/* Moves the walk to the next corner of the fan. Returns false when all corners were visited. */
 static bool step(const he_splitting *s, walk *w)
 {
     if (!w->back) {
@@ -144,8 +154,9 @@ static bool is_settled(const exchanging *x, uint32_t c)
     return x->edge_of[c] == x->edge && he_bits_get(x->settled, c);
 }
 
-/* Numbers the two parts of a fan that fell in two. Corners a and b left one vertex in that fan; now
- * each is in one of the parts, and the smaller part gets a new number. */
+/* Gives numbers to the two parts into which a fan has fallen: the smaller part gets a new number,
+ * and the larger part keeps the fan's number. Corner a is in one part, and corner b in the other
+ * part. */
 static he_status number(exchanging *x, uint32_t a, uint32_t b, he_error *err)
 {
     const he_splitting *s = x->s;
@@ -215,7 +226,7 @@ static he_status settle(exchanging *x, uint32_t c, he_error *err)
 
 /* --- edges --- */
 
-/* Lists the corners of edges that have more than two. */
+/* Lists the corners of each edge that has more than two corners. */
 static he_status list_corners(exchanging *x, he_error *err)
 {
     const he_soup *soup = x->s->soup;

@@ -1,10 +1,11 @@
-/* fill.c - the repair fill: closes small holes of the mesh, each by one polygon. */
+/* fill.c - the repair fill: closes each small hole of the mesh by one polygon. */
 #include "edit/border/hole.h"
 #include "mesh/walk.h"
 #include "repair/repair.h"
 
-/* Returns the length of the loop of boundary half-edge h, counted up to `most` + 1, and whether all
- * of the loop is along one face. */
+/* Returns the number of half-edges of the boundary loop of h; if there are more than `most`,
+ * returns `most` + 1. Sets *one_face to true if one face lies on the other side of all half-edges
+ * that were counted. */
 static size_t length_of(const he_mesh *m, he_halfedge h, size_t most, bool *one_face)
 {
     size_t length = 0;
@@ -49,8 +50,8 @@ static he_status fill(he_mesh *m, he_halfedge h, size_t most, he_repair_account 
     return HE_OK;
 }
 
-/* Fills the holes. Each loop is handled at its lowest half-edge; `seen` has the half-edges of the
- * loops handled before. */
+/* Fills the holes. Each boundary loop is handled when its half-edge with the lowest id is reached;
+ * `seen` marks the half-edges of loops that were handled before. */
 static he_status fill_all(he_mesh *m, size_t most, uint64_t *seen, he_repair_account *account,
                           he_error *err)
 {

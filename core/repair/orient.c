@@ -1,5 +1,6 @@
-/* orient.c - the repair orient: reverses faces until neighbours agree, by a breadth-first search
- * over the edges of two faces, one component after another. */
+/* orient.c - the repair orient: reverses faces so that any two faces that share an edge run along
+ * it in opposite directions. It is a breadth-first search from face to face, across edges that have
+ * exactly two faces, one component after another. */
 #include "build/soup_check.h"
 #include "repair/mend.h"
 
@@ -8,30 +9,30 @@ typedef enum state { UNSEEN, KEPT, TURNED } state;
 typedef struct orienting {
     he_soup *soup;
     he_repaired *out;
-    /* The corner of the second face on the edge of each corner; HE_NONE unless the edge has exactly
-     * two faces. */
+    /* For each corner, the corner of the adjacent face whose half-edge runs along this edge;
+     * HE_NONE unless the edge has exactly two faces. */
     uint32_t *mate;
     uint32_t *face_of; /* face of each corner */
-    uint32_t *queue;   /* a queue of faces, component after component */
+    uint32_t *queue;   /* the faces in the order of the search, component after component */
     unsigned char *state;
 } orienting;
 
 #define NO_PAIR (HE_NONE - 1)
 
-/* Finds for each corner along an edge of two faces the other corner along it, its mate. */
+/* Finds the mate of each corner: if the edge along which the corner's half-edge runs has exactly
+ * two corners, the mate is the second corner. */
 static he_status find_mates(orienting *o, he_error *err)
 {
     const he_soup *soup = o->soup;
     size_t edges = 0;
-    /* The array `face_of` serves as a buffer until the faces are needed. */
+    /* The memory of `face_of` is used for another array until `face_of` is filled. */
     uint32_t *edge_of = o->face_of;
     he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
     if (status != HE_OK) {
         return status;
     }
     uint32_t *met = he_mem_zero(
-        /* `met` has the number of corners of each edge; later, for an edge of two corners, the
-         * first corner. */
+        /* For each edge the number of its corners; later its first corner if it has two. */
         edges + 1, sizeof *met);
     if (met == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to orient %zu faces", soup->face_count);
@@ -56,8 +57,8 @@ static he_status find_mates(orienting *o, he_error *err)
     return HE_OK;
 }
 
-/* Records that a component cannot be oriented: along the edge at corner c, face f and the face
- * beside it would run in one direction. */
+/* Records that a component cannot be oriented consistently: face f and its neighbour would run in
+ * one direction along the edge at corner c. */
 static void note_clash(orienting *o, uint32_t f, uint32_t c)
 {
     const he_soup *soup = o->soup;
@@ -70,8 +71,9 @@ static void note_clash(orienting *o, uint32_t f, uint32_t c)
     account->left++;
 }
 
-/* Adds the face `seed` and all faces connected with it to the queue; *fits is set to false if the
- * faces cannot be oriented consistently. */
+/* Adds to the queue the component of the face `seed`: all faces that can be reached from it across
+ * edges. Decides for each face whether it must be reversed so that its orientation agrees with that
+ * of `seed`. Sets *fits to false if the faces cannot be oriented consistently. */
 static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he_error *err)
 {
     const he_soup *soup = o->soup;
@@ -103,9 +105,10 @@ static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he
     return status;
 }
 
-/* Counts the edges of the faces queue[begin] to queue[end - 1] along which two faces run in one
- * direction (clash): with faces reversed as `state` says, or as they are if `turned` is false. Each
- * edge is counted from both sides. */
+/* Counts the clashes, which are edges along which two faces run in one direction, of the faces
+ * queue[begin] to queue[end - 1]. If `turned` is true, faces count as reversed where `state` says
+ * so; if it is false, no face counts as reversed. Each clash is counted twice, once for each of its
+ * two faces. */
 static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, bool turned)
 {
     const he_soup *soup = o->soup;
@@ -125,8 +128,9 @@ static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, boo
     return count;
 }
 
-/* Decides about a component that cannot be oriented: if reversing faces does not leave fewer
- * clashes, no face is reversed. */
+/* Decides which faces of a component are reversed that cannot be oriented consistently. If
+ * reversing faces would not reduce the number of clashes (edges along which two faces run in one
+ * direction), no face is reversed. */
 static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
 {
     if (clashes_of(o, begin, end, true) < clashes_of(o, begin, end, false)) {
@@ -137,8 +141,8 @@ static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
     }
 }
 
-/* Faces of one component, queue[begin] to queue[end - 1], are in two parts, of which one must be
- * reversed: chooses the smaller part. */
+/* The search has divided the faces of a component, queue[begin] to queue[end - 1], into two sets.
+ * Reversing either set orients the component; this function chooses the smaller set. */
 static void settle(orienting *o, uint32_t begin, uint32_t end)
 {
     uint32_t turned = 0;
@@ -155,7 +159,7 @@ static void settle(orienting *o, uint32_t begin, uint32_t end)
     o->out->accounts[HE_REPAIR_ORIENT].parts += turned > 0;
 }
 
-/* Reverses a face: the first corner stays, the others are reversed. */
+/* Reverses a face: its first corner stays first, and the order of the other corners is reversed. */
 static void turn(he_mend *m, uint32_t f)
 {
     uint32_t low = m->soup->starts[f] + 1, high = he_soup_end(m->soup, f) - 1;

@@ -124,7 +124,8 @@ static he_status carry(const he_mend *m, he_error *err)
     return status;
 }
 
-/* Reverses the normals of reversed faces and of their corners. */
+/* Reverses the normals of the faces that the repair `orient` reversed, and the normals of their
+ * corners. */
 static he_status turn_normals(const he_mend *m, he_column *column, he_error *err)
 {
     const he_soup *soup = m->soup;
@@ -172,7 +173,7 @@ bool he_mend_has_bad_index(const he_soup *soup)
     return c < soup->corner_count;
 }
 
-/* Decides whether he_build would accept each face by itself. If it would not, the later repairs
+/* Decides whether each face by itself is valid for he_build. If not, the repairs that come later
  * cannot run. */
 static he_status is_proper(const he_soup *soup, bool *out, he_error *err)
 {

@@ -1,5 +1,6 @@
-/* split.c - the repair split: gives each fan a vertex of its own. Corners of an edge are paired as
- * mates, as many as there are in both directions; pairs that would double an edge exchange partners
+/* split.c - the repair split: gives each fan of faces a vertex of its own. Two corners become mates
+ * if their half-edges run along one edge in opposite directions and their faces stay joined there.
+ * If two pairs of mates would make two edges between two vertices, they exchange their partners
  * (exchange.c). */
 #include "repair/split.h"
 
@@ -10,13 +11,15 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to split %zu faces apart", soup->face_count);
 }
 
-/* Pairs the corners of every edge: each with the first unpaired corner that runs the other way. All
- * unpaired corners of an edge run in one direction, so they are a queue, chained by `mate`. */
+/* Makes corners along each edge mates: each corner gets the first corner without a mate whose
+ * half-edge runs in the opposite direction. At any time, all corners of an edge that wait for a
+ * mate run in one direction, so they form a queue, linked by `mate`. */
 static he_status pair(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     size_t edges = 0;
-    uint32_t *edge_of = s->to; /* the array `to` serves as a buffer until the fans are found */
+    /* The memory of `to` is used for this array until the fans are found. */
+    uint32_t *edge_of = s->to;
     uint32_t *head = NULL, *tail = NULL;
     he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
     if (status != HE_OK) {
@@ -80,8 +83,8 @@ static he_status add_copy(he_splitting *s, uint32_t parent, he_error *err)
     return HE_OK;
 }
 
-/* Finds all corners of the fan of corner c, and gives them a vertex: the first fan of a vertex
- * keeps the vertex, every other one gets a copy. */
+/* Finds all corners of the fan to which corner c belongs and assigns them a vertex. The first fan
+ * of a vertex keeps the vertex; every other fan gets a copy of the vertex. */
 static he_status find_fan(he_splitting *s, uint32_t c, he_error *err)
 {
     uint32_t v = s->soup->corners[c], vertex = v;
@@ -148,7 +151,7 @@ static void clear(he_splitting *s)
     he_mem_free(s->closed);
 }
 
-/* Begins a split: allocates its memory, and finds the mates. */
+/* Begins the repair: allocates its memory and finds the mate of each corner. */
 static he_status begin(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
@@ -182,7 +185,8 @@ static he_status plan(he_splitting *s, he_error *err)
     return status;
 }
 
-/* Writes the split to the soup. Nothing is written before all memory is allocated. */
+/* Changes the soup so that each fan has a vertex of its own. Nothing is changed before all memory
+ * is allocated. */
 static he_status apply(he_mend *m, he_splitting *s, he_error *err)
 {
     he_soup *soup = m->soup;

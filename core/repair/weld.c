@@ -1,10 +1,11 @@
-/* weld.c - the repair weld: merges vertices that are near one another. */
+/* weld.c - the repair weld: merges vertices whose distance is at most a tolerance. */
 #include "build/keep.h"
 #include "geometry/point_grid.h"
 #include "repair/mend.h"
 
-/* Finds the vertices that are kept, and moves their positions to the front of the array. into[v] is
- * the new number of v, or of the vertex it is merged into. */
+/* Finds the vertices that are kept and moves their positions to the front of the array. into[v] is
+ * set to the new number of vertex v; if v is merged into another vertex, to the new number of that
+ * vertex. */
 static he_status find_kept(he_mend *m, he_point_grid *grid, uint32_t *into, uint32_t *from,
                            uint32_t *kept, he_error *err)
 {
