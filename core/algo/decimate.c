@@ -65,8 +65,8 @@ static void count_feature(const he_decimation *d, he_edge e, uint32_t vertex)
     }
 }
 
-/* Adds a plane to the quadrics of both ends of half-edge h: the plane that contains the edge of h
- * and is perpendicular to the face left of h, whose normal is given. */
+/* Adds a plane to the quadrics of the two ends of half-edge h. The plane contains the edge of h and
+ * is perpendicular to the face of h, whose normal is given. */
 static void add_wall(const he_decimation *d, he_halfedge h, he_vec3 normal)
 {
     he_node *a = &d->nodes[he_origin(d->mesh, h).i], *b = &d->nodes[he_target(d->mesh, h).i];
@@ -136,8 +136,8 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* Vertices without an edge are skipped: writing to their nodes would touch memory pages that
-     * were not used yet, which takes long. */
+    /* The nodes of vertices without edges stay unwritten: writing would touch memory pages that
+     * were not used yet, which is slow. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_progress_at(m->progress, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
@@ -175,8 +175,8 @@ static he_status fill_queue(he_decimation *d, he_error *err)
     return status;
 }
 
-/* Tries to collapse edge e, which was taken from `bucket`, the first bucket of the queue with
- * edges. */
+/* Tries to collapse edge e. The edge was taken from `bucket`, the first bucket of the queue that is
+ * not empty. */
 static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_error *err)
 {
     he_candidate what;
@@ -195,7 +195,7 @@ static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_e
     return HE_OK;
 }
 
-/* Prefetches the links from the edges to their end vertices. */
+/* Prefetches from memory the ids of the end vertices of edges. */
 static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -203,7 +203,7 @@ static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_
     }
 }
 
-/* Prefetches the nodes of an edge's end vertices, each of which is in two cache lines. */
+/* Prefetches from memory the nodes of the end vertices of an edge. A node fills two cache lines. */
 static void ask_for_ends(const he_decimation *d, uint32_t edge)
 {
     for (unsigned i = 0; i < 2; i++) {
@@ -217,8 +217,8 @@ static void ask_for_ends(const he_decimation *d, uint32_t edge)
 
 enum { AHEAD = 4 };
 
-/* Tries to collapse edges that were first in the queue. Stops when the mesh has only `faces`
- * faces. */
+/* Tries to collapse the edges of an array, which were first in the queue. Stops when the mesh has
+ * only `faces` faces left. */
 static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t count,
                                uint32_t bucket, uint32_t faces, he_error *err)
 {
@@ -239,8 +239,8 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
     return status;
 }
 
-/* Progress is reported after TAKES_PER_LOOK chunks of edges have been taken from the queue, or
- * after WORK_PER_LOOK units of work. */
+/* Progress is reported each time TAKES_PER_LOOK chunks of edges were taken from the queue, and each
+ * time WORK_PER_LOOK units of work were done. */
 enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_PROGRESS_STRIDE };
 
 he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
@@ -280,8 +280,8 @@ static he_decimate_stop find_stop(const he_decimation *d, uint32_t faces)
     return HE_STOP_EXHAUSTED;
 }
 
-/* Returns the first address for nodes that is aligned to a cache line, in a block that was
- * allocated with room for one more node than needed. */
+/* Returns the address at which the array of nodes begins in a block of memory: the first address
+ * that is aligned to a cache line. The block must have room for one node more than needed. */
 static he_node *align(void *memory)
 {
     uintptr_t over = (uintptr_t)memory % HE_CACHE_LINE;
@@ -366,8 +366,8 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
             he_mesh_set_progress(copy, m->progress);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
-        /* Each collapse deletes a vertex: if the copy still has as many vertices as the mesh,
-         * nothing has changed. */
+        /* Each collapse deletes a vertex. So if the decimated copy has as many vertices as the
+         * mesh, nothing was collapsed. */
         if (status == HE_OK && he_mesh_vertices(copy) < he_mesh_vertices(m)) {
             status = finish(m, &copy, &merges, replace, err);
         }

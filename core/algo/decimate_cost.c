@@ -1,25 +1,26 @@
-/* decimate_cost.c - computes what the collapse of an edge costs, and where the vertex that stays
+/* decimate_cost.c - computes what the collapse of an edge costs, and where the remaining vertex
  * would move. */
 #include "algo/decimation.h"
 
-/* How strongly the new point is pulled to the middle of the edge, relative to the sum of the
- * planes' weights: enough to find a point in a flat region accurately, too little to matter on
- * curved surfaces. */
+/* How strongly the point to which an edge collapses is pulled to the middle of the edge, relative
+ * to the sum of the weights of the planes. The pull makes the point well defined in flat regions
+ * and is too weak to matter on curved surfaces. */
 static const double PULL = 1e-6;
-/* The position of an end of the edge is preferred to the best point only if its cost is lower by
- * more than this, so that rounding does not decide. */
+/* An edge collapses to one of its ends, and not to the best point, only if the cost at this end is
+ * lower by more than ROUNDING. So rounding errors do not decide where an edge collapses to. */
 static const double ROUNDING = 1e-14;
-/* This multiple of an edge's length is added to the cost of its collapse, so that among edges whose
- * collapse costs nothing the shortest comes first. */
+/* The length of an edge times LENGTH is added to the cost of its collapse, so that of the edges
+ * that cost nothing the shortest is collapsed first. */
 static const double LENGTH = 1e-9;
-/* Priorities are multiplied by this, so that even the tiny costs in a small part of a large mesh
- * give priorities that a float can hold. */
+/* Priorities of edges are multiplied by WITHIN. Otherwise the priorities in a small part of a large
+ * mesh would be too small for a float. */
 static const double WITHIN = 0x1p40;
-/* Errors below this, relative to the size of the mesh, are rounding noise and count as zero. */
+/* An error below NOTHING, relative to the size of the mesh, may be only rounding and counts as
+ * zero. */
 static const double NOTHING = 1e-12;
 
-/* Returns true if the collapse of an edge may move the vertex, an end of the edge. `along` says
- * that the edge is a feature. */
+/* Returns true if the collapse of an edge may move `vertex`, which is an end of the edge. `along`
+ * is true if the edge is a feature. */
 static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 {
     const he_node *node = &d->nodes[vertex];
@@ -28,7 +29,7 @@ static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 }
 
 typedef struct ends {
-    he_halfedge h; /* runs from a to b */
+    he_halfedge h; /* half-edge from vertex a to vertex b */
     const he_node *a, *b;
     he_quadric sum; /* sum of the quadrics of a and b, relative to the position of a */
     he_vec3 across; /* vector from a to b */
@@ -43,7 +44,8 @@ static void take(const ends *e, he_vec3 x, bool a_goes, bool moves, he_candidate
     out->cost = he_quadric_at(&e->sum, x);
 }
 
-/* Takes the best point for the vertex that stays, when neither end restricts where it may be. */
+/* Finds the point with the lowest cost for the vertex that remains after the collapse. Returns
+ * false if there is no such point, or if neither end of the edge may move. */
 static bool take_best(const ends *e, he_candidate *out)
 {
     bool a_goes = e->a_goes && e->b_moves, b_goes = e->b_goes && e->a_moves;
@@ -53,8 +55,8 @@ static bool take_best(const ends *e, he_candidate *out)
         !he_quadric_least(&e->sum, PULL * trace, he_vec3_scale(e->across, 0.5), &x)) {
         return false;
     }
-    /* The end with fewer edges is deleted, and of two with equally many the one with the higher
-     * id. */
+    /* The collapse deletes the end with fewer edges; if the two ends have equally many edges, the
+     * end with the higher id. */
     if (a_goes && b_goes) {
         a_goes = e->a->degree < e->b->degree;
     }

@@ -4,11 +4,10 @@
 #include "edit/local/collapse.h"
 #include "edit/piece/point.h"
 
-/* The largest angle by which one collapse may turn a face, as a squared cosine: that of 60
- * degrees. */
+/* The square of the cosine of the largest angle, 60 degrees, by which one collapse may turn a
+ * face. */
 static const double TURN = 0.25;
-/* A face counts as having area if the square of its doubled area, divided by the fourth power of
- * its longest side, is above this. */
+/* A triangle counts as having area if (2 * area)^2 / (longest side)^4 is above SLIVER. */
 static const double SLIVER = 1e-12;
 
 static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
@@ -16,9 +15,10 @@ static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
     return he_decimation_inside(d, d->mesh->c.position[vertex]);
 }
 
-/* Lists the half-edges that leave the ends of h, starting with h and its twin. If `ends` is 1, only
- * those that leave the origin of h are listed. The walks around both ends alternate, since each
- * step waits for memory. Returns false if there are more than HE_DECIMATE_DEGREE at an end. */
+/* Lists in out[0] the half-edges that leave the origin of h, beginning with h, and in out[1] those
+ * that leave its target, beginning with twin(h). If `ends` is 1, only out[0] is filled. The walks
+ * around the two vertices alternate, because each step of a walk waits for memory. Returns false if
+ * more than HE_DECIMATE_DEGREE half-edges leave one of the vertices. */
 static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out[2])
 {
     const he_halfedge first[2] = {h, he_twin(h)};
@@ -45,7 +45,8 @@ static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out
     return true;
 }
 
-/* Returns true if the triangle p, q, r keeps its direction and its area when p moves to `to`. */
+/* Returns true if the triangle p, q, r may change to the triangle `to`, q, r: its normal must not
+ * turn too far, and it must not lose its area. */
 static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
 {
     he_vec3 side = he_vec3_sub(r, q), left = he_vec3_sub(q, to), right = he_vec3_sub(r, to);
@@ -61,9 +62,10 @@ static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
     return old_square == 0 || (along > 0 && along * along >= TURN * old_square * new_square);
 }
 
-/* Tests whether the faces around a vertex keep their direction and area when it moves from `from`;
- * `spokes` are its edges. The faces beside the first edge are skipped, because the collapse deletes
- * them. */
+/* Returns true if the faces around a vertex may be changed by moving the vertex from `from` to
+ * `to`: no normal may turn too far, and no face may lose its area. `spokes` lists the half-edges
+ * that leave the vertex. The collapse deletes the two faces beside the first half-edge, so these
+ * are not tested. */
 static bool stay_upright(const he_decimation *d, const he_spokes *spokes, he_vec3 from, he_vec3 to)
 {
     const he_mesh *m = d->mesh;
@@ -126,8 +128,9 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* Returns true if the refused edges of the vertex need not go back into the queue yet, because the
- * vertex has very many edges (HE_DECIMATE_PATIENT). The vertex is then in the list `late`. */
+/* Returns true if the refused edges of a vertex should not go back into the queue yet, because the
+ * vertex has very many edges and few faces around it have changed (HE_DECIMATE_PATIENT). If so, the
+ * function adds the vertex to the list `late`, which is handled later. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];
@@ -137,8 +140,9 @@ static bool is_late(he_decimation *d, uint32_t vertex)
     return (d->flags[vertex] & HE_NODE_LATE) != 0 || he_ids_add(&d->late, vertex, NULL) == HE_OK;
 }
 
-/* Puts the edges of a vertex that are ASIDE (refused) back into the queue; if another vertex was
- * merged into it (`grown`), also those that are DEAR (too expensive). */
+/* Puts those edges of a vertex back into the queue that are ASIDE (their collapse was refused). If
+ * `grown` is true, another vertex was merged into this one, and edges that are DEAR (too expensive)
+ * are tried again, too. */
 static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
 {
     uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;
@@ -167,7 +171,8 @@ bool he_decimation_catch_up(he_decimation *d)
     return any;
 }
 
-/* Returns where `place` lies on the way from one point to another: 0 at `from`, 1 at `to`. */
+/* Returns where the projection of `place` onto the segment from `from` to `to` lies: 0 at `from`, 1
+ * at `to`, linear in between. */
 static double between(he_vec3 from, he_vec3 to, he_vec3 place)
 {
     he_vec3 across = he_vec3_sub(to, from);
@@ -176,8 +181,8 @@ static double between(he_vec3 from, he_vec3 to, he_vec3 place)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
-/* Converts a point from the coordinates of the decimation, which are scaled, to those of the mesh.
- * The result is never beyond the range of a double. */
+/* Converts a point from the scaled coordinates of the decimation to coordinates of the mesh. The
+ * result never overflows. */
 static he_vec3 outside(const he_decimation *d, he_vec3 place)
 {
     return (he_vec3){d->middle.x + ldexp(place.x, d->exponent),
@@ -185,7 +190,7 @@ static he_vec3 outside(const he_decimation *d, he_vec3 place)
                      d->middle.z + ldexp(place.z, d->exponent)};
 }
 
-/* Makes room in the log for one more vertex split and the faces around one vertex. */
+/* Makes room in the log for one more collapse and the faces around one vertex. */
 static he_status make_room(he_progressive *log)
 {
     if (log->count == log->capacity) {
@@ -200,8 +205,8 @@ static he_status make_room(he_progressive *log)
     return he_ids_reserve(&log->moved, HE_DECIMATE_DEGREE, NULL);
 }
 
-/* Records in the log how to undo the collapse of the first edge of `about`. It must be called
- * before the collapse. */
+/* Writes to the log how to undo the collapse of the first half-edge of `about`. The function must
+ * be called before the collapse, because it reads the links. */
 static void remember(const he_decimation *d, const he_spokes *about)
 {
     const he_mesh *m = d->mesh;
@@ -237,7 +242,8 @@ static void remember(const he_decimation *d, const he_spokes *about)
     }
 }
 
-/* Records which elements the collapse of h will merge. Must be called before the collapse. */
+/* Records which vertices and edges the collapse of h merges. The function must be called before the
+ * collapse, because it reads the links. */
 static he_status note_merges(const he_decimation *d, he_halfedge h)
 {
     const he_mesh *m = d->mesh;
@@ -268,8 +274,8 @@ static void lose_edge(he_decimation *d, uint32_t vertex)
     }
 }
 
-/* Collapses the first edge of `about`. Records the collapse in the log, and the merged elements in
- * the list of merges, if there are such. */
+/* Collapses the first half-edge of `about`. Records the collapse in the log, and the merged
+ * elements in `merges`, if the decimation has a log or a list of merges. */
 static he_status collapse(const he_decimation *d, const he_spokes *about, double t, he_vec3 to)
 {
     he_halfedge h = {about->out[0]};

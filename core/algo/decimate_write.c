@@ -1,5 +1,5 @@
-/* decimate_write.c - writes the result of a decimation from the copy into the mesh: each word that
- * differs, once. */
+/* decimate_write.c - writes the result of a decimation, which was computed in a copy of the mesh,
+ * into the mesh. Each word that differs is written once. */
 #include "algo/decimation.h"
 
 #include "mesh/write.h"
@@ -65,7 +65,7 @@ static void count_words(const he_mesh *m, const he_mesh *made, he_reservation *n
     }
 }
 
-/* Counts the words in which two rows of an attribute differ. */
+/* Counts the 4-byte words that differ between two values of an attribute. */
 static size_t words_between(const unsigned char *a, const unsigned char *b, size_t bytes)
 {
     size_t count = 0;
@@ -75,8 +75,8 @@ static size_t words_between(const unsigned char *a, const unsigned char *b, size
     return count;
 }
 
-/* Handles the words in which a column differs between the two meshes: writes them if `to` is not
- * NULL, otherwise only counts them. */
+/* Counts the words of an attribute's values that differ between the mesh and its decimated copy. If
+ * `to` is not NULL, also writes the differing values to the mesh `to`. */
 static size_t each_value(const he_mesh *m, const he_mesh *made, size_t slot, he_mesh *to)
 {
     const he_column *from = m->c.columns[slot], *column = made->c.columns[slot];
@@ -162,8 +162,8 @@ he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *
 {
     he_reservation need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
     count_words(m, made, &need);
-    /* Memory for the changed words of attributes is reserved as if they were links, because
-     * need.attributes would reserve memory for whole rows of every column. */
+    /* Changed attribute values are reserved as if they were links, by the number of changed words.
+     * With need.attributes, he_reserve would allocate memory for all values of each attribute. */
     need.links += each_column(m, made, NULL);
     he_status status = he_reserve(m, need, err);
     if (status != HE_OK) {

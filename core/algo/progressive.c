@@ -10,7 +10,7 @@ void he_progressive_clear(he_progressive *progressive)
     *progressive = (he_progressive){0};
 }
 
-/* The part of the reported progress (0 to 1) that copying the mesh takes. */
+/* The reported progress (0 to 1) at which copying the mesh ends and the decimation begins. */
 static const double COPIED = 0.05;
 
 he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,

@@ -9,8 +9,9 @@
 
 static const double QUARTER_TURN = 1.57079632679489661923;
 
-/* Computes point i of n on the unit circle. Whole quarter turns are separated first, so that points
- * on the axes are exact and the circle is as symmetric as n allows. */
+/* Computes point i of the n points that divide the unit circle evenly. Whole quarter turns are
+ * split off first, so that points on the axes are exact and the circle is as symmetric as n
+ * allows. */
 static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
 {
     uint64_t quarters = 4 * (uint64_t)i;
@@ -29,14 +30,14 @@ static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
         *x = -c;
         *y = -s;
         break;
-    default: /* The number of quarter turns, modulo 4, is 3 here. */
+    default: /* case 3: quarter turns are counted modulo 4 */
         *x = s;
         *y = -c;
         break;
     }
 }
 
-/* Adds a circle of n vertices around the z axis, counter-clockwise as seen from above. */
+/* Adds n vertices on a circle around the z axis, counter-clockwise as seen from above. */
 static void circle(he_soup *soup, uint32_t n, double radius, double z)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -46,8 +47,8 @@ static void circle(he_soup *soup, uint32_t n, double radius, double z)
     }
 }
 
-/* Adds one polygon with n consecutive vertices as corners. It faces up, or, if the vertices are
- * taken in reverse order, down. */
+/* Adds a polygon over the n vertices from `first` on. The polygon faces up; if `up` is false, its
+ * vertices are taken in reverse order and it faces down. */
 static void cap(he_soup *soup, uint32_t first, uint32_t n, bool up)
 {
     assert(soup->face_count < soup->face_capacity);
@@ -58,8 +59,9 @@ static void cap(he_soup *soup, uint32_t first, uint32_t n, bool up)
     }
 }
 
-/* Adds triangles from the circle of n vertices at `first` to the vertex `tip`. If `up` is set, the
- * circle is counter-clockwise as seen from `tip`. */
+/* Adds a fan of triangles between the vertex `tip` and the circle of the n vertices from `first`
+ * on. If `up` is true, the circle must be counter-clockwise as seen from `tip`; if it is false,
+ * clockwise. */
 static void fan(he_soup *soup, uint32_t first, uint32_t n, uint32_t tip, bool up)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -68,8 +70,8 @@ static void fan(he_soup *soup, uint32_t first, uint32_t n, uint32_t tip, bool up
     }
 }
 
-/* Adds quads between two circles of n vertices each. Their normals point away from the axis if the
- * circle `above` is above the circle `below`. */
+/* Adds a ring of n quads between two circles of n vertices, whose first vertices are `below` and
+ * `above`. The normals of the quads point away from the axis if the circle of `above` is higher. */
 static void band(he_soup *soup, uint32_t below, uint32_t above, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -150,8 +152,8 @@ static he_shape_size uv_sphere_size(const double *args)
     return (he_shape_size){n * (bands - 1) + 2, n * bands, 4 * n * (bands - 2) + 6 * n};
 }
 
-/* Vertices of the sphere are numbered thus: the south pole, then circles of latitude from south to
- * north, then the north pole. */
+/* The sphere's vertices are numbered in this order: the south pole, the circles of latitude from
+ * south to north, the north pole. */
 static void uv_sphere_fill(const double *args, he_soup *soup)
 {
     uint32_t n = (uint32_t)args[0], bands = (uint32_t)args[1];
@@ -201,8 +203,8 @@ static he_shape_size torus_size(const double *args)
     return (he_shape_size){quads, quads, 4 * quads};
 }
 
-/* Vertices of the torus are numbered first around the tube, then from tube circle to tube circle
- * around the axis. */
+/* The torus is a ring of circles around its tube; the vertices are numbered circle by circle, and
+ * along each circle. */
 static void torus_fill(const double *args, he_soup *soup)
 {
     uint32_t major = (uint32_t)args[0], minor = (uint32_t)args[1];
@@ -287,11 +289,10 @@ static void polygon_fill(const double *args, he_soup *soup)
     cap(soup, 0, n, true);
 }
 
-/* The largest length a shape may have. Larger lengths have no use, and their squares would
- * overflow. */
+/* The largest length that a shape may have. The square of a much larger length would overflow. */
 #define LONGEST 1e100
-/* The largest number of segments along one side of a shape. A shape with this number of segments
- * along two sides is too large for any mesh and is refused by the limits. */
+/* The largest number of segments along one side of a shape. A shape with so many segments along two
+ * sides is too large for a mesh; the limits on vertices and faces refuse it. */
 #define MOST 16777216
 
 #define LENGTH(name, fallback, doc)                            \
@@ -421,7 +422,7 @@ void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS])
     }
 }
 
-/* A number as text for a message, with a decimal point in every locale. */
+/* The text of a number in a message; it has a decimal point in every locale. */
 typedef struct shown {
     char text[HE_NUMBER_TEXT + 1];
 } shown;
@@ -468,8 +469,8 @@ he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAM
 static he_status within(const he_shape *shape, uint64_t count, uint64_t limit, const char *what,
                         he_error *err)
 {
-    /* A mesh has at most as many edges as corners, so the limit of corners also leaves enough ids
-     * for the edges. */
+    /* A mesh has no more edges than corners, so limiting the corners to HE_MAX_ROWS also limits the
+     * edges. */
     if (limit == 0 || limit > HE_MAX_ROWS) {
         limit = HE_MAX_ROWS;
     }

@@ -14,7 +14,7 @@ bool he_solid_goes_on(const he_soup *soup)
 void he_solid_vertex(he_soup *soup, double x, double y, double z)
 {
     assert(soup->vertex_count < soup->vertex_capacity);
-    /* Adding zero turns -0 into 0, so that no coordinate is printed as -0. */
+    /* Adding 0.0 turns -0.0 into 0.0, so that no coordinate is printed as -0. */
     soup->positions[soup->vertex_count++] = (he_vec3){x + 0.0, y + 0.0, z + 0.0};
 }
 
@@ -70,8 +70,8 @@ void he_solid_octahedron(he_soup *soup, double radius)
     he_solid_vertex(soup, 0, -radius, 0);
     he_solid_vertex(soup, 0, 0, radius);
     he_solid_vertex(soup, 0, 0, -radius);
-    /* Each octant of space gets one triangle; every reflection at a coordinate plane reverses its
-     * orientation. */
+    /* The octahedron has one triangle in each octant. Octants that a reflection at a coordinate
+     * plane maps to each other have triangles of opposite vertex order. */
     for (uint32_t i = 0; i < 8; i++) {
         uint32_t x = i & 1u, y = i >> 1 & 1u, z = i >> 2;
         if ((x ^ y ^ z) == 0) {
@@ -82,9 +82,9 @@ void he_solid_octahedron(he_soup *soup, double radius)
     }
 }
 
-/* The icosahedron: its vertices are the corners of three golden rectangles, one in each coordinate
- * plane; its edges join vertices at the least distance; its faces are the triples of vertices
- * joined pairwise, oriented outwards. */
+/* The vertices of an icosahedron are the corners of three golden rectangles, one in each coordinate
+ * plane. Its edges join the vertices that are nearest to each other. Its faces are the triples of
+ * vertices that are joined pairwise, oriented outwards. */
 typedef struct icosahedron {
     he_vec3 vertex[12];
     uint32_t face[20][3];
@@ -105,8 +105,8 @@ static icosahedron icosahedron_make(void)
     uint32_t edges = 0, faces = 0;
     for (uint32_t a = 0; a < 12; a++) {
         for (uint32_t b = 0; b < 12; b++) {
-            /* The cosines of the angles between two vertices are 1, 1/sqrt 5, -1/sqrt 5 and -1;
-             * neighbours have 1/sqrt 5. */
+            /* The cosine of the angle between two vertices, seen from the centre, is 1, 1/sqrt 5,
+             * -1/sqrt 5 or -1. It is 1/sqrt 5 if an edge joins the vertices. */
             double cosine = he_vec3_dot(ico.vertex[a], ico.vertex[b]);
             joined[a][b] = cosine > 0 && cosine < 0.9;
             if (a < b && joined[a][b]) {
@@ -138,8 +138,8 @@ void he_solid_icosahedron(he_soup *soup, double radius)
     he_solid_icosphere(soup, 0, radius);
 }
 
-/* Returns the face of the icosahedron in which corner `b` follows corner `at`; `*after` is set to
- * the corner that follows `b` in that face. */
+/* Returns the face of the icosahedron in which vertex `b` follows vertex `at`, and sets *after to
+ * the vertex that follows `b`. */
 static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint32_t *after)
 {
     for (uint32_t f = 0; f < 20; f++) {
@@ -154,8 +154,8 @@ static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint3
     return 0;
 }
 
-/* The dodecahedron is the dual of the icosahedron: a vertex for each face, a face for each
- * vertex. */
+/* The dodecahedron is the dual of the icosahedron: it has a vertex for each face of the icosahedron
+ * and a face for each vertex. */
 void he_solid_dodecahedron(he_soup *soup, double radius)
 {
     icosahedron ico = icosahedron_make();
@@ -179,23 +179,25 @@ void he_solid_dodecahedron(he_soup *soup, double radius)
     }
 }
 
-/* One triangle of the icosahedron as a grid with `n` steps along each side: the point (i, j) is i
- * steps from corner 0 towards corner 1, and j steps towards corner 2. */
+/* A triangle of the icosahedron, divided into a grid with `n` steps along each side. The grid point
+ * (i, j) is i steps from corner 0 towards corner 1, and j steps towards corner 2. */
 typedef struct patch {
     const icosahedron *ico;
     uint32_t n, face;
 } patch;
 
-/* Returns vertex t of n along the edge from `from` to `to`. Both triangles beside an edge must get
- * the same vertex, so it is numbered from the lower end. */
+/* Returns the number of the vertex at step t of the n steps along the edge from corner `from` to
+ * corner `to`. The two triangles beside the edge share its vertices, so steps are counted from the
+ * corner with the lower number. */
 static uint32_t on_edge(const patch *p, uint32_t from, uint32_t to, uint32_t t)
 {
     uint32_t step = from < to ? t : p->n - t;
     return 12 + p->ico->edge[from][to] * (p->n - 1) + step - 1;
 }
 
-/* Returns the number of the vertex at a grid point. Numbered first are the 12 corners, then the
- * inner points of the 30 edges, then those of the 20 faces. */
+/* Returns the number of the vertex at grid point (i, j). Numbers are given first to the 12 corners
+ * of the icosahedron, then to the points inside its 30 edges, then to the points inside its 20
+ * faces. */
 static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
 {
     const uint32_t *corner = p->ico->face[p->face];
@@ -212,8 +214,8 @@ static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
     if (i + j == n) {
         return on_edge(p, corner[1], corner[2], j);
     }
-    /* Row j of the grid has n - 1 - j inner points; below it are the inner points of rows 1 to j -
-     * 1. */
+    /* inner: number of points inside a face; below: number of them in rows 1 to j - 1, where row j
+     * of the grid has n - 1 - j of them. */
     uint32_t inner = (uint32_t)((uint64_t)(n - 1) * (n - 2) / 2);
     uint32_t below = (uint32_t)((uint64_t)(j - 1) * (n - 1) - (uint64_t)(j - 1) * j / 2);
     return 12 + 30 * (n - 1) + p->face * inner + below + i - 1;
@@ -225,8 +227,9 @@ static void halve(he_vec3 *at, uint32_t a, uint32_t b, uint32_t middle)
     at[middle] = he_vec3_scale(sum, 1 / he_vec3_length(sum));
 }
 
-/* Computes the points of one level of subdivision. Every edge of a level is a side of exactly one
- * triangle that is oriented like the whole patch, so each is halved once. */
+/* Computes the midpoints of all edges of one level of subdivision of a triangle of the icosahedron.
+ * The loop visits only the smaller triangles that are oriented like the large one; each edge is a
+ * side of exactly one such triangle and is thus halved once. */
 static void place_level(const patch *p, uint32_t step, he_vec3 *at)
 {
     uint32_t half = step / 2;

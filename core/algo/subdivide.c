@@ -8,10 +8,12 @@
 
 /* --- sizes --- */
 
-/* What all steps need to know about the mesh before the first step. */
+/* Properties of the mesh before a step that the step needs: its sizes, its feature edges, and the
+ * vertices that must not move. */
 typedef struct start {
     he_sizes sizes;
-    uint64_t *feature; /* one bit for each edge: set if the edge is a feature; NULL if no edge is */
+    /* a bit for each edge: set if the edge is a feature; NULL if there are no features */
+    uint64_t *feature;
     uint64_t *fixed;
 } start;
 
@@ -20,8 +22,8 @@ static he_status no_memory(const he_mesh *m, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to subdivide %u faces", m->c.faces.live);
 }
 
-/* Returns true if a vertex on the boundary has only one face: then its two boundary edges are all
- * its edges. */
+/* Returns true if a vertex is on the boundary and has only one face, so that it has only two
+ * edges. */
 static bool has_one_face(const he_content *c, uint32_t v)
 {
     uint32_t h = c->vertex_halfedge[v];
@@ -134,7 +136,8 @@ static void add(he_sizes *sizes, uint64_t vertices, uint64_t edges, uint64_t fac
     sizes->live_faces += faces;
 }
 
-/* Returns true if this step cuts sharp edges in three: every second step of sqrt3 does. */
+/* Returns true if this step cuts sharp edges into three parts: the scheme sqrt3 does so in every
+ * second step. */
 static bool cuts_in_three(he_scheme scheme, unsigned step)
 {
     return scheme == HE_SQRT3 && step % 2 == 1;
@@ -179,8 +182,9 @@ static uint64_t rows_of(const he_sizes *s)
     return s->vertices + s->edges + s->faces;
 }
 
-/* Computes the sizes after each step; fails if they are too large. A step multiplies sizes by at
- * most seven, so 64 bits are enough, and numbers of elements within the limit fit into ids. */
+/* Computes the sizes of the mesh after each step, or fails if a size is too large. A step
+ * multiplies each size by at most seven, so 64 bits cannot overflow. Sizes within the limit fit
+ * into 32-bit ids. */
 _Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS,
                "HE_SUBDIVIDE_ROWS must be below the number of ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
@@ -249,9 +253,10 @@ static void clear_step(he_subdivide_step *s)
     he_mem_free(s->corner_from);
 }
 
-/* Returns an array with the index of each live element among the live ones; NULL if none is
- * deleted, or if memory is out, which sets *failed. `link` has `stride` entries for each element;
- * the first of them is HE_DEAD if the element was deleted. */
+/* Returns an array that maps the id of each live element to the number of live elements before it.
+ * Returns NULL if no element is deleted, and also if memory is out; then *failed is set to true.
+ * `link` has `stride` entries for each element, of which the first is HE_DEAD if the element is
+ * deleted. */
 static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride, bool *failed)
 {
     if (rows->live == rows->issued) {
@@ -316,7 +321,8 @@ static he_status prepare(he_subdivide_step *s, he_error *err)
     return HE_OK;
 }
 
-/* Makes room for all rows of the finer mesh, without writing them. */
+/* Allocates memory for all elements of the finer mesh and sets their numbers; the links are written
+ * later. */
 static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 {
     he_reservation need = {.vertices = (uint32_t)sizes->vertices,
@@ -337,12 +343,13 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
     return HE_OK;
 }
 
-/* What one step of a subdivision does. */
+/* The parameters of one step of a subdivision. */
 typedef struct refinement {
     he_scheme scheme;
-    bool thirds;           /* the scheme is sqrt3, and this step cuts sharp edges in three */
+    /* true if the scheme is sqrt3 and this step cuts sharp edges into three parts */
+    bool thirds;
     const he_sizes *sizes; /* sizes of the finer mesh */
-    /* the reported progress (0 to 1) before this step (`done`) and after it (`to`) */
+    /* reported progress (0 to 1) when the step begins (`done`) and when it ends (`to`) */
     double done, to;
 } refinement;
 
@@ -376,7 +383,8 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement
     return status == HE_OK ? he_subdivide_attributes(s, err) : status;
 }
 
-/* Makes the finer mesh of content `c`, and finds which edges of the finer mesh are features. */
+/* Makes the finer mesh from the coarser mesh, whose arrays are `c`, and finds the feature edges of
+ * the finer mesh. */
 static he_status step(const he_mesh *m, const he_content *c, const refinement *r, start *at,
                       he_mesh **out, he_error *err)
 {

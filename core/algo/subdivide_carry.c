@@ -16,8 +16,8 @@ static bool has_columns(const he_content *c, he_kind domain)
     return false;
 }
 
-/* Makes an array of `count` ids that are all HE_NONE, if the mesh has attribute columns of this
- * domain (kind of element). */
+/* If the mesh has attributes of this domain (kind of element), makes an array of `count` ids that
+ * are all HE_NONE. */
 static bool reserve(const he_content *c, he_kind domain, uint32_t count, uint32_t **out)
 {
     if (!has_columns(c, domain)) {
@@ -77,7 +77,8 @@ static double get(const he_column *column, size_t row, uint32_t component)
     return 0;
 }
 
-/* Writes a number as the type of the column. Integers and booleans are rounded to nearest. */
+/* Stores a number in the type of the column. In columns of integers and booleans it is rounded to
+ * the nearest value. */
 static void put(he_column *column, size_t row, uint32_t component, double value)
 {
     unsigned char *at = he_column_row(column, row) + component * he_type_bytes(column->type);
@@ -110,7 +111,8 @@ static void put(he_column *column, size_t row, uint32_t component, double value)
 
 /* --- vertices --- */
 
-/* Computes a column of vertices with the rules for positions, three components at a time. */
+/* Computes the values of a vertex attribute in the finer mesh by the rules for positions, three
+ * components at a time. */
 static he_status smooth_column(const he_subdivide_step *s, const he_column *from, he_column *to,
                                he_error *err)
 {
@@ -129,7 +131,7 @@ static he_status smooth_column(const he_subdivide_step *s, const he_column *from
         }
         status = he_subdivide_place(s, before, after, err);
         for (uint32_t v = 0; v < fine && status == HE_OK; v++) {
-            /* In the rows of deleted elements the column keeps the attribute's default. */
+            /* The values of deleted vertices stay the default of the attribute. */
             if (s->to->vertex_halfedge[v] == HE_DEAD) {
                 continue;
             }
@@ -206,9 +208,8 @@ static he_status carry_corners(const he_subdivide_step *s, const he_column *from
                                he_error *err)
 {
     he_status status = HE_OK;
-    /* A new corner that copies another new corner has a higher id than that one, because the first
-     * new edge inside a face has the lowest id of these edges. So one pass in the order of ids
-     * suffices. */
+    /* A new corner may copy the value of another new corner. The copied corner always has the lower
+     * id, so a single pass in the order of ids finds its value already computed. */
     for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
         status = he_progress_at(s->progress, h, 2 * (uint64_t)s->to->edges.issued, err);
         fill_corner(s, from, to, h);
@@ -223,8 +224,10 @@ static bool is_feature(const he_column *column)
     return column->domain == HE_EDGE && he_is_mark(column, "feature");
 }
 
-/* Copies a column: old rows keep their value, and new rows with a parent get the parent's value
- * unless the attribute's rule is default. If `parents` is NULL, no row has a parent. */
+/* Computes a column of the finer mesh from a column of the coarser mesh. Old elements keep their
+ * values. A new element gets the value of its parent, an element of the coarser mesh, unless it has
+ * no parent or the attribute's rule is HE_DEFAULT. If `parents` is NULL, no new element has a
+ * parent. */
 static void carry_rows(const he_column *from, he_column *to, size_t issued, const uint32_t *parents)
 {
     for (size_t row = 0; row < to->rows; row++) {
@@ -297,8 +300,7 @@ he_status he_subdivide_attributes(const he_subdivide_step *s, he_error *err)
     if (to->columns == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes");
     }
-    /* Each column keeps its index (slot), because the records of other revisions refer to columns
-     * by it. */
+    /* Each column keeps its index (slot), because records of changes name columns by this index. */
     to->column_count = to->column_capacity = from->column_count;
     he_status status = HE_OK;
     for (size_t i = 0; i < from->column_count && status == HE_OK; i++) {

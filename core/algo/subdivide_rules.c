@@ -1,10 +1,11 @@
-/* subdivide_rules.c - computes the positions of vertices of a subdivided mesh. The weights are
- * those of the papers in subdivide.h; none is negative, so a refined mesh stays in the bounding box
- * of the old one.
+/* subdivide_rules.c - computes the positions of the vertices of a subdivided mesh. The weights are
+ * those of the papers in subdivide.h. No weight is negative, so a refined mesh stays in the
+ * bounding box of the coarser mesh.
  *
- * There are two passes. First the array `to` gets, for each old vertex, the sum that its rule
- * needs: over its neighbours (for catmull_clark also over the means of its faces) or, on a curve,
- * over its two neighbours on the curve. Then the vertex is moved. */
+ * Old vertices are computed in two passes. The first pass stores in the array `to`, for each old
+ * vertex, the sum that its rule needs: of the positions of its neighbours (for catmull_clark also
+ * of the means of its faces), or, if the vertex is on a curve of sharp edges, of its two neighbours
+ * on the curve. The second pass computes the new position from the sum and the old position. */
 #include "algo/subdivide_step.h"
 #include "base/parallel.h"
 
@@ -14,7 +15,7 @@
 
 enum { SMOOTH_AT_MOST = 1, CURVE = 2, CORNER = 3 };
 
-/* Returns s a + t b. */
+/* Returns the vector s * a + t * b. */
 static inline he_vec3 mix(double s, he_vec3 a, double t, he_vec3 b)
 {
     return (he_vec3){s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
@@ -24,8 +25,8 @@ static inline void gather(he_vec3 *to, he_vec3 what)
     *to = he_vec3_add(*to, what);
 }
 
-/* A subdivision rule: the new position of a smooth vertex is its old position times the first
- * weight, plus the sum over its neighbours times the second weight. */
+/* The weights of a subdivision rule. The new position of a vertex is `own` times its old position
+ * plus `sum` times the sum over its neighbours. */
 typedef struct weights {
     double own, sum;
 } weights;
@@ -54,7 +55,8 @@ static uint8_t sharpness(const he_subdivide_step *s, uint32_t v)
     return s->sharp == NULL ? 0 : s->sharp[v];
 }
 
-/* Adds each end of edge e to the sum of the other end, if the rule of that vertex needs it. */
+/* Adds the position of each end of edge e to the sum of the opposite end, if the rule for the
+ * opposite end needs it. */
 static inline void gather_ends(const he_subdivide_step *s, uint32_t e, const he_vec3 *from,
                                he_vec3 *to)
 {
@@ -85,7 +87,7 @@ static uint32_t middle(const he_subdivide_step *s, uint32_t e)
     return s->from->vertices.issued + he_subdivide_edge_rank(s, e);
 }
 
-/* --- points on edges, by scheme, and what an edge adds to the sums of its ends --- */
+/* --- points on edges, and what an edge adds to the sums of its two ends, for each scheme --- */
 
 static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
@@ -100,13 +102,14 @@ static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *fro
     to[middle(s, e)] = mix(0.375, ends, 0.125, he_vec3_add(from[left], from[right]));
 }
 
-/* Returns the mean of the corners of face f, which was stored in `to` before. */
+/* Returns the mean of the corners of face f, which place_centres has stored in `to`. */
 static he_vec3 face_point(const he_subdivide_step *s, uint32_t f, const he_vec3 *to)
 {
     return to[s->from->vertices.issued + s->from->edges.live + he_subdivide_face_rank(s, f)];
 }
 
-/* Returns the means of the two faces beside edge e; zero where there is no face. */
+/* Sets sides[k] to the mean of the corners of the face of half-edge k of edge e, or to zero if that
+ * half-edge has no face. */
 static void find_sides(const he_subdivide_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
 {
     const he_content *c = s->from;
@@ -149,16 +152,17 @@ static void linear_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *f
     to[middle(s, e)] = mix(0.5, a, 0.5, b);
 }
 
-/* Returns the point on a sharp edge at a third of the way from a to b; the sums of all vertices
- * must be complete. At the end of a curve the edge is extended straight beyond a. */
+/* Returns the point on a sharp edge that is nearer to a than to b, a third of the way along. If a
+ * is on a smooth curve of sharp edges, the point also depends on the neighbours of a on the curve,
+ * whose sum must be in to[a]; otherwise it lies on the straight line from a to b. */
 static he_vec3 third_from(const he_subdivide_step *s, uint32_t a, uint32_t b, const he_vec3 *from,
                           const he_vec3 *to)
 {
     if (sharpness(s, a) != CURVE) {
         return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
     }
-    /* The sum over the neighbours of a contains b once already, so here b gets the weight 9/27
-     * instead of 10/27. */
+    /* The rule gives b the weight 10/27. The sum over the neighbours of a contains b once, which
+     * contributes 1/27, so 9/27 remain. */
     return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), he_vec3_scale(to[a], 1.0 / 27));
 }
 
@@ -175,7 +179,7 @@ static void cut_in_thirds(const he_subdivide_step *s, const he_vec3 *from, he_ve
     }
 }
 
-/* The data that the parallel loops need for computing positions. */
+/* The arguments of the parallel loops that compute positions. */
 typedef struct placing {
     const he_subdivide_step *s;
     const he_vec3 *from;
@@ -195,7 +199,8 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     for (uint32_t n = 1; n < TABLE; n++) {
         table[n] = weights_of(s->scheme, n);
     }
-    /* The vertices of a curve whose edges are not cut in this step do not move. */
+    /* If the scheme is sqrt3, vertices on sharp curves move only in steps that cut the curves'
+     * edges. */
     weights curve = s->scheme != HE_SQRT3 ? (weights){0.75, 0.125}
                     : s->thirds           ? (weights){19.0 / 27, 4.0 / 27}
                                           : (weights){1, 0};
@@ -212,9 +217,8 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* Computes the vertices inside faces for catmull_clark and sqrt3. The id of the vertex inside a
- * face follows from the index of the face among the live faces; for sqrt3 it is listed in
- * `centre`. */
+/* Computes the new vertex inside each face, for catmull_clark and sqrt3. For sqrt3 its id is in
+ * `centre`; for catmull_clark it follows from the number of live faces before the face. */
 static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -237,7 +241,7 @@ static he_status place_centres(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* Computes the vertices inside faces for the scheme linear, where triangles have none. */
+/* Computes the new vertex inside each face that is no triangle, for the scheme linear. */
 static he_status place_some_centres(const placing *p, he_error *err)
 {
     const he_content *c = p->s->from;
@@ -274,15 +278,16 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
             linear_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_SQRT3:
-            /* cut_in_thirds places the points on sharp edges later, when the sums are complete */
+            /* cut_in_thirds computes the points on sharp edges later, when the sums of all vertices
+             * are complete */
             break;
         }
     }
     return HE_OK;
 }
 
-/* Adds up, for every vertex, the sum over its neighbours that the rule for the vertex needs. One
- * thread does this alone, because a floating-point sum depends on the order of its terms. */
+/* Adds up, for every vertex, the sum over its neighbours that the vertex's rule needs. Only one
+ * thread does this, because a floating-point sum depends on the order of its terms. */
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;

@@ -3,7 +3,7 @@
 #include "algo/subdivide_step.h"
 #include "base/parallel.h"
 
-/* The functions below return the parts of a half-edge h that is cut in halves:
+/* The functions below return the new vertex in the middle of half-edge h, and the halves of h:
  *
  *     half-edge h    o ----first(h)----> o ----second(h)----> o
  *                  origin              middle               target */
@@ -24,7 +24,7 @@ static uint32_t second(const he_subdivide_step *s, uint32_t h)
     return (h & 1) == 0 ? other_half(s, h) : h;
 }
 
-/* The ids that the next new elements of the face being cut will get. */
+/* The ids of the next new vertex, edge and face that are made when a face is cut. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -36,7 +36,8 @@ static void note_faces(const he_subdivide_step *s, uint32_t f, uint32_t first_fa
     }
 }
 
-/* Records how to compute the values of the new corners along h: at its origin and at its middle. */
+/* Records how to compute the corner values of the two halves of half-edge h: `first` leaves the
+ * origin of h, `second` leaves the middle of h. */
 static void note_corner(const he_subdivide_step *s, uint32_t h, uint32_t next)
 {
     s->corner_from[first(s, h)] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
@@ -53,8 +54,8 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
         m[i] = middle(s, h[i]);
         lo[i] = first(s, h[i]);
         hi[i] = second(s, h[i]);
-        /* The half-edge in the face from the middle of h[i] to the middle of the one before
-         * h[i]. */
+        /* The half-edge from the middle of h[i] to the middle of the half-edge before h[i]. It is
+         * in the new face at the origin of h[i]. */
         in[i] = 2 * (at->edge + i);
     }
     for (unsigned i = 0; i < 3; i++) {
@@ -77,8 +78,8 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
     at->face += 3;
 }
 
-/* Cuts face f into quads between its corners and a new vertex inside, to which edge i runs from the
- * middle of the i-th half-edge. */
+/* Cuts face f into quads, one at each of its corners, which all share a new vertex inside the face.
+ * The i-th new edge joins the middle of the face's i-th half-edge to this vertex. */
 static void cut_polygon(const he_subdivide_step *s, uint32_t f, uint32_t first_halfedge, fresh *at)
 {
     const he_content *from = s->from;
@@ -147,7 +148,7 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     return HE_OK;
 }
 
-/* Counts the new elements of face f, which must be live. */
+/* Counts the new elements that cutting face f makes. The face must be live. */
 static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
 {
     const he_content *from = s->from;
@@ -165,8 +166,9 @@ static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
     at->face += count - 1;
 }
 
-/* The data for cutting faces in lanes: consecutive ranges of faces that threads handle in parallel.
- * Each lane must know how many elements the lanes before it make. */
+/* The data for cutting faces in parallel. Each thread handles a lane, which is a range of
+ * consecutive faces. `at` has the ids that the next new elements of each lane get, so the elements
+ * of earlier lanes must be counted first. */
 typedef struct cutting {
     const he_subdivide_step *s;
     fresh at[HE_MOST_LANES];
@@ -190,8 +192,8 @@ static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, 
 {
     cutting *c = context;
     const he_subdivide_step *s = c->s;
-    /* The ids of this lane are copied, because those of several lanes share a cache line, and
-     * threads that write to one cache line slow each other down (false sharing). */
+    /* The lane works on a local copy of its ids. The entries of several lanes share a cache line,
+     * and threads that write to one cache line slow each other down (false sharing). */
     fresh at = c->at[lane];
     he_status status = HE_OK;
     for (size_t f = from; f < to && status == HE_OK; f++) {
@@ -226,9 +228,9 @@ static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error 
     if (status == HE_OK) {
         status = he_run_lanes(s->progress, lanes, from->faces.issued, cut_lane, &c, err);
     }
-    /* With several lanes, the error that is found first may be in a later face. Running again in
-     * one lane finds the error of the first face, so the result does not depend on the number of
-     * threads. */
+    /* If several lanes run in parallel, the reported error may be that of a later face. Running
+     * again with one lane finds the error of the first face, so that the result does not depend on
+     * the number of threads. */
     return lanes > 1 && status != HE_OK && status != HE_CANCELLED ? cut_faces(s, 1, err) : status;
 }
 
@@ -304,8 +306,8 @@ he_status he_subdivide_split(he_subdivide_step *s, he_error *err)
     const he_content *from = s->from;
     he_status status = cut_faces(s, he_lanes(s->progress, from->faces.issued), err);
     if (status == HE_OK) {
-        /* Feature flags are bits: neighbouring edges share a word, which two threads must not
-         * write, so this runs in one lane. */
+        /* Feature flags are single bits. The flags of neighbouring edges share a word, and two
+         * threads must not write to one word, so this loop runs on one thread. */
         status = s->feature != NULL
                      ? he_run_lanes(s->progress, 1, from->edges.issued, cut_edges, s, err)
                      : he_run_ranges(s->progress, from->edges.issued, cut_edges, s, err);

@@ -1,28 +1,32 @@
 /* subdivide_sqrt3.c - writes the links for the scheme sqrt3, which puts a vertex into every
  * triangle and flips the old edges.
  *
- * Each old half-edge h makes one new triangle: before edges are flipped, it is the one between h
- * and the `apex` of h, the vertex in its face. Two `legs`, edges inside the old face, join them:
+ * The left drawing shows an old half-edge h and the new triangle that belongs to it before old
+ * edges are flipped. The `apex` of h is the new vertex in the face of h. The other two sides of the
+ * new triangle are half-edges inside the old face, the `legs` of h. The right drawing shows a face
+ * with a sharp edge that is cut into three parts. Such a face gets no vertex inside; the points p
+ * and q on the sharp edge are the apexes of its half-edges j (from b to c) and k (from c to a).
  *
- *               apex(h)                   A sharp edge that is cut in three has a point p and a
- *                  o                      point q on it, and its face no vertex inside:
+ *               apex(h)
+ *                  o
  *      in_leg(h) .' '.  out_leg(h)
- *      runs    .'     '.  runs up                c                  apex(j) = q, of j from b to c
- *      down   v    h     '.                      o                  apex(k) = p, of k from c to a
+ *      runs    .'     '.  runs up                c                  apex(j) = q
+ *      down   v    h     '.                      o                  apex(k) = p
  *            o----------->o                   k /|\ j               out_leg(j) = c to q
  *         origin        target                 / | | \              in_leg(j) = q to b
  *                                             /  | |  \             out_leg(k) = a to p
  *                                          a o---o-o---o b          in_leg(k) = p to c
- *                                                p q                and the triangle p, q, c
+ *                                                p q                third triangle: p, q, c
  *
- * A flipped half-edge h runs from the apex of its twin to its own; its triangle is at its old
- * origin. */
+ * Flipping an old edge changes its half-edge h: h then runs from the apex of twin(h) to the apex of
+ * h, in the new triangle at the old origin of h. */
 #include "algo/subdivide_step.h"
 
 /* A face of the coarse mesh and its three half-edges. */
 typedef struct triangle {
     uint32_t f, h[3];
-    unsigned cut; /* index of the half-edge whose edge is cut in three; 3 if there is none */
+    /* index in `h` of the half-edge whose edge is cut into three parts; 3 if there is none */
+    unsigned cut;
 } triangle;
 
 enum { NO_CUT = 3 };
@@ -46,8 +50,8 @@ static unsigned place_of(const triangle *t, uint32_t h)
     return h == t->h[0] ? 0 : h == t->h[1] ? 1 : 2;
 }
 
-/* Each half-edge h of a sharp edge is cut into three. Returns the j-th of these half-edges, and the
- * vertex where it ends (for j < 2). */
+/* A sharp edge is cut into three parts. segment() returns part j (0 to 2) of half-edge h, and
+ * point() the new vertex at which part j ends (j = 0 or 1). */
 static uint32_t segment(const he_subdivide_step *s, uint32_t h, unsigned j)
 {
     uint32_t e = h >> 1, side = h & 1, more = s->from->edges.issued + 2 * s->third[e];
@@ -89,8 +93,8 @@ static uint32_t in_leg(const he_subdivide_step *s, uint32_t h)
     return i == (t.cut + 1) % 3 ? segment(s, t.h[t.cut], 2) : 2 * s->spoke[t.f];
 }
 
-/* Returns how to compute the values of the corner at the apex of h, the new vertex in the face of
- * h. */
+/* Returns how to compute the attribute values of a new corner at the apex of h, the new vertex in
+ * the face of h. */
 static he_corner_source at_apex(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
@@ -107,8 +111,8 @@ static he_corner_source at_row(uint32_t h)
     return (he_corner_source){h, HE_NONE, HE_FROM_ROW};
 }
 
-/* One corner of a new triangle: its half-edge, the vertex that this half-edge leaves, and how to
- * compute its values. */
+/* A corner of a new triangle: its half-edge, the origin of this half-edge, and how to compute the
+ * attribute values of the corner. */
 typedef struct corner {
     uint32_t h, origin;
     he_corner_source source;
@@ -127,7 +131,7 @@ static void put(const he_subdivide_step *s, uint32_t face, const corner c[3])
     s->to->face_halfedge[face] = c[0].h;
 }
 
-/* Writes the triangle between the i-th half-edge of an old face and its apex. */
+/* Writes the new triangle that belongs to half-edge i of an old face. */
 static void put_part(const he_subdivide_step *s, const triangle *t, unsigned i, uint32_t face)
 {
     const he_content *from = s->from;
@@ -175,7 +179,7 @@ static void put_face(const he_subdivide_step *s, uint32_t f)
     }
 }
 
-/* Writes a boundary half-edge, which stays or is cut in three. */
+/* Writes the links of a boundary half-edge, or of its three parts if it is cut. */
 static void put_boundary(const he_subdivide_step *s, uint32_t h)
 {
     const he_content *from = s->from;
@@ -240,7 +244,7 @@ static void put_vertex(const he_subdivide_step *s, uint32_t v)
     s->to->vertex_halfedge[v] = h;
 }
 
-/* Numbers the new elements in the order that the head of subdivide.h states. */
+/* Assigns ids to the new elements, in the order that subdivide.h states. */
 static he_status find_places(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
