@@ -22,23 +22,17 @@ void he_mem_set_hook(const he_mem_hook *replacement)
     hook = replacement != NULL ? *replacement : (he_mem_hook){library_resize, NULL};
 }
 
-/* Reading a large mesh whose ids are in no spatial order misses the TLB as often as the caches.
- * Transparent huge pages avoid the TLB misses, and the system uses them only where madvise asks for
- * them. The advice covers every page of the block, because a mapping of which one part has other
- * flags cannot be moved when it grows, only copied.
- *
- * If the C library gets a block by mmap, the block begins in the first page of the mapping,
- * directly behind the library's HEADER bytes. A large block anywhere else lies in the heap and gets
- * no advice: the advice would stay on its pages after it is freed, and small blocks allocated there
- * later would take 2 MiB each. */
+/* If the ids of a large mesh are in no spatial order, reading it misses the TLB as often as the
+ * caches. Transparent huge pages avoid the TLB misses; the system uses huge pages only where
+ * madvise asks for them. The call covers every page of the block, because the system can move a
+ * mapping to grow it only if all its pages have equal flags; otherwise it must copy the bytes. */
 enum { PAGE = 4096, LARGE_BLOCK = 4 << 20, HEADER = 2 * sizeof(size_t) };
 
 static void ask_for_huge_pages(void *memory, size_t size)
 {
     size_t before = (uintptr_t)memory % PAGE, length = (before + size + PAGE - 1) / PAGE * PAGE;
     if (before <= HEADER) {
-        /* The result of madvise is ignored, because without huge pages everything works, only
-         * slower. */
+        /* The result of madvise is ignored: without huge pages the program only runs slower. */
         (void)madvise((char *)memory - before, length, MADV_HUGEPAGE);
     }
 }
@@ -131,7 +125,7 @@ void he_ids_reverse(he_ids *list)
     }
 }
 
-/* Up to this many ids are sorted by insertion, more by radix sort. */
+/* Up to FEW ids are sorted by insertion, more ids by radix sort. */
 enum { FEW = 96 };
 
 static void sort_few(uint32_t *ids, size_t count)

@@ -7,8 +7,8 @@ static const he_parallel *host_of(const he_progress *progress)
                : NULL;
 }
 
-/* Runs the parts of a job on the threads of the host (parallel.h), or on the caller's thread if
- * there is no host. `progress`, if not NULL, gets a report between parts. */
+/* Runs the parts of a job on the threads of `host` (parallel.h). If there is no host, all parts run
+ * on the calling thread. If `progress` is not NULL, progress is reported after each part. */
 static he_status run(const he_parallel *host, he_progress *progress, uint32_t parts, he_part part,
                      void *context, he_error *err)
 {
@@ -58,8 +58,8 @@ he_status he_run_ranges(he_progress *progress, size_t count, he_range work, void
 typedef struct lanes {
     he_range work;
     void *context;
-    /* numbers of rows: in the whole job (`count`), in each lane (`length`), and already done in
-     * each lane (`done`) */
+    /* `count`: number of indices that the whole loop runs over; `length`: number of indices in each
+     * lane; `done`: number of indices that each lane has handled so far */
     size_t count, length, done;
 } lanes;
 

@@ -41,8 +41,8 @@ he_status he_report_fail(const he_report *report, he_error *err)
                    (unsigned long long)(report->total - 1));
 }
 
-/* Makes a half-edge column from a corner column of the soup; halfedge[c] is the half-edge of
- * corner c. */
+/* Makes a half-edge attribute of the mesh from a corner attribute of the soup. halfedge[c] is the
+ * half-edge of corner c. */
 static he_status build_corners(const he_column *from, size_t halfedges, const uint32_t *halfedge,
                                size_t corners, he_column **out, he_error *err)
 {
@@ -58,9 +58,9 @@ static he_status build_corners(const he_column *from, size_t halfedges, const ui
     return HE_OK;
 }
 
-/* Makes the attributes of the mesh. If the soup may be emptied (`take`), columns are moved instead
- * of copied, except those of corners, because half-edges are not numbered like corners. Moving
- * cannot fail, so it comes last. */
+/* Makes the attributes of the mesh from those of the soup. If `take` is true, columns are moved to
+ * the mesh instead of copied. Columns of corners are always copied, because half-edges have other
+ * numbers than corners. Columns are moved last, because moving cannot fail. */
 static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
                                he_error *err)
 {
@@ -98,8 +98,8 @@ static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedg
     return HE_OK;
 }
 
-/* Makes the vertices. If the soup may be emptied (`take`), their positions are moved instead of
- * copied, because they are the largest part of the soup. */
+/* Makes the vertices of the mesh. If `take` is true, their positions, the largest part of a soup,
+ * are moved to the mesh instead of copied. */
 static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_error *err)
 {
     size_t count = soup->vertex_count;
@@ -145,8 +145,8 @@ static void return_positions(he_soup *soup, he_content *k)
 static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_swings *swings,
                              he_content *k, he_error *err)
 {
-    /* The array `spare` of he_swings becomes the array `next` of the mesh, because its memory has
-     * been written to before: the system clears each fresh page on first use. */
+    /* The array `spare` becomes the array `next` of the mesh. Its memory was written to before, and
+     * fresh memory would be slower: the system clears each page when it is first used. */
     k->next = swings->spare;
     swings->spare = NULL;
     he_status status = he_content_reserve_edges(k, swings->edges, err);
@@ -162,8 +162,8 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
     return status == HE_OK ? build_columns(soup, take, swings->swing, k, err) : status;
 }
 
-/* Finds the swing of each corner (swing.h). If the soup has defects, finds all of them instead:
- * invalid faces first, then edges and fans. */
+/* Finds the swing of each corner, which is the next corner around its vertex (swing.h). If the soup
+ * has defects, reports all of them: first invalid faces, then invalid edges and fans. */
 static he_status find_swings(const he_soup *soup, he_corners *corners, he_swings *swings,
                              he_report *report, uint64_t *total, he_error *err)
 {

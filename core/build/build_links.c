@@ -3,25 +3,28 @@
 #include "base/parallel.h"
 #include "build/soup_check.h"
 
-/* The state of the passes over corners, edges and vertices that make the links. Each pass writes
- * array entries in order and reads others at random, because where ids are in no spatial order, a
- * random read costs a third of a random write. Until half-edge h gets its links, next[h] is the
- * corner that h leaves. */
+/* The data of the passes over corners, edges and vertices that write the links of the mesh. A pass
+ * writes array entries in the order of their index and reads entries of other arrays in any order:
+ * if ids are in no spatial order, a random read takes a third of the time of a random write. Until
+ * the links of half-edge h are written, next[h] is the corner of h. */
 typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;
     he_content *c;
-    /* swing of each corner (swing.h); once edges are numbered, the half-edge of each corner */
+    /* the swing of each corner (next corner around its vertex, swing.h); overwritten by
+     * name_halfedges with the half-edge of each corner */
     uint32_t *swing;
     uint32_t *first; /* first corner of each vertex */
     uint32_t lanes;
-    uint32_t edges[HE_MOST_LANES]; /* number of the first edge of each lane (parallel.h) */
+    /* For each lane, which is a range of faces that one thread handles (parallel.h): first the
+     * number of its edges, then the id of its next edge. */
+    uint32_t edges[HE_MOST_LANES];
 } linking;
 
 /* --- numbers of edges ------------------------------------------------------------------------- */
 
-/* Returns true if a corner is the first corner of its edge. Edges are numbered in the order of
- * their first corners. */
+/* Returns true if a corner is the first corner along its edge. Its mate is the corner in the
+ * adjacent face along this edge. Edges are numbered in the order of their first corners. */
 static inline bool is_first(uint32_t corner, uint32_t mate)
 {
     return mate == HE_NONE || mate > corner;
@@ -63,7 +66,7 @@ static he_status number_edges(void *context, uint32_t lane, size_t from, size_t 
     return HE_OK;
 }
 
-/* Replaces each lane's count of edges by the number of the first edge of that lane. */
+/* Replaces the number of edges of each lane (range of faces) by the id of the lane's first edge. */
 static void place_edges(linking *l)
 {
     uint32_t at = 0;
@@ -163,8 +166,8 @@ static he_status link_faces(void *context, uint32_t part, size_t from, size_t to
 
 /* --- holes ------------------------------------------------------------------------------------ */
 
-/* Lists the `count` boundary half-edges. All their ids are odd, because half-edge 2e has the face
- * in which edge e first appeared. */
+/* Lists the ids of the `count` boundary half-edges. A boundary half-edge always has an odd id,
+ * because half-edge 2e is in the face in which edge e first appeared. */
 static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
 {
     for (uint32_t h = 1; count > 0; h += 2) {
@@ -175,8 +178,9 @@ static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
     }
 }
 
-/* Stores boundary half-edges as halfedge(v) of their origins. If several leave one vertex, they
- * become a list that begins at halfedge(v) and goes on by prev. */
+/* Stores each boundary half-edge as the half-edge vertex_halfedge[v] of its origin v. If several
+ * boundary half-edges leave one vertex, they form a linked list: the first is vertex_halfedge[v],
+ * and prev[h] is the one after h. */
 static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -186,10 +190,11 @@ static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
     }
 }
 
-/* Links the fans of a bow-tie (a vertex with several fans). Its outgoing boundary half-edges form a
- * list that begins at `head` and goes on by prev; each fan is followed, counter-clockwise, by the
- * fan of the next half-edge in the list. Swinging clockwise inside a fan from its outgoing boundary
- * half-edge leads to its incoming one. */
+/* Links the boundary half-edges at a bow-tie, a vertex with several fans of faces. The boundary
+ * half-edges that leave the vertex, one for each fan, form a linked list: the first is `head`, and
+ * prev[h] is the one after h. The fans follow one another counter-clockwise in the order of this
+ * list. Within each fan, the inner loop goes from the outgoing boundary half-edge clockwise to the
+ * incoming boundary half-edge. */
 static void link_bowtie(he_content *k, uint32_t head)
 {
     uint32_t out = head;

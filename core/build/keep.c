@@ -18,11 +18,11 @@ static bool holds_default(const he_column *column, size_t row)
 typedef struct joining {
     he_soup *soup;
     const uint32_t *into, *from;
-    bool *has_corners; /* true for each vertex that a corner uses */
+    bool *has_corners; /* true for each vertex at which a face has a corner */
 } joining;
 
-/* Returns true if vertex v has corners, and another value than the vertex to which it is joined. In
- * an attribute whose rule is HE_DEFAULT the default counts as no value. */
+/* Returns true if merging vertex v into another vertex would change the value of an attribute at
+ * the corners of v. If the attribute's rule is HE_DEFAULT, the default value counts as no value. */
 static bool differs(const joining *j, const he_column *column, uint32_t v)
 {
     const unsigned char *value = he_column_value(column, v);
@@ -50,8 +50,8 @@ static he_column *find_column(const he_soup *soup, he_kind domain, const char *n
     return NULL;
 }
 
-/* Returns true if the corner attribute `corners` already holds the values that would be lost: those
- * of `column` at vertices joined to a vertex with another value. */
+/* Returns true if the corner attribute `corners` already has the values that merging vertices would
+ * remove from the vertex attribute `column`. */
 static bool is_kept(const joining *j, const he_column *corners, const he_column *column)
 {
     const he_soup *soup = j->soup;
@@ -64,8 +64,8 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* Adds the corner column `takes` to the soup, and removes the vertex attribute `column` unless
- * `stays` is true. */
+/* Adds the corner attribute `takes` to the soup. Removes the vertex attribute `column`, from which
+ * it was made, unless `stays` is true. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {
@@ -106,8 +106,8 @@ static he_status add_corners(he_soup *soup, he_column *column, const char *name,
     return status;
 }
 
-/* Returns true if a vertex without corners has a value other than the default, so that the vertex
- * attribute must stay beside the one of corners. */
+/* Returns true if a vertex at which no face has a corner has a value other than the default. Then
+ * the vertex attribute must stay although its values were copied to a corner attribute. */
 static bool is_needed(const joining *j, const he_column *column)
 {
     size_t v = 0;

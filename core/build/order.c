@@ -12,7 +12,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to order %zu faces", soup->face_count);
 }
 
-/* Moves row i of a column to row to[i], for all rows. */
+/* Moves each row i of a column to row to[i]. */
 static he_status move_rows(he_column *column, const uint32_t *to, size_t rows, he_error *err)
 {
     he_column *moved = NULL;
@@ -32,7 +32,8 @@ static he_status move_rows(he_column *column, const uint32_t *to, size_t rows, h
     return HE_OK;
 }
 
-/* Computes the first corner of each face in the new order, and the new index of each corner. */
+/* Computes where the corners of each face begin after faces are renumbered, and the new index of
+ * each corner. */
 static void place(const he_soup *soup, const uint32_t *number, uint32_t *starts, uint32_t *to)
 {
     size_t faces = soup->face_count;

@@ -18,7 +18,7 @@ static bool is_proper(const he_soup *soup, size_t f, uint32_t *stamp)
            he_soup_find_repeat(soup->corners + begin, count, stamp, (uint32_t)f + 1) == count;
 }
 
-/* Copies the valid faces of a soup to `out`, and lists their numbers in `from`. */
+/* Copies the valid faces of a soup to `out` and lists their numbers in the soup in `from`. */
 static he_status copy_proper(const he_soup *soup, he_soup *out, he_ids *from, he_error *err)
 {
     uint32_t *stamp = he_mem_zero(soup->vertex_count + 1, sizeof *stamp);
@@ -51,8 +51,8 @@ static he_status check(const he_soup *proper, he_report *report, uint64_t *total
     return status;
 }
 
-/* Appends to `report` the defects in `rest`, which were found in a soup of the valid faces alone;
- * their face numbers are changed to those in the whole soup. */
+/* Appends the defects in `rest` to `report`. They were found in a soup of only the valid faces, so
+ * their face numbers are replaced by those in the original soup. */
 static void append(const he_report *rest, const he_ids *from, he_report *report, uint64_t *total)
 {
     uint64_t told = 0;

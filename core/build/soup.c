@@ -1,4 +1,5 @@
-/* soup.c - fills a polygon soup within its limits: he_soup of build.h. */
+/* soup.c - fills a polygon soup (a list of faces that are not linked yet) within its limits:
+ * he_soup of build.h. */
 #include "build/build.h"
 
 #include <math.h>
@@ -32,17 +33,17 @@ static size_t bytes_of(const he_soup *soup)
            (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
 }
 
-/* One of the growing arrays of a soup: that of vertices, faces or corners. */
+/* One of the growing arrays of a soup: vertices, faces or corners. */
 typedef struct rows {
     void *array;
-    size_t size; /* bytes of a row */
+    size_t size; /* bytes of an entry */
     size_t count, capacity;
-    uint64_t limit;   /* how many entries the soup may have; 0: as many as `most` */
-    uint64_t most;    /* how many entries a mesh can have */
-    const char *name; /* for messages */
+    uint64_t limit;   /* most entries that the soup may have; 0: only `most` limits them */
+    uint64_t most;    /* most entries that a mesh can have */
+    const char *name; /* name of the entries in messages */
 } rows;
 
-/* Makes room for one more entry of an array. */
+/* Makes sure that the array has memory for one more entry. */
 static he_status grow(const he_soup *soup, rows *r, he_error *err)
 {
     uint64_t allowed = r->limit != 0 && r->limit < r->most ? r->limit : r->most;

@@ -80,17 +80,17 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
     return status;
 }
 
-/* A corner as an entry in the list of a vertex. The edge of a corner runs to the next corner of its
- * face; the corner is in the list of that end of its edge which has the smaller id. `far` is the
- * other end; its top bit is set if the corner's half-edge leaves `far`. */
+/* A corner, sorted into the list of a vertex. The half-edge of the corner runs to the next corner
+ * of its face; the list is that of the end with the smaller id. `far` is the id of the opposite
+ * end; its top bit is set if the half-edge begins there. */
 typedef struct filed {
     uint32_t far, corner;
 } filed;
 
 #define DOWNWARD 0x80000000u
 
-/* Sorts all corners by the end of their edge that has the smaller id (bucket sort): the entries of
- * vertex v begin at starts[v] and end before starts[v + 1]. */
+/* Sorts all corners by that end of their half-edge which has the smaller id. Afterwards the entries
+ * of vertex v begin at starts[v] and end before starts[v + 1]. */
 static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entries, he_error *err)
 {
     const size_t faces = soup->face_count;
@@ -125,15 +125,16 @@ static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entr
 
 typedef struct pairing {
     const he_soup *soup;
-    /* for each corner the other corner along its edge; NULL if edges are to be numbered instead */
+    /* for each corner the corner of the adjacent face along its edge; NULL if edges are numbered
+     * instead */
     uint32_t *mate;
-    uint32_t *edge; /* number of each corner's edge, if edges are numbered */
+    uint32_t *edge; /* id of each corner's edge, if edges are numbered */
     size_t edges;
     he_report *report;
     uint64_t *total;
 } pairing;
 
-/* Begins a new edge, along which entry `a` is the first corner. */
+/* Begins a new edge; entry `a` is its first corner. */
 static void begin_edge(pairing *p, const filed *a)
 {
     if (p->mate == NULL) {
@@ -142,8 +143,8 @@ static void begin_edge(pairing *p, const filed *a)
     p->edges++;
 }
 
-/* Pairs entry `b` with the earlier entry `a`, which is the first corner along the same edge. If
- * edges are numbered instead, gives `b` the number of that edge. */
+/* Makes the corners of entries `a` and `b` mates; they are along one edge, and `a` is the first
+ * corner there. If edges are numbered instead, assigns the id of this edge to the corner of `b`. */
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;
@@ -183,10 +184,10 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
     }
 }
 
-/* Pairs the entries of a vertex of high degree; the entries of vertex v begin at starts[v] and end
- * before starts[v + 1]. `first` remembers for every vertex at the far end of an edge the first
- * entry that named it. Values left in `first` by earlier calls do not point to entries of this
- * vertex, so the array needs no clearing. */
+/* Finds the corners that are along one edge, at a vertex `low` of high degree, whose entries begin
+ * at starts[low] and end before starts[low + 1]. first[v] is the first entry of `low` whose edge
+ * leads to vertex v. It may also be an entry of a vertex that was handled earlier, but such an
+ * entry is outside this range, so the array needs no clearing. */
 static void pair_large(pairing *p, uint32_t low, const filed *entries, const uint32_t *starts,
                        uint32_t *first)
 {
@@ -207,7 +208,8 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Pairs or numbers the corners along each edge, which are visited in the order of the soup. */
+/* Visits all edges in the order of the vertices, and finds the mates of their corners or numbers
+ * the edges. */
 static he_status visit_edges(pairing *p, he_error *err)
 {
     const he_soup *soup = p->soup;
@@ -232,8 +234,8 @@ static he_status visit_edges(pairing *p, he_error *err)
         if (status != HE_OK) {
             goto out;
         }
-        /* The words of `written` are prefetched, because they lie far apart if the ids of vertices
-         * are in no spatial order. */
+        /* The words of `written` that the loop will write are prefetched: if the ids of vertices
+         * are in no spatial order, these words lie far apart. */
         for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
             __builtin_prefetch(&written[entries[i + AHEAD].corner], 1);
         }

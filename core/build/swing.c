@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Flags that say what a part of the parallel work has found in its faces or vertices. */
+/* Flags that say what was found in a range of faces or vertices. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
 enum { SMALL_VERTEX = 24 };
@@ -15,21 +15,21 @@ typedef struct swinging {
     const he_soup *soup;
     const he_corners *corners;
     uint32_t lanes;
-    /* A table with a row for each lane (a part of the parallel work, parallel.h) and a column for
-     * each vertex: at first the number of the lane's corners at the vertex, later the index in
-     * `filed` where the next of these corners goes. */
+    /* An entry for each pair of a lane and a vertex; a lane is a range of faces that one thread
+     * handles (parallel.h). The entry is first the number of corners of the lane at the vertex,
+     * later the index in `filed` at which the next of these corners is stored. */
     uint32_t *places;
     uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *swing, *first;
-    unsigned char *found; /* the flags that each part of the work has found */
-    size_t *matched;      /* number of corners that have a swing, in each part of the work */
-    unsigned all;         /* the flags that at least one part of the work has found */
+    unsigned char *found; /* the flags found in each range of the parallel loop */
+    size_t *matched;      /* number of corners with a swing, for each range of the parallel loop */
+    unsigned all;         /* the flags found in any range */
 } swinging;
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* Checks a face of few corners. Where the function is inlined for triangles and quads, `count` is a
- * constant. */
+/* Checks a face with few corners. The function is inlined for triangles and quads, where `count` is
+ * a constant. */
 static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = 0;
@@ -42,7 +42,8 @@ static inline unsigned check_small(const uint32_t *corners, uint32_t count, size
     return BAD_FACE * bad;
 }
 
-/* Checks a face, except for repeated corners of large faces, which he_soup_check_faces finds. */
+/* Checks a face. In a large face, repeated corners are not found; he_soup_check_faces finds them
+ * later. */
 static unsigned check_face(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = 0;
@@ -55,7 +56,8 @@ static unsigned check_face(const uint32_t *corners, uint32_t count, size_t verti
     return bad != 0 ? BAD_FACE : LARGE_FACE;
 }
 
-/* Checks the faces and counts the corners of each vertex. */
+/* Checks the faces of a lane (range of faces), and counts the corners of the lane at each
+ * vertex. */
 static he_status count_corners(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     swinging *t = context;
@@ -65,7 +67,8 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     (void)err;
     for (size_t f = from; f < to; f++) {
         const uint32_t first = soup->starts[f], count = he_soup_end(soup, f) - first;
-        if (count < 3) { /* if no face has a corner, there is no array of corners */
+        /* this test also protects a soup without corners, which may have no array of corners */
+        if (count < 3) {
             found |= BAD_FACE;
             break;
         }
@@ -84,8 +87,8 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     return HE_OK;
 }
 
-/* Turns the counts of corners in `places` into indices of `filed`: corners are sorted by vertex,
- * and at one vertex by lane, which is the order of the soup. */
+/* Replaces the counts in `places` by indices of `filed`, so that corners will be sorted by vertex,
+ * and at each vertex in the order of the soup. */
 static void place_corners(swinging *t)
 {
     const size_t vertices = t->soup->vertex_count;
@@ -113,9 +116,8 @@ static he_status file_corners(void *context, uint32_t lane, size_t from, size_t 
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-/* Returns the index in `filed` at which the corners of vertex v begin. `places` has that index in
- * the entry of the vertex before v, because sorting has advanced each entry of `places` to the end
- * of its corners. */
+/* Returns the index in `filed` at which the corners of vertex v begin. It is the index at which the
+ * corners of vertex v - 1 end, because sorting has advanced the entries of `places` to the ends. */
 static uint32_t begin_of(const swinging *t, size_t v)
 {
     return v == 0 ? 0 : t->places[(t->lanes - 1) * t->soup->vertex_count + v - 1];
@@ -126,12 +128,12 @@ static uint32_t end_of(const swinging *t, size_t v)
     return t->places[(t->lanes - 1) * t->soup->vertex_count + v];
 }
 
-/* Returns true if the open fans of a vertex contain all its corners. `follow` leads from each
- * corner to its swing (the next corner counter-clockwise), or is `count` if it has none. */
+/* Returns true if every corner of a vertex belongs to an open fan. follow[i] is the swing of corner
+ * i (next corner counter-clockwise); it is `count` if corner i has no swing. */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
-    /* `entered` has a bit for each corner, set if it is the swing of another one; `met` counts the
-     * corners reached */
+    /* `entered`: a bit for each corner, set if the corner is the swing of another corner; `met`:
+     * number of corners that belong to open fans */
     uint32_t entered = 0, met = 0;
     for (uint32_t i = 0; i < count; i++) {
         entered |= follow[i] < count ? 1u << follow[i] : 0;
@@ -159,8 +161,8 @@ static bool leads_twice(const uint32_t *to, uint32_t count)
  * processor. */
 typedef uint32_t four __attribute__((vector_size(16)));
 
-/* Sets follow[i] to the last k for which to[k] equals from[i], or to `count` if there is none. All
- * three arrays have SMALL_VERTEX words. */
+/* Sets follow[i] to the last k for which to[k] equals from[i], or to `count` if there is no such k.
+ * The three arrays have room for SMALL_VERTEX words. */
 static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
 {
     for (uint32_t begin = 0; begin < count; begin += 8) {
@@ -176,15 +178,16 @@ static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint
     }
 }
 
-/* The vertices before and behind each corner of a vertex, in the face of that corner. */
+/* For each corner at a vertex, the vertex before it and the vertex behind it in its face. */
 typedef struct neighbours {
     uint32_t before[SMALL_VERTEX], behind[SMALL_VERTEX];
 } neighbours;
 
-/* Finds the swings around a vertex of few corners, and what is wrong there. If the swings form one
- * ring, nothing is wrong; otherwise the reason is searched. No branch depends on the ids, since
- * branches on irregular ids would be mispredicted. If two faces run along an edge in the same
- * direction, two corners of this vertex lead to the same other vertex. */
+/* Finds the swings (swing.h) of the corners at a vertex that has few corners, and returns flags for
+ * what is wrong there. If the swings form a single ring, nothing is wrong; otherwise the cause is
+ * found out. The loops have no branches that depend on ids, because irregular ids make such
+ * branches slow. Two faces run along an edge in one direction if two corners of this vertex have
+ * equal vertices behind them. */
 static unsigned swing_few(const swinging *t, const uint32_t *filed, uint32_t count,
                           const neighbours *beside, size_t *matched)
 {
@@ -220,17 +223,18 @@ static inline void find_beside(const swinging *t, const uint32_t *filed, uint32_
     }
 }
 
-/* The swings of a vertex of high degree, whose corners are its entries in `filed`. `leads` has for
- * every other vertex the entry whose half-edge leads to it, `follows` for each entry the next entry
- * around the vertex; `entered` has a bit for each entry that follows another. Values left by
- * earlier vertices do not point to entries of this one, so the arrays need no clearing. */
+/* Buffers for finding the swings of the corners at a vertex of high degree. `leads`: for each
+ * neighbour, the index in `filed` of the corner whose half-edge leads to it. `follows`: for each
+ * corner, the index of its swing (next corner around the vertex). `entered`: a bit for each corner,
+ * set if it is the swing of another corner. Values left by other vertices lie outside the range of
+ * this vertex, so the arrays need no clearing. */
 typedef struct hub_swings {
     uint32_t *leads, *follows;
     uint64_t *entered;
 } hub_swings;
 
-/* Returns the number of corners of the fan that begins with entry `from`. It stops counting above
- * `most`, because an invalid fan may run in a circle that never returns to its beginning. */
+/* Returns the number of corners of the fan that begins at index `from`, or `most` + 1 if there are
+ * more than `most`: the swings of invalid faces may form a circle that never returns to `from`. */
 static uint32_t fan_length(const hub_swings *hub, uint32_t from, uint32_t end, uint32_t most)
 {
     uint32_t k = from, met = 0;
@@ -295,8 +299,8 @@ static inline void swing_range(swinging *t, uint32_t part, size_t from, size_t t
     uint32_t begin = begin_of(t, from), end;
     for (size_t v = from; v < to; v++, begin = end) {
         end = end_of(t, v);
-        /* Words of `corners` and `swing` are prefetched, because they lie far apart if the ids of
-         * vertices are in no spatial order. */
+        /* Words of `corners` and `swing` that the loop will use are prefetched: if the ids of
+         * vertices are in no spatial order, these words lie far apart. */
         for (uint32_t i = begin; i < end && last - i > AHEAD; i++) {
             __builtin_prefetch(&corners[filed[i + AHEAD]]);
             __builtin_prefetch(&t->swing[filed[i + AHEAD]], 1);
@@ -338,10 +342,10 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Visits vertices a second time, on one thread: those with many corners, because they share the
- * arrays of hub_swings; with `all` every vertex, to report which have a closed fan beside another
- * fan. Vertices at the ends of invalid edges are not reported, because their fans are not
- * defined. */
+/* Finds the swings at vertices of many corners, one vertex after another, because these vertices
+ * share the arrays of hub_swings. If `all` is true, also checks every other vertex again, to report
+ * those at which a closed fan is beside another fan. Vertices at invalid edges are not reported,
+ * because they have no well-defined fans. */
 static he_status swing_again(swinging *t, bool all, he_report *report, uint64_t *total,
                              he_error *err)
 {
@@ -380,7 +384,7 @@ static he_status swing_again(swinging *t, bool all, he_report *report, uint64_t 
     return status;
 }
 
-/* Collects the flags that the parts have found. */
+/* Combines the flags that were found in the ranges of a parallel loop. */
 static void gather(swinging *t, size_t parts)
 {
     for (size_t i = 0; i < parts; i++) {
@@ -473,8 +477,9 @@ he_status he_soup_swing(const he_corners *corners, he_swings *out, he_report *re
         for (size_t i = 0; i < he_ranges(soup->vertex_count); i++) {
             matched += t.matched[i];
         }
-        /* Each corner of a face stands for one of its edges. An edge with two faces is thus counted
-         * twice, and gives two corners a swing: so half of the number of swings is subtracted. */
+        /* The number of corners is the number of pairs of a face and one of its edges. An edge with
+         * two faces is counted twice there, and it gives two corners a swing. So half of the number
+         * of swings is subtracted. */
         *out = (he_swings){t.swing, t.first, t.filed, soup->corner_count - matched / 2};
         t.swing = t.first = t.filed = NULL;
     }

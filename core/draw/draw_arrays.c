@@ -9,18 +9,18 @@
 
 /* --- the frame --- */
 
-/* Returns the least exponent for which `half`, half of the longest side of a box, is at most
- * 2^exponent. */
+/* Returns the smallest exponent for which 2^exponent is at least `half`, which is half of the
+ * longest side of a box. */
 static int exponent_of(double half)
 {
     int exponent = 0;
     double part = frexp(half, &exponent);
-    /* if `part` is 0.5, `half` itself is a power of two */
+    /* if `part` is 0.5, `half` is a power of two */
     return part == 0.5 ? exponent - 1 : exponent;
 }
 
-/* Rounds a number to the nearest multiple of 2^exponent. A number so large that it must be such a
- * multiple already is returned as it is, because scaling it could overflow. */
+/* Rounds a number to the nearest multiple of 2^exponent. Numbers so large that they must be such
+ * multiples already are returned unchanged, because scaling them could overflow. */
 static double snapped(double x, int exponent)
 {
     int own = 0;
@@ -28,8 +28,9 @@ static double snapped(double x, int exponent)
     return own > exponent + 52 ? x : ldexp(rint(ldexp(x, -exponent)), exponent);
 }
 
-/* The frame (draw_arrays.h) contains the isolated vertices whose distance from the centre of the
- * box around the surface is at most this many times half of the box's longest side. */
+/* The frame is the box to which the coordinates of a drawing are scaled (draw_arrays.h). An
+ * isolated vertex is inside the frame if its distance from the centre of the surface's box is at
+ * most FAR times half of the longest side of this box. */
 static const double FAR = 4096;
 
 static void include(he_box *box, he_vec3 p)
@@ -38,14 +39,14 @@ static void include(he_box *box, he_vec3 p)
     box->max = (he_vec3){fmax(box->max.x, p.x), fmax(box->max.y, p.y), fmax(box->max.z, p.z)};
 }
 
-/* Returns half of the vector from one point to another. Both points are halved first, because the
- * difference of two large doubles may be infinite. */
+/* Returns half of the vector from one point to another. The points are halved before the
+ * subtraction, because the difference of two large doubles may overflow. */
 static he_vec3 half_way(he_vec3 from, he_vec3 to)
 {
     return he_vec3_sub(he_vec3_scale(to, 0.5), he_vec3_scale(from, 0.5));
 }
 
-/* Finds the box that the frame must contain. Returns false if there are no vertices. */
+/* Finds the box that must be inside the frame. Returns false if the mesh has no vertices. */
 static bool find_box(const he_mesh *m, he_box *out)
 {
     he_box box;
@@ -65,9 +66,10 @@ static bool find_box(const he_mesh *m, he_box *out)
     return true;
 }
 
-/* Returns the frame of a mesh. On each axis half of the box is at most 2^e, and the origin at most
- * 2^(e - 3) from its centre; so positions scaled by 2^-(e + 1) are within 9/16 on each axis, and
- * therefore within the unit ball. */
+/* Returns the frame (origin and scale) of the coordinates in which a mesh is drawn. On each axis,
+ * half of the box's side is at most 2^e, and the origin of the frame is at most 2^(e - 3) from the
+ * centre of the box. So positions scaled by 2^-(e + 1) are at most 9/16 from 0 on each axis, and
+ * lie within the unit ball. */
 he_frame he_frame_of(const he_mesh *m)
 {
     he_box box;
@@ -81,16 +83,16 @@ he_frame he_frame_of(const he_mesh *m)
     }
     int e = exponent_of(half), most = 0;
     (void)frexp(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)), &most);
-    /* A box may be flat along the axis of its largest coordinate; so the scale is limited, because
-     * that coordinate must not overflow. */
+    /* If a box is small but far from zero, a scale that fits its size would make its coordinates
+     * overflow. So the largest coordinate limits the scale. */
     e = e < most - 900 ? most - 900 : e;
     e = e < -1022 ? -1022 : e;
     he_vec3 origin = {snapped(center.x, e - 2), snapped(center.y, e - 2), snapped(center.z, e - 2)};
     return (he_frame){origin, ldexp(1, -(e + 1))};
 }
 
-/* Returns the position of a corner, in coordinates of the frame. Position and origin are scaled
- * before the subtraction, which might overflow otherwise. */
+/* Returns the position of a corner in the coordinates of the frame. Scaling before the subtraction
+ * avoids an overflow. */
 static he_vec3 place(const he_draw_arrays *d, uint32_t halfedge)
 {
     he_vec3 p = he_position(d->mesh, he_origin(d->mesh, (he_halfedge){halfedge}));
@@ -100,13 +102,13 @@ static he_vec3 place(const he_draw_arrays *d, uint32_t halfedge)
 
 /* --- faces that are drawn as fans of triangles --- */
 
-/* A triangle counts as degenerate if its doubled area is at most this fraction of the sum of its
- * squared sides. planar_loop.c has an equal limit, so that both files agree on which triangles are
+/* A triangle counts as degenerate if twice its area is at most THIN times the sum of its squared
+ * sides. planar_loop.c uses an equal limit, so the two files agree on which triangles are
  * degenerate. */
 static const double THIN = 1e-12;
 
-/* Returns true if the triangle of the origin, u and v turns counter-clockwise as seen from
- * `normal`, whose length is given. */
+/* Returns true if the triangle with corners 0, u and v is counter-clockwise as seen from the side
+ * to which `normal` points. `length` is the length of `normal`. */
 static bool turns(he_vec3 u, he_vec3 v, he_vec3 normal, double length)
 {
     he_vec3 w = he_vec3_sub(v, u);
@@ -114,8 +116,8 @@ static bool turns(he_vec3 u, he_vec3 v, he_vec3 normal, double length)
     return he_vec3_dot(he_vec3_cross(u, v), normal) > THIN * sides * length;
 }
 
-/* Returns the Newell normal of the loop of half-edge `first`, and sets *degree to the loop's number
- * of corners. */
+/* Returns the Newell normal of the loop of half-edge `first` (twice the vector area of the
+ * polygon), and sets *degree to its number of corners. */
 static he_vec3 normal_of(const he_draw_arrays *d, uint32_t first, uint32_t *degree)
 {
     he_vec3 base = place(d, first), normal = {0, 0, 0}, u = {0, 0, 0};
@@ -144,8 +146,9 @@ static bool is_fan(const he_draw_arrays *d, uint32_t first, he_vec3 normal)
     return true;
 }
 
-/* Returns the corner whose fan of two triangles fills a quadrilateral. If the diagonals are about
- * equal it is the first corner, so that a regular mesh is cut in one direction. */
+/* Returns the corner of a quadrilateral at which its diagonal begins. If the two diagonals are
+ * about equally long, it is the first corner, so that all faces of a regular mesh are divided in
+ * one direction. */
 static uint32_t apex_of_quad(const he_draw_arrays *d, uint32_t first)
 {
     static const double CLEARLY = 1 - 1e-6;
@@ -161,7 +164,8 @@ static uint32_t apex_of_quad(const he_draw_arrays *d, uint32_t first)
     int bad[2] = {0, 0};
     for (int i = 0; i < 4; i++) {
         int k = (i + 1) % 4, l = (i + 2) % 4;
-        /* The diagonal from corner 0 makes the triangles whose middle corners are 1 and 3. */
+        /* The triangle i, k, l is made by the diagonal from corner 0 if k is odd, by the diagonal
+         * from corner 1 if k is even. */
         bad[k % 2 == 0] += !turns(he_vec3_sub(p[k], p[i]), he_vec3_sub(p[l], p[i]), normal, length);
     }
     if (bad[0] != bad[1]) {
@@ -218,15 +222,15 @@ void he_draw_arrays_clear(he_draw_arrays *drawing)
     *drawing = (he_draw_arrays){.mesh = NULL};
 }
 
-/* Triangulates the face unless it can be drawn as a fan, and subtracts the steps that this takes
- * from *most. */
+/* Triangulates a face, unless it can be drawn as a fan of triangles from its first corner.
+ * Subtracts the cost of the triangulation from *most, the number of steps that are allowed. */
 static he_status prepare(he_draw_arrays *d, uint32_t face, uint64_t *most, he_error *err)
 {
     const uint32_t *next = d->mesh->c.next;
     uint32_t first = d->mesh->c.face_halfedge[face], degree;
     uint32_t fourth = next[next[next[first]]];
     if (fourth == first || next[fourth] == first) {
-        return HE_OK; /* the face is a triangle or quadrilateral, which is always drawn as a fan */
+        return HE_OK; /* a triangle or quadrilateral is always drawn as a fan */
     }
     he_vec3 normal = normal_of(d, first, &degree);
     if (is_fan(d, first, normal)) {
@@ -308,8 +312,8 @@ void he_draw_arrays_vertex(const he_draw_arrays *d, uint32_t id, float out[HE_DR
     out[3] = halfedge == HE_NONE ? HE_DRAWN_ISOLATED : HE_DRAWN_USED;
 }
 
-/* Returns the first of the triangles into which a face was cut, or NULL if the face is drawn as a
- * fan. */
+/* Returns the first of the triangles into which prepare() has divided a face, or NULL if the face
+ * is drawn as a fan. */
 static const uint32_t *find_cut(const he_draw_arrays *d, uint32_t face)
 {
     const uint32_t mask = ((uint32_t)1 << HE_DRAWN_SIDES) - 1;

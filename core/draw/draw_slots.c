@@ -8,9 +8,12 @@
 
 /* --- freed runs of slots ---
  *
- * Freed runs form linked lists, which begin in he_draw_slots.bin. The word in he_draw_slots.owner
- * of a run's first slot is the first slot of the next run in the list; a run in the list of long
- * runs has its length in its second word. All these words also have the bit HE_DRAW_SLOT_DEAD. */
+ * A slot is room for one triangle of the drawing. The slots of a face are consecutive: they are a
+ * run. Freed runs form linked lists, one for each length and one for all long runs; `bin` has the
+ * first slot of the first run in each list. `owner` has a word for each slot. In a freed run, the
+ * word of the first slot is the first slot of the next run in the list, and in the list of long
+ * runs the word of the second slot is the length of the run. In all these words the bit
+ * HE_DRAW_SLOT_DEAD is set. */
 
 enum { LONG_RUN = HE_DRAW_SLOT_BINS, TRIES = 8 };
 static const uint32_t LAST = HE_DRAW_SLOT_DEAD - 1; /* marks the end of a linked list */
@@ -34,7 +37,8 @@ static void put_run(he_draw_slots *s, uint32_t slot, uint32_t length)
     s->filled |= (uint64_t)1 << bin;
 }
 
-/* Removes from its list the run to which `*link` leads, and returns its first slot. */
+/* Removes a run of slots from its linked list and returns the first slot of the run. `link` is the
+ * word that leads to the run. */
 static uint32_t unlink_run(he_draw_slots *s, uint32_t bin, uint32_t *link)
 {
     uint32_t slot = *link & ~HE_DRAW_SLOT_DEAD;
@@ -45,8 +49,9 @@ static uint32_t unlink_run(he_draw_slots *s, uint32_t bin, uint32_t *link)
     return slot;
 }
 
-/* Takes a freed run with at least `length` slots out of its list and sets *found to its length.
- * Returns LAST if no such run is found; of the long runs only the first TRIES are looked at. */
+/* Finds a free run of at least `length` slots, removes it from its linked list, and sets *found to
+ * its length. Returns LAST if no run is found. Only the first TRIES runs in the list of long runs
+ * are examined. */
 static uint32_t find_run(he_draw_slots *s, uint32_t length, uint32_t *found)
 {
     uint64_t bins = length < LONG_RUN ? s->filled >> length << length : 0;
@@ -86,7 +91,7 @@ static void give_run(he_draw_slots *s, uint32_t face, uint32_t length)
     s->first[face] = slot;
 }
 
-/* Returns how many slots a face has. */
+/* Returns how many slots a face has, one for each triangle by which the face is drawn. */
 static uint32_t run_of(const he_draw_slots *s, uint32_t face)
 {
     uint32_t length = 0;
@@ -212,8 +217,9 @@ static void forget_front(he_ids *list, size_t count)
     }
 }
 
-/* Forgets the oldest steps (updates of the slots) if `more` new changes would be too many to
- * remember. It forgets more steps than it must, so that the next calls have nothing to do. */
+/* Forgets the changes of the oldest steps (updates of the drawing) if `more` new changes would be
+ * too many to remember. Half of the memory is freed at once, so that the next calls need not forget
+ * anything. */
 static void forget_steps(he_draw_slots *s, size_t more)
 {
     size_t most = rows_of(s) / 2 + HE_DRAW_SLOT_CHANGES, gone = 0;
@@ -323,9 +329,9 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
     return face == HE_NONE || face == HE_DEAD ? HE_OK : he_ids_add(&t->faces, face, err);
 }
 
-/* Adds the elements whose rows in the arrays may be changed by a record of a delta. If a half-edge
- * changed its face, one of its records names both faces, so for every other record of a half-edge
- * only its present face is added. */
+/* Adds the elements whose entries in the drawing may change because of one record of a delta. A
+ * half-edge that moves to another face has a record of the column `face` with the old and the new
+ * face. So for a record of another column of a half-edge, only its present face is added. */
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -374,7 +380,7 @@ void he_touched_clear(he_touched *touched)
     he_ids_clear(&touched->moved);
 }
 
-/* The number of steps of work that are still allowed. */
+/* The number of steps of work that are still allowed before the update is refused. */
 typedef struct budget {
     uint64_t left;
 } budget;
@@ -401,8 +407,8 @@ static bool is_triangle(const he_mesh *m, uint32_t face)
     return m->c.next[m->c.next[m->c.next[first]]] == first;
 }
 
-/* Adds the moved vertices and the faces around them to the touched elements. Faces that are
- * triangles are left out, as only larger faces may be cut into other triangles after a move. */
+/* Adds the moved vertices to `t->vertices` and the faces around them to `t->faces`. Triangles are
+ * left out, because only the triangulation of a larger face can change when a vertex moves. */
 static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *err)
 {
     he_status status = he_ids_sort(&t->moved, err);
@@ -426,8 +432,8 @@ static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *er
     return status;
 }
 
-/* Checks that the frame still contains every vertex that is new or moved, and, if more than half of
- * the vertices moved, that the mesh would not get another frame now. */
+/* Checks that every new or moved vertex is still inside the frame of the drawing. If more than half
+ * of the vertices moved, also checks that the frame would be equal if it were computed now. */
 static he_status check_frame(const he_draw_slots *s, const he_mesh *m, const he_touched *t,
                              he_error *err)
 {
@@ -449,8 +455,8 @@ static he_status check_frame(const he_draw_slots *s, const he_mesh *m, const he_
     return HE_OK;
 }
 
-/* The lengths of the runs of slots of the touched faces. `length` has two numbers for each face:
- * its length before and after the update; `before` and `after` are the sums over all faces. */
+/* The numbers of slots of the touched faces. `length` has two entries for each face: the number
+ * before the update and the number after it. `before` and `after` are the sums over all faces. */
 typedef struct runs {
     uint32_t *length;
     uint64_t before, after;
@@ -479,8 +485,8 @@ static void commit(he_draw_slots *s, const he_mesh *m, const he_touched *t, cons
 {
     issue_faces(s, m->c.faces.issued);
     s->vertices = m->c.vertices.issued;
-    /* All runs of slots that faces give up are freed before any new run is taken, so that freed
-     * runs can be used again at once. */
+    /* All slots that faces no longer need are freed before any slots are taken, so that the freed
+     * slots can be used again at once. */
     for (size_t i = 0; i < t->faces.count; i++) {
         uint32_t face = t->faces.ids[i], before = r->length[2 * i];
         if (before > 0) {
