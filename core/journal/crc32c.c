@@ -5,7 +5,8 @@
 #include <string.h>
 
 enum { BYTE_VALUES = 256 };
-#define POLYNOMIAL UINT32_C(0x82f63b78) /* the CRC-32C polynomial, its bits in reverse order */
+/* the polynomial of CRC-32C, with its bits in reverse order */
+#define POLYNOMIAL UINT32_C(0x82f63b78)
 
 static uint32_t table[BYTE_VALUES];
 static bool has_instruction;

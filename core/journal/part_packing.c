@@ -12,8 +12,8 @@
 
 enum { LEVEL = 1 };
 
-/* A part is stored compressed only if that saves at least a thirty-second, to be worth the time of
- * decompressing it. */
+/* A part of a stored mesh is stored compressed only if compression saves at least 1/LEAST_SHARE of
+ * its bytes. A smaller saving is not worth the time of decompression. */
 enum { LEAST_SHARE = 32 };
 
 struct st_packer {
@@ -70,7 +70,7 @@ size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigne
     const size_t room = size - size / LEAST_SHARE;
     const size_t packed = ZSTD_compressCCtx(packer->zstd, packer->packed, room, part, size, LEVEL);
     if (ZSTD_isError(packed)) {
-        /* The compressed part is not short enough, or memory is out: the part is left as it is. */
+        /* Compression saves too little, or memory is out, so the part stays uncompressed. */
         return size;
     }
     memcpy(part, packer->packed, packed);
@@ -100,9 +100,9 @@ void st_unpacker_free(st_unpacker *unpacker)
     }
 }
 
-/* The zstd frame is decompressed directly into a buffer as long as the longest part, so zstd
- * allocates nothing, whatever size the frame states. A frame whose content is longer than it
- * states, or than the buffer, is refused. */
+/* The part is decompressed directly into a buffer that is as long as the longest possible part, so
+ * zstd allocates no memory, whatever size the compressed frame states. A frame is refused if its
+ * data is longer than it states or than the buffer. */
 st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why)
 {
     const unsigned long long said = ZSTD_getFrameContentSize(packed.bytes, packed.size);

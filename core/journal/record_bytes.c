@@ -12,8 +12,8 @@ enum { AT_VERSION = 4, AT_CHAIN = 24 };
 
 enum { BARRIER = 1, TALLY = 2, PARTS = 4, EDIT = 8, ALL_FLAGS = BARRIER | TALLY | PARTS | EDIT };
 
-/* The kinds of mesh elements whose counts a frame (an encoded record) states, in the order in which
- * the counts are written. */
+/* A frame is an encoded record. These are the kinds of elements whose numbers a frame states, in
+ * the order in which they are written. */
 static const he_kind counted[] = {HE_VERTEX, HE_EDGE, HE_FACE};
 enum { COUNTED = sizeof counted / sizeof *counted };
 
@@ -148,7 +148,8 @@ static bool take_numbers(he_cursor *c, st_record *r)
            he_take_varint(c, UINT64_MAX, &r->bytes);
 }
 
-/* Reads a frame up to its texts (the names of operations and of the mesh). */
+/* Reads a frame (encoded record) up to its texts, which are the names of operations and of the
+ * mesh. */
 static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_error *err)
 {
     st_record *r = &out->record;
@@ -221,7 +222,7 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
                                 "the record has version %u, and this release reads version %d",
                                 *c.at, ST_FRAME_VERSION);
     }
-    /* The frame is decoded into a local variable first, so that a failure leaves *out as it was. */
+    /* The frame is decoded into a local variable, so that *out is unchanged if decoding fails. */
     st_frame frame = {.record = {.ops = ""}};
     unsigned flags = 0;
     he_status status = read_head(&c, &frame, &flags, err);

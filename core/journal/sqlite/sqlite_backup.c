@@ -18,9 +18,9 @@ static bool exists(const char *path)
 
 /* --- files that no process writes to --- */
 
-/* Makes a URI by which SQLite opens the file as immutable, so that it makes neither a lock nor a
- * -shm file. If the file has a -wal (write-ahead log) beside it, the URI does not say immutable,
- * because SQLite has to read the -wal, too. */
+/* Makes a URI by which SQLite opens the file as immutable, so that SQLite makes neither a lock nor
+ * a -shm file. If there is a write-ahead log (-wal) beside the file, the URI does not say
+ * immutable, because SQLite must read the log, too. */
 static bool uri_of(const char *file, char *out, size_t size)
 {
     static const char hex[] = "0123456789ABCDEF";
@@ -58,8 +58,8 @@ static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAG
     return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
 }
 
-/* Checks the structure of a database. If SQLite finds faults, `message` describes the first of
- * them. */
+/* Checks the structure of a database. If SQLite finds faults, the first of them is described in
+ * `message`. */
 static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     sqlite3_stmt *s = NULL;
@@ -146,8 +146,8 @@ static bool names_file_of(const char *folder, const char *own, const struct stat
            there.st_dev == status->st_dev && there.st_ino == status->st_ino;
 }
 
-/* Returns false if the backup would replace a file of a store: of the store that is copied, by
- * whatever path, or of any other store whose folder would contain the backup. */
+/* Returns false if the backup would overwrite a file of the store that is copied, even if `file`
+ * names it by another path, or of another store in the folder of the backup. */
 static bool may_be_backup(const char *store, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     char folder[PATH_MAX], database[PATH_MAX];
@@ -170,7 +170,7 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
         message);
 }
 
-/* The free space that must be left beside a backup, because the daemon goes on writing to its
+/* The free disk space that must be left after a backup, because the daemon goes on writing to its
  * store. */
 enum { SPARE_BYTES = 64 << 20 };
 
@@ -182,7 +182,8 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     st_folder_above(file, folder);
     if (st_db_number(from, "PRAGMA page_count", 0, &pages) != ST_SQL_DONE ||
         statvfs(folder, &system) != 0) {
-        /* the free space is not known; if it is too small, writing the backup will fail */
+        /* The free space is unknown, so the backup is tried; if the space is too small, writing
+         * fails. */
         return true;
     }
     const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
@@ -196,8 +197,8 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
 {
     st_db to;
     st_sql outcome = st_db_open(&to, part, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL, 0);
-    /* An incomplete copy is deleted, so it needs no rollback journal and only one sync at its
-     * end. */
+    /* If the backup fails, its file is deleted. So the file needs no rollback journal, and only one
+     * sync at the end. */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(&to, "PRAGMA journal_mode = OFF");
     }
@@ -206,8 +207,8 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
     }
     if (outcome == ST_SQL_DONE) {
         sqlite3_backup *backup = sqlite3_backup_init(to.handle, "main", from->handle, "main");
-        /* All pages are copied in one step, so that the copy has the state of one moment although
-         * other connections write. */
+        /* All pages are copied in a single step, so that the copy shows the store at one moment
+         * although other connections write to it. */
         (void)(backup != NULL && sqlite3_backup_step(backup, -1));
         outcome = st_db_outcome(&to, backup == NULL ? sqlite3_extended_errcode(to.handle)
                                                     : sqlite3_backup_finish(backup));

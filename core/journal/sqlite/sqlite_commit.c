@@ -1,11 +1,14 @@
 /* sqlite_commit.c - the commit thread, which writes the queue to the database. It is in one of
  * three states:
  *
- *     WRITES   everything queued is taken as one group (take_group) and committed (commit_group),
- *              with a slice of background work. commit_group leads to the states below
- *     FULL     what is queued is lost (lose); only removals are accepted, and the ballast (reserved
- *              disk space) is freed for them; each second seek_space tries to return to WRITES
- *     FAILED   everything appended is lost; the state never ends */
+ *     WRITES   All queued items become one group (take_group), which is committed together with
+ *              some background work (commit_group). If that fails, the state becomes FULL or
+ *              FAILED.
+ *     FULL     The disk is full, and all queued records are lost (lose). Only removals of meshes
+ *              are accepted; a file that reserves disk space, the ballast, is deleted to make room
+ *              for them. Each second seek_space tries to return to WRITES.
+ *     FAILED   The disk has failed. All records that are appended are lost. This state never
+ *              ends. */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "system/clock.h"
@@ -16,38 +19,40 @@
 enum {
     GROUP_RECORDS = 4096,
     GROUP_BYTES = 8 << 20,
-    /* Bytes of background work in one transaction, if records are waiting to be written, too. */
+    /* Bytes of background work in one transaction while records are waiting to be written. */
     SLICE_BESIDE = 64 << 10,
-    /* Bytes of background work in one transaction, if no record waits; a record that comes
-     * meanwhile has to wait for the transaction. */
+    /* Bytes of background work in one transaction while no record is waiting. A record that arrives
+     * during this transaction must wait for its end. */
     SLICE_ALONE = 256 << 10,
-    /* A checkpoint copies the write-ahead log into the database; it is made when the log has this
-     * many pages. Records wait for a checkpoint, the longer the more pages it copies. While
-     * background work fills the log, checkpoints are made more often, so that a checkpoint takes no
-     * longer than one transaction's background work. */
+    /* A checkpoint copies the write-ahead log into the database. It is made when the log has grown
+     * by this many pages. Records wait for a checkpoint, the longer the more pages it copies. While
+     * background work fills the log, checkpoints are made more often, so that each takes no longer
+     * than one transaction with background work. */
     CHECKPOINT_PAGES = 1000,
     CHECKPOINT_PAGES_BESIDE = 256,
-    /* When the write-ahead log has this many bytes, loads of meshes wait for a checkpoint. */
+    /* While the write-ahead log has more bytes than this, meshes are not loaded until a checkpoint
+     * has copied the log. */
     LONG_LOG = 64 << 20,
     SECOND = 1000000,
     RETRY_MICROS = 20000,
     CLOSING_TRIES = 50
 };
 
-/* The items of the queue that are written in one transaction. */
+/* The items of the queue that one transaction writes to the database. */
 typedef struct group {
     st_item *first, *last;
     uint64_t records /* number of records and notes */, position, made, removed;
     bool freeing;
-    /* The stage (a content written in advance) of which this transaction writes a slice; NULL: the
-     * background work is a purge, the deletion of what is not needed. */
+    /* The stage (mesh data that is written before its record) of which this transaction writes some
+     * parts. If it is NULL, the background work is a purge, which deletes rows that are not
+     * needed. */
     st_stage *stage;
     size_t slice; /* bytes of background work in this transaction; 0: none */
-    /* True if nothing is left to be purged (deleted) once this transaction is committed. */
+    /* True if no rows are left to be purged (deleted) once this transaction is committed. */
     bool purged;
 } group;
 
-/* --- taking items from the queue; the caller holds the lock --- */
+/* --- taking items from the queue; the caller holds self->lock --- */
 
 static void count_room(group *g, const st_sqlite_room *room)
 {
@@ -149,8 +154,9 @@ static uint64_t charge_of(const st_item *item)
     return charge;
 }
 
-/* Ends the writing of a slice of a stage (a content written in advance), because the slice was
- * written, or never will be. The caller holds the lock. */
+/* Ends the work on the parts of a stage (mesh data that is written before its record) that a thread
+ * has passed to the commit thread. `status` is ST_OK if the parts were written, else why they never
+ * will be. The caller holds self->lock. */
 static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
 {
     st_stage **at = &self->stages;
@@ -163,8 +169,8 @@ static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
     pthread_cond_broadcast(&self->moved);
 }
 
-/* Sets the position up to which every record is durable or was reported as lost. The caller holds
- * the lock. */
+/* Sets the position up to which every record is either durable or reported as lost. The caller
+ * holds self->lock. */
 static void move(st_sqlite *self, uint64_t position)
 {
     self->told = position;
@@ -193,8 +199,8 @@ static void stop_writing(st_sqlite *self, st_write_mode mode)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Takes the items that are lost from the queue: all rooms (groups of records), and in the state
- * FAILED all other items, too. The caller holds the lock. */
+/* Takes the lost items from the queue: all groups of records, and in the state FAILED every other
+ * item, too. The caller holds self->lock. */
 static st_item *take_lost(st_sqlite *self)
 {
     st_item *lost = NULL, **lost_end = &lost, **at = &self->first;
@@ -223,8 +229,8 @@ static bool has_room(const st_sqlite *self)
     return false;
 }
 
-/* Deletes the contents that were written in advance for the lost records of a room. The caller
- * holds the lock. */
+/* The records of this group are lost. Queues the deletion of the mesh data that was written in
+ * advance for them. The caller holds self->lock. */
 static void unstage(st_sqlite *self, st_sqlite_room *room)
 {
     for (size_t i = 0; i < room->count; i++) {
@@ -237,8 +243,9 @@ static void unstage(st_sqlite *self, st_sqlite_room *room)
     }
 }
 
-/* Drops all queued records and reports them as lost. Rooms that are still reserved are lost when
- * records are appended to them. The caller holds the lock; it is released during the report. */
+/* Drops all queued records and reports them as lost. Records that are appended later into memory
+ * that was reserved before the loss will be lost, too. The caller holds self->lock, which is
+ * released during the report. */
 static void lose(st_sqlite *self)
 {
     st_item *lost = take_lost(self);
@@ -303,7 +310,7 @@ static st_sql put_progress(st_sqlite *self, const st_progress *progress)
                     progress->meshes, (uint64_t)st_progress_sum(progress));
 }
 
-/* Copies SQLite's message about a failure, because the next statement replaces the message. */
+/* Copies SQLite's message about a failure, because the next statement would replace the message. */
 static void note_refusal(st_sqlite *self, st_sql outcome)
 {
     if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
@@ -349,7 +356,7 @@ static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
     return outcome;
 }
 
-/* Waits a moment, so that other threads can free memory, or another program can release its
+/* Waits RETRY_MICROS, in which other threads may free memory or another program may release its
  * lock. */
 static void rest(st_sqlite *self)
 {
@@ -370,8 +377,8 @@ static bool is_closing(st_sqlite *self)
 }
 
 /* Tries to commit a group of queued items until the disk has accepted or refused it. If the disk is
- * full, the group is tried again without background work. A group that is only a purge (deletion of
- * what is not needed) is not tried again, because the next purge deletes the rows. */
+ * full, the group is tried again without background work. If the group is only background work that
+ * deletes rows, it is not tried again, because the next purge deletes these rows. */
 static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 {
     for (unsigned tries = 1;; tries++) {
@@ -379,8 +386,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
         if (outcome == ST_SQL_FULL && g->slice > 0 && (g->first != NULL || g->stage != NULL)) {
             g->slice = 0;
         } else if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
-            /* Damage in rows that are being deleted must not stop the journal, so the next try
-             * leaves these rows out. */
+            /* The damage is in rows that are being deleted. It must not stop the journal, so the
+             * next try leaves these rows alone. */
         } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
                    (tries < CLOSING_TRIES || !is_closing(self))) {
             rest(self);
@@ -392,8 +399,9 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 
 static void write_mark(st_sqlite *self)
 {
-    /* If the mark of the last commit cannot be written, the file still names an older commit. The
-     * mark then cannot reveal the loss of newer commits, but it is still true. */
+    /* The mark is a file that names the last commit. If it cannot be written, it still names an
+     * older commit: a loss of newer commits then stays unnoticed, but nothing in the file is
+     * false. */
     (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
                                                   self->progress.position});
 }
@@ -412,8 +420,8 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
     self->charged -= charge_of(g->first);
     move(self, g->position);
     pthread_mutex_unlock(&self->lock);
-    /* The items of the group are freed before the listener is called, because the listener may wake
-     * a thread that was refused memory. */
+    /* The items are freed before the listener is called, because the listener may wake a thread
+     * that waits for memory. */
     free_items(g->first);
     if (g->records > 0) {
         tell(self, NULL, g->position);
@@ -422,8 +430,8 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
 
 static void count_commit(st_sqlite *self, const group *g, uint64_t micros)
 {
-    /* A group without records is background work alone, for which no client waits, so it is not
-     * counted. */
+    /* A group without records is only background work, for which no client waits, so its time is
+     * not counted. */
     if (g->records > 0) {
         st_histogram_add(&self->commits, st_scale_micros, micros);
         st_histogram_add(&self->groups, st_scale_counts, g->records);
@@ -457,8 +465,8 @@ static bool log_is_long(const st_sqlite *self)
     return self->log_pages * ST_LOG_PAGE_BYTES > LONG_LOG;
 }
 
-/* Copies the write-ahead log into the database, as far as readers allow. Returns false if the disk
- * failed. */
+/* Copies pages of the write-ahead log into the database, except pages that must wait because
+ * connections still read the log. Returns false if the disk failed. */
 static bool checkpoint(st_sqlite *self, int how)
 {
     const uint64_t begun = st_clock_micros();
@@ -467,17 +475,17 @@ static bool checkpoint(st_sqlite *self, int how)
     st_histogram_add(&self->checkpoints, st_scale_micros, st_clock_micros() - begun);
     self->log_tried = self->log_pages;
     pthread_mutex_lock(&self->lock);
-    /* New loads of meshes still have to wait if loads that are under way may have kept this
-     * checkpoint from copying the whole write-ahead log. After a complete checkpoint, new loads
-     * read nothing from the log, and the next commit overwrites it from the start. */
+    /* If meshes were being loaded, their connections may have kept this checkpoint from copying the
+     * whole write-ahead log, and new loads must go on waiting. After a complete checkpoint, new
+     * loads read nothing from the log, and the next commit overwrites the log from its start. */
     self->log_is_long = self->mode == ST_WRITES && log_is_long(self) && self->loads_taken > 0;
     if (!self->log_is_long) {
         pthread_cond_broadcast(&self->moved);
     }
     pthread_mutex_unlock(&self->lock);
     note_refusal(self, outcome);
-    /* A checkpoint that stops because the disk is full is no failure, because the write-ahead log
-     * is intact. */
+    /* If the disk is full, the checkpoint stops, but the write-ahead log is intact, so this is no
+     * failure. */
     return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
            (stop_writing(self, ST_WRITES_FAILED), false);
 }
@@ -486,8 +494,8 @@ static void checkpoint_when_due(st_sqlite *self, const group *g)
 {
     const uint64_t pages = g->slice > 0 ? CHECKPOINT_PAGES_BESIDE : CHECKPOINT_PAGES;
     if (self->log_pages < self->log_tried) {
-        /* the write-ahead log was overwritten from the start, so the old count of pages is
-         * obsolete */
+        /* The write-ahead log was overwritten from its start, so the number of pages at the last
+         * checkpoint no longer means anything. */
         self->log_tried = 0;
     }
     if (self->log_pages >= self->log_tried + pages) {
@@ -506,9 +514,9 @@ int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
 
 /* --- the disk is full --- */
 
-/* Frees space on a full disk, by steps that need little space themselves: deletes rows that are not
- * needed and returns free pages to the file system. The caller holds the lock, which is released
- * while the disk works. */
+/* Frees disk space by steps that need little space themselves: deletes rows that are not needed,
+ * and returns free pages of the database to the file system. The caller holds self->lock, which is
+ * released while the disk works. */
 static bool make_space(st_sqlite *self)
 {
     bool good, closing;
@@ -532,7 +540,7 @@ static bool make_space(st_sqlite *self)
             if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
                 good = true;
             } else if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
-                /* After a failed sync the state of the disk is unknown, so nothing more is
+                /* After a failed sync it is unknown what is on the disk, so nothing more is
                  * written. */
                 pthread_mutex_unlock(&self->lock);
                 stop_writing(self, ST_WRITES_FAILED);
@@ -544,8 +552,8 @@ static bool make_space(st_sqlite *self)
     return good;
 }
 
-/* Truncates the write-ahead log if no connection reads it, so that its space is free for other
- * files. */
+/* Truncates the write-ahead log if no connection is reading it, which frees its disk space for
+ * other files. */
 static bool cut_log(st_sqlite *self)
 {
     pthread_mutex_lock(&self->lock);
@@ -554,9 +562,9 @@ static bool cut_log(st_sqlite *self)
     return is_read || checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);
 }
 
-/* Ends the state FULL if the ballast (reserved disk space) can be made again and the disk has some
- * more free space. Without that, the next few changes would fill the disk again. The caller holds
- * the lock, which is released while the disk works. */
+/* Ends the state FULL if the ballast (a file that reserves disk space) can be made again and some
+ * more disk space is free. With less free space the next few changes would fill the disk again. The
+ * caller holds self->lock, which is released while the disk works. */
 static void seek_space(st_sqlite *self)
 {
     pthread_mutex_unlock(&self->lock);
@@ -575,7 +583,7 @@ static void seek_space(st_sqlite *self)
 
 /* --- the thread --- */
 
-/* Returns true if the commit thread has something to do now. The caller holds the lock. */
+/* Returns true if the commit thread has something to do now. The caller holds self->lock. */
 static bool has_work(const st_sqlite *self)
 {
     switch (self->mode) {
@@ -590,8 +598,8 @@ static bool has_work(const st_sqlite *self)
     return self->first != NULL || (self->losing && self->old_rooms == 0);
 }
 
-/* Does one step of the commit thread's work. The caller holds the lock, which is released while the
- * disk works. */
+/* Does one step of the commit thread's work. The caller holds self->lock, which is released while
+ * the disk works. */
 static void work_once(st_sqlite *self)
 {
     if (self->mode == ST_WRITES_FAILED || self->losing) {
@@ -607,7 +615,8 @@ static void work_once(st_sqlite *self)
         (void)st_ballast_drop(&self->folder);
     }
     if (g.first == NULL && g.slice == 0) {
-        /* Nothing is to be written, but loads of meshes wait for this checkpoint. */
+        /* Nothing is waiting to be written, but threads that load meshes wait for this
+         * checkpoint. */
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
     } else if (commit_group(self, &g)) {
         checkpoint_when_due(self, &g);
@@ -638,8 +647,8 @@ void *st_commit_thread(void *context)
         }
         self->idle = false;
     }
-    /* When the disk is full, items of the queue that delete something may still be there when the
-     * thread ends. */
+    /* If the disk is full when the thread ends, the queue may still have items that ask for
+     * deletions. */
     free_items(self->first);
     self->first = NULL;
     self->end = &self->first;

@@ -12,8 +12,8 @@
 
 /* --- memory --- */
 
-/* SQLite asks its allocator for the sizes of memory blocks, which base/mem.h does not know. So the
- * size is stored in HEADER bytes before each block. */
+/* SQLite asks its allocator for the size of a block of memory, which base/mem.h cannot tell. So the
+ * size is stored in the HEADER bytes before each block. */
 enum { HEADER = 16, ROUND = 8 };
 
 static void *block_resize(void *memory, int size)
@@ -89,7 +89,7 @@ bool st_db_prepare(void)
 
 /* --- connections --- */
 
-/* How many milliseconds a statement waits for another program's lock. */
+/* How many milliseconds a statement waits for the lock of another program. */
 enum { BUSY_MILLIS = 5000 };
 
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count)
@@ -102,17 +102,16 @@ st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *tex
     }
     sqlite3_extended_result_codes(db->handle, 1);
     sqlite3_busy_timeout(db->handle, BUSY_MILLIS);
-    /* SQLite does not report errors of the checkpoint that it makes when it closes a database. So
-     * that checkpoint is switched off, and st_db_close makes a checkpoint before it closes the
-     * database. */
+    /* When SQLite closes a database it makes a checkpoint, but reports no errors of it. So this
+     * checkpoint is switched off, and st_db_close makes one itself. */
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     return st_db_outcome(db, code);
 }
 
-/* The cache has at least 16 pages, so that all pages from the root of a table's tree down to a row
- * stay in the cache. */
+/* The smallest page cache of a connection is 16 pages, so that all pages on the way from the root
+ * of a table's tree to a row fit into the cache. */
 enum { LEAST_CACHE_KIB = 64, FULL_CACHE_BUDGET = 256 << 20 };
 
 st_sql st_db_set_cache(st_db *db, unsigned kib)
@@ -122,7 +121,7 @@ st_sql st_db_set_cache(st_db *db, unsigned kib)
         budget == 0 || budget >= FULL_CACHE_BUDGET ? kib : kib * budget / FULL_CACHE_BUDGET;
     char text[64];
     share = share < LEAST_CACHE_KIB ? LEAST_CACHE_KIB : share;
-    /* The pragma cache_size takes a negative number as KiB, a positive number as pages. */
+    /* The pragma cache_size takes a negative number as KiB and a positive number as pages. */
     (void)snprintf(text, sizeof text, "PRAGMA cache_size = -%u", (unsigned)share);
     return st_db_run(db, text);
 }
@@ -164,9 +163,9 @@ st_sql st_db_outcome(const st_db *db, int code)
         if (code == SQLITE_IOERR_NOMEM) {
             return ST_SQL_NO_MEMORY;
         }
-        /* SQLite reports a full disk only for the error ENOSPC, and not when it extends the -shm
-         * file. So the error of the system is examined here. A sync that fails with ENOSPC is not a
-         * full disk but a failure. */
+        /* SQLite reports a full disk only if a write fails with ENOSPC, and never when it extends
+         * the -shm file. So the error of the system is examined here. A sync that fails with ENOSPC
+         * counts as a failure of the disk. */
         if (code == SQLITE_IOERR_WRITE || code == SQLITE_IOERR_SHMSIZE) {
             const int reason = sqlite3_system_errno(db->handle);
             return reason == EDQUOT || reason == ENOSPC ? ST_SQL_FULL : ST_SQL_FAILED;

@@ -22,7 +22,8 @@ bool st_folder_fail(st_folder *folder, const char *what, const char *name)
 
 /* --- the lock --- */
 
-/* Reads the first line of the lock file: the process and host that have the lock. */
+/* Reads the first line of the lock file, which names the process and host that have locked the
+ * store. */
 static void read_owner(int lock, char out[WHO])
 {
     ssize_t got = pread(lock, out, WHO - 1, 0);
@@ -37,8 +38,8 @@ static bool write_owner(st_folder *folder)
     int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
-           /* Even if the owner cannot be written into the lock file, this process has the lock.
-            * Other processes then cannot name its owner in their messages. */
+           /* This process has the lock even if it cannot write its name into the lock file. Then
+            * other processes cannot name the owner of the lock in their messages. */
            errno == ENOSPC || errno == EDQUOT || st_folder_fail(folder, "cannot write", "lock");
 }
 
@@ -48,8 +49,8 @@ static bool take_lock(st_folder *folder)
     if (folder->lock < 0) {
         return st_folder_fail(folder, "cannot open", "lock");
     }
-    /* A lock of flock, unlike one of fcntl, is not released when another descriptor of the file is
-     * closed. */
+    /* A lock of fcntl would be released when any descriptor of the file is closed; a lock of flock
+     * is not. */
     if (flock(folder->lock, LOCK_EX | LOCK_NB) == 0) {
         return write_owner(folder);
     }
@@ -105,7 +106,7 @@ bool st_folder_open(st_folder *folder, const char *path)
     }
     if (made && !sync_above(path)) {
         (void)st_folder_fail(folder, "the parent folder cannot be synced", "");
-        /* the folder is removed, so that the next start makes and syncs it again */
+        /* the new folder is removed, so that the next start makes it again and syncs it */
         (void)rmdir(path);
         return false;
     }
@@ -126,8 +127,8 @@ void st_folder_close(st_folder *folder)
 
 const char *st_folder_doubt(const st_folder *folder)
 {
-    /* These numbers identify kinds of file systems; they are from linux/magic.h, and from fs/nfs,
-     * fs/fuse, fs/9p and fs/smb of the kernel. */
+    /* These numbers identify types of file systems. They are from linux/magic.h, and from fs/nfs,
+     * fs/fuse, fs/9p and fs/smb of the Linux kernel. */
     enum { NFS = 0x6969, FUSE = 0x65735546, P9 = 0x01021997 };
     const uint32_t cifs = UINT32_C(0xff534d42), smb2 = UINT32_C(0xfe534d42);
     struct statfs system;
@@ -179,8 +180,8 @@ bool st_folder_sync(st_folder *folder)
 
 /* --- the mark of the last commit --- */
 
-/* The layout of a slot in the file of the mark: number of the store, number of commits, position of
- * the last record, 4 bytes of zeros, CRC-32C of all these. */
+/* A slot in the file of the mark: the number of the store, the number of commits, the position of
+ * the last record, 4 bytes of zeros, and the CRC-32C of these. */
 enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
 
 bool st_mark_open(st_folder *folder)
@@ -255,8 +256,8 @@ bool st_ballast_make(st_folder *folder)
     return made;
 }
 
-/* Returns true if the file system reports enough free blocks and they can be allocated. Only
- * allocating them shows whether the user's disk quota is exhausted. */
+/* Returns true if the file system reports enough free blocks and they can be allocated. Without
+ * allocating blocks it would stay unknown whether the disk quota of the user is exhausted. */
 bool st_folder_has_space(st_folder *folder)
 {
     struct statvfs space;

@@ -1,11 +1,11 @@
-/* sqlite_index.c - compares the table of meshes with its indexes. A mesh whose index entry is
- * damaged would seem not to exist, and another mesh could be created with its id.
+/* sqlite_index.c - compares the table of meshes with its indexes. If the index entry of a mesh is
+ * damaged, the mesh seems not to exist, and another mesh could be created with its id.
  *
- * SQLite's integrity_check looks up each row in each index, at random places of the file: this
- * takes half a minute for a million meshes. Here the table and its indexes are read sequentially.
- * Table and indexes agree if their structure is intact (quick_check), the entries of each index are
- * in order, so that a lookup finds every entry, and the sum of the hashes of all entries equals
- * that of all rows. */
+ * SQLite's integrity_check looks up each row in each index, at random places of the file, which
+ * takes half a minute for a million meshes. The functions below read the table and its indexes
+ * sequentially. The table and an index agree if quick_check finds their structure intact, if the
+ * entries of the index are sorted, so that a lookup finds every entry, and if the sum of the hashes
+ * of all entries equals the sum of the hashes of all rows. */
 #include "base/siphash.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -19,7 +19,8 @@ static const char *const texts[STATEMENTS] = {
                      "ORDER BY incarnation",
 };
 
-/* Sums of hashes over all ids and over all incarnations; each hash includes the key of the row. */
+/* Sums of hashes over the ids of all meshes and over their incarnations (numbers that no two meshes
+ * share). Each hash includes the key of the row. */
 typedef struct sums {
     uint64_t ids, incarnations;
 } sums;

@@ -1,10 +1,11 @@
-/* sqlite_keys.c - reads stored Idempotency-Keys of requests: the keys of one mesh, or those of the
- * store. */
+/* sqlite_keys.c - reads the stored Idempotency-Keys of requests, either those of one mesh or those
+ * of the whole store. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
 
-/* Selects those keys of the store that are at most ?1 seconds older than the store's newest key. */
+/* Selects the keys that belong to the store and not to a mesh, if they are at most ?1 seconds older
+ * than the newest such key. */
 static const char of_store[] =
     "SELECT * FROM (SELECT " ST_KEPT_COLUMNS
     " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
@@ -53,8 +54,8 @@ st_sql st_kept_count_damaged(st_db *db, uint64_t *out)
     return outcome;
 }
 
-/* Passes a key to the function `take`. A damaged key is passed, too, so that a repeated request
- * with this key is not executed again. */
+/* Passes a key to the function `take`. Damaged keys are passed, too, so that a repeated request
+ * with such a key is not executed again. */
 static bool give(const st_kept_row *row, bool good, st_take_key *take, void *to)
 {
     const st_kept_key key = {.key = {.text = row->text,
@@ -79,8 +80,8 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     bool taken = true;
     uint64_t damaged = 0;
     if (self->only_reads) {
-        /* A journal that only reads passes no keys: it needs none, and damaged keys must not
-         * prevent reading the mesh. */
+        /* A journal that is open only for reading passes no keys. It does not need them, and
+         * damaged keys must not prevent it from reading the mesh. */
         return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);

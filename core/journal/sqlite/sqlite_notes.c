@@ -1,10 +1,12 @@
-/* sqlite_notes.c - notes: the state of jobs, and keys of requests that changed nothing. A note
- * waits in the queue in a room (memory for a group of records) that has no records. So a note has a
- * position in the order of records, and if it is lost, all records after it are lost, too.
+/* sqlite_notes.c - writes and reads notes: states of jobs, and Idempotency-Keys of requests that
+ * changed nothing. In the queue, a note is a group of records that has no records. So a note has a
+ * position in the order of records, and if a note is lost, all records after it are lost, too. The
+ * states of a job in the database are:
  *
- *     accepted ----> done             by the room of the record that is the job's work: both or
- *         |            |              neither
- *         +------------+---> its end, with its answer ---> deleted, by its owner or by age */
+ *     accepted ----> done             written in the transaction of the records that the job made
+ *         |            |
+ *         +------------+---> ended, with its answer ---> deleted by its owner or because of its
+ *                                                        age */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
@@ -90,13 +92,13 @@ static st_sql make_row(st_sqlite *self, const st_job *job)
                  (int64_t)job->status, (uint64_t)job->shown, job->headers[ST_JOB_TYPE],
                  job->headers[ST_JOB_DISPOSITION], job->headers[ST_JOB_TAG],
                  job->headers[ST_JOB_WARNINGS], job->body, job->length, (uint64_t)st_job_sum(job));
-    /* When a job is stored, up to two expired jobs are deleted. */
+    /* Whenever a job is stored, up to two expired jobs are deleted. */
     return outcome == ST_SQL_DONE ? st_db_do(&self->db, ST_SQL_JOBS_TRIM, "d", now - ST_JOB_SECONDS)
                                   : outcome;
 }
 
-/* Marks a job as done in the transaction that writes the records of its work. A job that is not
- * stored, or is damaged, is skipped. */
+/* Marks a job as done, in the transaction that writes the records that the job made. Nothing is
+ * done if the job is not stored or its row is damaged. */
 static st_sql end_row(st_sqlite *self, const st_job *work)
 {
     sqlite3_stmt *s;

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns SQLite's message about damage. If SQLite itself found no error, the message says that a
- * checksum or value in a row is wrong. */
+/* Returns a message about damage of the database: SQLite's own message, or, if SQLite found no
+ * error, that a checksum or a value in a row is wrong. */
 static const char *damage_of(const st_db *db)
 {
     const int code = db->handle == NULL ? SQLITE_OK : sqlite3_errcode(db->handle);
@@ -51,7 +51,8 @@ enum { CACHE_KIB = 8 << 10 };
 static st_sql set_up(st_db *db)
 {
     static const char *const pragmas[] = {
-        /* page_size and auto_vacuum take effect only before the first table is made. */
+        /* The settings page_size and auto_vacuum take effect only before the first table is
+         * made. */
         "PRAGMA page_size = 4096",
         "PRAGMA auto_vacuum = INCREMENTAL",
         "PRAGMA journal_mode = WAL",
@@ -59,7 +60,8 @@ static st_sql set_up(st_db *db)
         "PRAGMA wal_autocheckpoint = 0",
         "PRAGMA journal_size_limit = 67108864",
         "PRAGMA cell_size_check = ON",
-        /* If the file were mapped into memory, a bad sector would raise SIGBUS. */
+        /* The file is not mapped into memory, because then a bad sector of the disk would raise
+         * SIGBUS. */
         "PRAGMA mmap_size = 0",
     };
     st_sql outcome = st_db_set_cache(db, CACHE_KIB);
@@ -98,8 +100,8 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
 static bool make_store(st_sqlite *self, const char *path, const char *release,
                        st_sqlite_opened *out)
 {
-    /* The file `fresh` is made before the database, so that no start takes a half-made store for an
-     * existing one. */
+    /* The file `fresh` is made before the database and says that the store is not complete yet, so
+     * that no later start takes an incomplete store for an existing one. */
     if (!st_folder_make(&self->folder, "fresh") || !st_folder_sync(&self->folder)) {
         return st_refuse(out->message, "%s", self->folder.message);
     }
@@ -112,8 +114,8 @@ static bool make_store(st_sqlite *self, const char *path, const char *release,
     return true;
 }
 
-/* Checks that the database has every commit up to the one that the mark (the file with the number
- * of the last commit) names. */
+/* The mark is a file with the number of the last commit. Checks that the database has every commit
+ * up to that number. */
 static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
 {
     st_mark mark;
@@ -142,10 +144,10 @@ static bool check_meshes(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* Tables that all meshes share are checked at the start: a mesh whose index entry is damaged would
- * seem not to exist, and damage in another shared table would make the first change fail. Each
- * record and part belongs to one mesh and is checked when that mesh is loaded. A table with more
- * rows than CHECKED_ROWS takes too long to check at a start. */
+/* The tables that all meshes share are checked when the store is opened. A mesh whose entry in an
+ * index is damaged would seem not to exist, and damage in another shared table would make the first
+ * change fail. Records and parts belong to single meshes and are checked when a mesh is loaded. A
+ * table with more than CHECKED_ROWS rows is not checked, because that would take too long. */
 enum { CHECKED_ROWS = 200000 };
 
 static bool check_table(st_sqlite *self, const char *table, const char *path, st_sqlite_opened *out)
@@ -188,15 +190,15 @@ static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *ou
 }
 
 /* Checks the stored Idempotency-Keys. If a key is damaged, a repeated request may be executed
- * again, so the daemon warns about it when it starts. */
+ * twice, so the daemon warns about it when it starts. */
 static bool check_keys(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     const st_sql outcome = st_kept_count_damaged(&self->db, &self->damaged_keys);
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* Finds the highest key that a row of a table ever had. New rows get higher keys, because a key
- * must never be used again. */
+/* Finds the highest key that any row of a table ever had. New rows get higher keys, because keys
+ * must never be used twice. */
 static st_sql last_key(st_db *db, const char *table, int64_t *out)
 {
     char text[96];
@@ -210,8 +212,8 @@ static st_sql last_key(st_db *db, const char *table, int64_t *out)
     return outcome == ST_SQL_DONE && *out < most ? ST_SQL_DAMAGED : outcome;
 }
 
-/* Reads the numbers from which the commit thread continues to count: the highest keys of rows, and
- * how many Idempotency-Keys are stored. */
+/* Reads the counters with which the commit thread continues: the highest keys of rows, and the
+ * number of stored Idempotency-Keys. */
 static st_sql read_counts(st_sqlite *self)
 {
     int64_t keys = 0;
@@ -238,8 +240,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
             "`hedged --restore`; to begin an empty store remove hedge.mark",
             self->folder.path);
     }
-    /* SQLite gives the -wal and -shm that it makes the permissions of the database file, so that
-     * file is made first, with the right permissions. */
+    /* The database file is made first, with the right permissions, because SQLite gives the files
+     * -wal and -shm the permissions of the database file. */
     if (!st_folder_has(&self->folder, "hedge.db") && !st_folder_make(&self->folder, "hedge.db")) {
         return st_refuse(out->message, "%s", self->folder.message);
     }
@@ -276,8 +278,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
            check_tables(self, path, out) && check_keys(self, path, out);
 }
 
-/* Cleans up after the last process that had the store open: copies its write-ahead log into the
- * database and deletes contents that it was still writing before their publication. */
+/* Cleans up after the last process that had opened the store: copies its write-ahead log into the
+ * database, and deletes mesh data that it had written for records that were never published. */
 static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     int code =
@@ -296,7 +298,7 @@ static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
         return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
     const st_mark mark = {self->identity.store, self->progress.commits, self->progress.position};
-    /* The folder and files in it may be new, so the folder is synced. */
+    /* The folder and its files may be new, so the folder is synced. */
     return (st_mark_write(&self->folder, &mark) && st_mark_sync(&self->folder) &&
             st_folder_sync(&self->folder)) ||
            st_refuse(out->message, "%s", self->folder.message);
@@ -389,9 +391,9 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
     if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
     }
-    /* The store also works without a ballast, the file that reserves disk space. But if the ballast
-     * was removed so that the daemon could start, the disk counts as full, because the freed space
-     * is for removals of meshes. */
+    /* The store also works without the ballast, a file that reserves disk space. But if a user
+     * removed the ballast so that the daemon can start, the disk counts as full: only removals of
+     * meshes may use the freed space. */
     if (!st_ballast_make(&self->folder) && full) {
         self->mode = ST_WRITES_FULL;
         self->fulls = 1;

@@ -1,8 +1,8 @@
-/* sqlite_purge.c - deletes what is no longer needed. The transaction that makes rows unnecessary
- * adds a row to the table `purge`, and the deletion follows in slices when there is time. A row of
- * `purge` whose checksum is wrong is skipped: keeping too much is safe, deleting too much is not.
- * Rows in damaged pages are never deleted, which does no harm: the mesh that they belong to is
- * removed, and the mesh's key in the database is never used again. */
+/* sqlite_purge.c - deletes rows that are no longer needed. The transaction that makes rows
+ * unnecessary adds a row to the table `purge`; the rows are deleted later, some at a time. A row of
+ * `purge` whose checksum is wrong is skipped, because keeping too much is safe and deleting too
+ * much is not. Rows in damaged pages are never deleted. They do no harm: their mesh is removed, and
+ * no other mesh ever gets its key. */
 #include "journal/sqlite/sqlite_state.h"
 
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before)
@@ -13,8 +13,8 @@ st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t b
                     (uint64_t)st_purge_row_sum(&row));
 }
 
-/* Deletes those snapshots (stored contents) of a mesh that were taken before record number
- * `before`. The query is run again after each deletion, because deleting changes the table that it
+/* Deletes the snapshots (stored mesh data) of a mesh that were taken before record number `before`.
+ * After each deletion the query is run again, because the deletion changes the table that the query
  * reads. */
 static st_sql drop_snapshots(st_sqlite *self, int64_t mesh, uint64_t before)
 {
@@ -65,8 +65,8 @@ st_sql st_purge_dead_stages(st_sqlite *self)
 
 /* --- deleting in slices --- */
 
-/* Finds where a slice of deletions ends: *last is the number of a record, and the records up to
- * this one have about `bytes` bytes together. *last is 0 if there are no records. */
+/* Finds the records that are deleted in one step, about `bytes` bytes of the oldest records. *last
+ * is set to the number of the last of them, or to 0 if there are no records. */
 static st_sql end_of_slice(st_sqlite *self, const st_purge_row *row, size_t bytes, uint64_t *last)
 {
     sqlite3_stmt *s;
@@ -119,9 +119,9 @@ static st_sql next_row(st_sqlite *self, st_purge_row *out, bool *found)
     return outcome;
 }
 
-/* At least SPARE_PAGES pages of the database, and one in SPARE_SHARE, stay free for new rows. Free
- * pages beyond these are returned to the file system; while the disk is full, all free pages are
- * returned. */
+/* At least SPARE_PAGES pages of the database, and at least 1/SPARE_SHARE of its pages, are kept
+ * free for new rows. Other free pages are returned to the file system; while the disk is full, all
+ * free pages are. */
 enum { SPARE_PAGES = 4096, SPARE_SHARE = 4 };
 
 static st_sql shrink(st_sqlite *self, bool *done)
@@ -137,8 +137,8 @@ static st_sql shrink(st_sqlite *self, bool *done)
                                             : outcome;
 }
 
-/* Works on the next row of the table `purge`, which lists what to delete. The row itself is deleted
- * when everything that it lists is deleted or cannot be deleted. */
+/* Deletes rows that a row of the table `purge` lists, about `bytes` bytes of them. The row of
+ * `purge` is deleted when nothing that it lists is left, or what is left cannot be deleted. */
 static st_sql purge_row(st_sqlite *self, const st_purge_row *row, size_t bytes)
 {
     bool gone = row->kind == self->stuck.kind && row->key == self->stuck.key;

@@ -1,5 +1,5 @@
-/* sqlite_queue.c - rooms, which are the memory for groups of records: reserves them, appends
- * records, and queues them for the commit thread. */
+/* sqlite_queue.c - reserves memory for groups of records (such memory is called a room), appends
+ * records, and queues the groups for the commit thread. */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -16,9 +16,9 @@ st_sqlite_room *st_room_of(st_item *item)
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
-    /* The room has memory for the heads (encoded records without bodies) of one record more than
-     * there are, because the head of a record with a body is written directly before the body, not
-     * in the array of heads. */
+    /* A record without its body takes at most ST_FRAME_HEAD bytes. The memory has space for one
+     * record more than there are, because a record with a body is not stored with the others, but
+     * directly before its body. */
     return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
            !__builtin_add_overflow(heads, entries, out) &&
@@ -26,8 +26,8 @@ static bool size_of_room(const st_room_need *need, size_t *out)
            !__builtin_add_overflow(*out, need->bytes, out);
 }
 
-/* Decides whether the queue accepts a group of records of `size` bytes now. The caller holds the
- * lock. */
+/* Decides whether the queue accepts a group of records of `size` bytes now. The caller holds
+ * self->lock. */
 static st_status admit(const st_sqlite *self, size_t size, bool freeing)
 {
     if (self->mode == ST_WRITES_FAILED) {
@@ -78,8 +78,8 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
     return ST_OK;
 }
 
-/* Counts a room (memory for a group of records) as no longer reserved. The caller holds the
- * lock. */
+/* Counts memory that was reserved for a group of records as used or given back. The caller holds
+ * self->lock. */
 static void come_back(st_sqlite *self, const st_sqlite_room *room)
 {
     self->rooms--;
@@ -149,9 +149,8 @@ void st_room_key(st_sqlite_room *room, const st_kept_key *kept)
                               .made = key->of_store};
 }
 
-/* Fills in the room's facts about the job that made the change. The answer of the job does not
- * exist yet, so the status that follows from the record is stored as its HTTP status, until a note
- * states the true one. */
+/* Notes in a group of records which job made them. The answer of the job does not exist yet, so 201
+ * or 204 is stored as its HTTP status; a later note replaces it by the status of the answer. */
 static void fill_job(st_sqlite_room *room, const st_record *record, bool made)
 {
     enum { CREATED = 201, NO_CONTENT = 204 };

@@ -1,5 +1,5 @@
-/* sqlite_read.c - reads meshes: cards (short descriptions) by one connection to the database, whole
- * meshes by ST_LOADS other connections. */
+/* sqlite_read.c - reads meshes. One connection to the database reads cards (short descriptions of
+ * meshes); ST_LOADS other connections load whole meshes. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -22,14 +22,15 @@ static const char *const texts[STATEMENTS] = {
     [COMMIT] = "COMMIT",
 };
 
-/* The state of the load of a mesh: what is read next. */
+/* What the load of a mesh reads next. The base is the record that has the mesh data with which the
+ * load begins. */
 typedef enum stage_of_load {
     AT_BASE,
-    AT_BASE_PARTS, /* next are parts of the base's content that are stored in rows of their own */
-    /* next are parts of the base's content that are stored inside the base's record */
+    AT_BASE_PARTS, /* parts of the base's mesh data that are stored in rows of their own */
+    /* parts of the base's mesh data that are stored in the row of the base's record */
     AT_INLINE_PARTS,
     AT_RECORDS,
-    AT_RECORD_PARTS /* next are parts of the stage (large content or edit) of the last record */
+    AT_RECORD_PARTS /* parts of mesh data or of a large edit that belong to the last record read */
 } stage_of_load;
 
 struct st_reader {
@@ -38,8 +39,8 @@ struct st_reader {
     st_mesh_row row;
     stage_of_load at;
     st_frame frame;
-    /* number: the number of the last record read; chain: the chain (a hash) that the record after
-     * it must have */
+    /* `number`: the number of the last record read; `chain`: the hash that the next record must
+     * state to prove that it follows that record */
     uint64_t number, chain;
     sqlite3_stmt *records, *parts, *base;
     int64_t snapshot;
@@ -61,8 +62,8 @@ enum { CACHE_KIB = 2 << 10 };
 static st_sql open_one(st_db *db, const char *path)
 {
     st_sql outcome = st_db_open(db, path, SQLITE_OPEN_READONLY, texts, STATEMENTS);
-    /* The database file is not mapped into memory, because a bad sector of the disk would then
-     * raise SIGBUS. */
+    /* The file is not mapped into memory, because then a bad sector of the disk would raise
+     * SIGBUS. */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(db, "PRAGMA mmap_size = 0");
     }
@@ -72,8 +73,8 @@ static st_sql open_one(st_db *db, const char *path)
     return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
 }
 
-/* Prepares the SQL statements that begin and end the load of a mesh, so that ending a load needs no
- * memory. */
+/* Opens a connection for loading meshes. Prepares its statements BEGIN and COMMIT now, so that
+ * ending a load needs no memory. */
 static st_sql open_loader(st_db *db, const char *path)
 {
     st_sql outcome = open_one(db, path);
@@ -143,7 +144,8 @@ st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row)
     return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
 }
 
-/* Finds the card of a mesh. A journal that only reads returns damaged meshes, too. */
+/* Finds the card (short description) of a mesh. A journal that is open only for reading finds
+ * damaged meshes, too. */
 static st_status find_card(st_sqlite *self, st_db *db, const char *id, st_mesh_row *row)
 {
     sqlite3_stmt *s;
@@ -192,8 +194,8 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
     sqlite3_stmt *s;
     bool taken = true;
     if (self->only_reads) {
-        /* A journal that only reads passes no holders: it creates no mesh, so their limits do not
-         * matter. */
+        /* A journal that is open only for reading passes no holders (owners of meshes): no mesh is
+         * created, so the limits of holders do not matter. */
         return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);
@@ -214,8 +216,8 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
 
 /* --- damage found by loads --- */
 
-/* Returns the damage that an earlier load has found in a mesh; NULL if no damage was found. The
- * caller holds the lock. */
+/* Returns the damage that an earlier load found in a mesh, or NULL if it found none. The caller
+ * holds self->lock. */
 static st_finding *find_finding(st_sqlite *self, uint64_t incarnation, uint64_t base)
 {
     for (size_t i = 0; i < ST_FINDINGS; i++) {
@@ -237,8 +239,8 @@ static void note_finding(st_sqlite *self, const st_finding *noted)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Marks a card as damaged if a load found damage in the mesh that is not in the mesh's row in the
- * database yet. */
+/* Marks the card (short description) of a mesh as damaged if a load found damage that is not in the
+ * mesh's row of the database yet. */
 static st_status add_finding(st_sqlite *self, st_mesh_row *row)
 {
     st_card *card = &row->card;
@@ -259,7 +261,8 @@ void st_sqlite_condemn(st_reader *reader, const char *damage)
     note_finding(self, &finding);
     st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
-        return; /* if memory is out, the damage is not noted; the next load will find it again */
+        /* memory is out, so the damage is not noted; the next load of the mesh finds it again */
+        return;
     }
     condemned->item.kind = ST_ITEM_CONDEMN;
     condemned->finding = finding;
@@ -278,7 +281,7 @@ __attribute__((format(printf, 2, 3))) static st_status damaged(st_reader *reader
     return ST_DAMAGED;
 }
 
-/* Turns the outcome of a statement that returned no row, or an unreadable row, into a status. */
+/* Returns the status for a statement that returned no row, or a row that cannot be read. */
 static st_status failed(st_reader *reader, st_sql outcome, const char *what)
 {
     return outcome == ST_SQL_DAMAGED
@@ -353,8 +356,8 @@ void st_sqlite_shut(st_reader *reader)
     }
 }
 
-/* Fills in a piece from its frame (encoded record) and, for what the frame lacks, from the card of
- * the mesh. */
+/* Fills in what one step of a load returns to the store: the data of the decoded record, and, where
+ * the record lacks them, the name, id and times from the mesh's card (short description). */
 static void fill_piece(st_reader *reader, st_piece_kind kind, st_piece *out)
 {
     const st_card *card = &reader->row.card;
@@ -389,9 +392,8 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
     return ST_OK;
 }
 
-/* Finds the row of the snapshot that has the mesh's content after record `number`; the parts of the
- * snapshot are read next.
- * Returns ST_ABSENT if there is none. */
+/* Finds the snapshot with the mesh data after record `number`, so that its parts are read next.
+ * Returns ST_ABSENT if there is no such snapshot. */
 static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
 {
     st_db *db = &reader->slot->db;
@@ -419,8 +421,8 @@ static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
     return ST_OK;
 }
 
-/* Decompresses a part. A part with a coding that this release does not know stays as it is, because
- * core/stored reports the unknown coding. */
+/* Decompresses a part of mesh data. A part with a coding that this release does not know is left
+ * unchanged, because core/stored reports such codings. */
 static st_status unpack(st_reader *reader, st_piece *piece)
 {
     const char *why = "";
@@ -444,8 +446,8 @@ static st_status unpack(st_reader *reader, st_piece *piece)
                          (unsigned long long)reader->part, (unsigned long long)reader->number, why);
 }
 
-/* Reads the next part of the snapshot (stored content) into *out, which stays as it is after the
- * last part. */
+/* Reads the next part of a snapshot (stored mesh data) into *out. After the last part *out is left
+ * unchanged. */
 static st_status read_part(st_reader *reader, bool *got, st_piece *out)
 {
     st_db *db = &reader->slot->db;
@@ -489,8 +491,8 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
     return status;
 }
 
-/* Reads the next part of a content that is stored as one block, in which the coding and the length
- * of each part come before the part (stored.h). */
+/* Reads the next part of mesh data that is stored in the row of its record. There, each part is
+ * preceded by its coding and length (stored.h). */
 static st_status read_inline_part(st_reader *reader, bool *got, st_piece *out)
 {
     he_cursor *c = &reader->inline_parts;
@@ -523,7 +525,8 @@ static uint64_t parts_in(he_cursor c)
     return parts;
 }
 
-/* Reads a base (the record from which a mesh is loaded) whose content is in the record itself. */
+/* Reads the base, the record with which the load of a mesh begins, if its mesh data is in the row
+ * of the record. */
 static st_status read_inline_base(st_reader *reader)
 {
     const uint64_t number = reader->row.base;
@@ -558,8 +561,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
 {
     st_status status = find_snapshot(reader, reader->row.base, true);
     reader->at = AT_BASE_PARTS;
-    /* If the table of snapshots cannot be read, the content of the base may still be in its
-     * record. */
+    /* The mesh data of the base may be in the row of its record, even if the table of snapshots
+     * cannot be read. */
     if (status == ST_ABSENT || (status == ST_DAMAGED && reader->journal->salvage.on)) {
         status = read_inline_base(reader);
         reader->at = AT_INLINE_PARTS;
@@ -574,8 +577,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
     return status;
 }
 
-/* Ends the load: checks that the last record read is the newest record of the mesh according to its
- * card. */
+/* Ends the load of a mesh. Checks that the last record read is the newest record that the card
+ * (short description) of the mesh states. */
 static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;
@@ -627,7 +630,8 @@ static st_status read_record(st_reader *reader, st_piece *out)
                            (unsigned long long)number);
         }
         reader->at = AT_RECORD_PARTS;
-        /* This pointer is never followed; it only shows the store that the record has a stage. */
+        /* This pointer is never followed. It only tells the store that parts of the record come
+         * next. */
         out->record.stage = (st_stage *)reader;
         out->parts = reader->parts_left;
         out->record.body = NULL;

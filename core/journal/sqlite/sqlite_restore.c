@@ -36,8 +36,8 @@ static bool copy_bytes(st_folder *folder, const char *file, int from, int to)
     return got == 0 || cannot_read(folder, file);
 }
 
-/* Removes the copy of a backup that a killed restore has left. Otherwise SQLite would replay the
- * log of that copy into the next copy. */
+/* Removes the copy of a backup that an interrupted restore has left. Otherwise SQLite would apply
+ * the log of that copy to the next copy. */
 static bool remove_copy(st_folder *folder)
 {
     static const char *const names[] = {"restored.db-journal", "restored.db-wal", "restored.db-shm",
@@ -93,8 +93,8 @@ static st_sql draw_incarnations(st_db *db)
         const bool good = st_mesh_row_read(s, &row);
         st_db_reset(s);
         row.card.incarnation = st_random();
-        /* A row that was damaged before this change gets a wrong checksum again, so that it still
-         * counts as damaged. */
+        /* If the checksum of the row was wrong before this change, it must be wrong afterwards, so
+         * that the row still counts as damaged. */
         const uint32_t sum = st_mesh_row_sum(&row) ^ (good ? 0 : 1);
         outcome = st_db_do(db, MESH_PUT, "iii", row.key, row.card.incarnation, (uint64_t)sum);
         if (outcome != ST_SQL_DONE) {
@@ -104,8 +104,8 @@ static st_sql draw_incarnations(st_db *db)
     }
 }
 
-/* Removes the ETags of stored answers to requests with an Idempotency-Key, because the states that
- * the ETags name may no longer exist. */
+/* Removes the ETags from stored answers to requests with an Idempotency-Key, because the revisions
+ * that the ETags name may not exist after the restore. */
 static st_sql take_tags_of_keys(st_db *db)
 {
     st_kept_texts row_texts;
@@ -119,8 +119,8 @@ static st_sql take_tags_of_keys(st_db *db)
         const bool good = st_kept_row_read(s, &row_texts, &row);
         st_db_reset(s);
         row.incarnation = row.revision = row.metadata = 0;
-        /* A row that was damaged before this change gets a wrong checksum again, so that it still
-         * counts as damaged. */
+        /* If the checksum of the row was wrong before this change, it must be wrong afterwards, so
+         * that the row still counts as damaged. */
         const uint32_t sum = st_kept_row_sum(&row) ^ (good ? 0 : 1);
         outcome = st_db_do(db, KEPT_PUT, "itti", row.mesh, row.holder, row.text, (uint64_t)sum);
         if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
@@ -132,8 +132,8 @@ static st_sql take_tags_of_keys(st_db *db)
     }
 }
 
-/* Removes the ETags of jobs' answers, because the states that the ETags name may no longer
- * exist. */
+/* Removes the ETags from the answers of jobs, because the revisions that the ETags name may not
+ * exist after the restore. */
 static st_sql take_tags_of_jobs(st_db *db)
 {
     char last[ST_JOB_ID + 1] = "";
@@ -146,8 +146,8 @@ static st_sql take_tags_of_jobs(st_db *db)
         }
         const bool good = st_job_read(s, &job);
         job.headers[ST_JOB_TAG] = "";
-        /* A row that was damaged before this change gets a wrong checksum again, so that it still
-         * counts as damaged. */
+        /* If the checksum of the row was wrong before this change, it must be wrong afterwards, so
+         * that the row still counts as damaged. */
         const uint32_t sum = st_job_sum(&job) ^ (good ? 0 : 1);
         st_db_reset(s);
         outcome = st_db_do(db, JOB_PUT, "ti", job.id, (uint64_t)sum);
@@ -163,7 +163,8 @@ static st_sql take_tags_of_jobs(st_db *db)
 
 static st_sql renew(st_db *db)
 {
-    /* The copy of the backup leaves SQLite's WAL mode, so that all of the copy is in one file. */
+    /* The copy of the backup is taken out of SQLite's WAL mode, so that all its data is in one
+     * file. */
     st_sql outcome = st_db_run(db, "PRAGMA journal_mode = DELETE");
     if (outcome == ST_SQL_DONE) {
         outcome = st_schema_raise(db);
@@ -264,7 +265,7 @@ bool st_sqlite_finish_restore(st_folder *folder)
     if (!st_folder_finds(folder, "restoring")) {
         return true;
     }
-    /* If there is no file restored.db, it was renamed to hedge.db before the restore was
+    /* If restored.db does not exist, it was renamed to hedge.db before the restore was
      * interrupted. */
     if (st_folder_finds(folder, "restored.db")) {
         if (!read_note(folder, before)) {
@@ -291,17 +292,17 @@ bool st_sqlite_finish_restore(st_folder *folder)
 
 static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES])
 {
-    /* An interrupted restore is finished before this restore begins, because the file `restoring`
-     * that it left says that the file restored.db is complete. */
+    /* An interrupted restore is finished first. It has left the file `restoring`, which says that
+     * the file restored.db is complete and would be wrong about the new restored.db. */
     bool good = st_folder_open(folder, path);
     if (good && st_folder_finds(folder, "restoring") && st_folder_finds(folder, "restored.db") &&
         !read_note(folder, before)) {
-        /* The file `restoring` was not written completely, so no file was moved yet and the old
-         * restore can be dropped. */
+        /* The file `restoring` is incomplete, so the interrupted restore has not replaced any file
+         * yet and can be abandoned. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
-    /* Only the file of the backup itself is copied, so a backup with a log of SQLite beside it is
-     * refused: the changes in the log would be left out. */
+    /* Only the file of the backup is copied. If SQLite's log is beside the file, the backup is
+     * refused, because the changes in the log would be lost. */
     good = good && st_sqlite_finish_restore(folder) &&
            st_sqlite_has_no_log(
                file,

@@ -58,7 +58,7 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
     [ST_SQL_STATE_PUT] = "UPDATE state SET commits = ?1, position = ?2, meshes = ?3, sum = ?4",
 };
 
-/* --- heads, which are cached rows of meshes --- */
+/* --- cached rows of the table of meshes, called heads --- */
 
 static st_sql make_row(st_sqlite *self, const st_mesh_row *row)
 {
@@ -96,16 +96,15 @@ static bool holds(const st_head *head, uint64_t incarnation)
     return head->row.key != 0 && head->row.card.incarnation == incarnation;
 }
 
-/* Finds the cache's slot for the row of a mesh; if the slot contains the changed row of another
- * mesh, that row is written to the database first. */
+/* Finds the place in the cache for the row of a mesh. If the changed row of another mesh is there,
+ * that row is first written to the database. */
 static st_sql place_of(st_sqlite *self, uint64_t incarnation, st_head **out)
 {
     *out = &self->heads.slots[incarnation % ST_HEADS];
     return holds(*out, incarnation) ? ST_SQL_DONE : flush(self, *out);
 }
 
-/* Reads the row of a mesh.
- * Returns ST_SQL_DONE if there is no such mesh. */
+/* Reads the row of a mesh. Returns ST_SQL_DONE if there is no such mesh. */
 static st_sql read_row(st_sqlite *self, uint64_t incarnation, st_mesh_row *out, bool *good)
 {
     sqlite3_stmt *s;
@@ -175,8 +174,7 @@ st_sql st_heads_flush(st_sqlite *self)
 
 /* --- records --- */
 
-/* Removes a mesh. This works even if the mesh's row is damaged, because the table's index has the
- * key of the row. */
+/* Removes a mesh, even if its row is damaged: the key of the row is found in the table's index. */
 static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
 {
     st_head *head;
@@ -189,8 +187,8 @@ static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
     if (outcome == ST_SQL_DONE) {
         head->row.key = 0;
         outcome = read_row(self, incarnation, &row, &good);
-        /* A removal must come after the first record of its mesh, so the mesh must have a row; a
-         * missing row is a failure. */
+        /* A mesh that is removed was created before, so it must have a row; a missing row is a
+         * failure. */
         outcome = outcome == ST_SQL_DONE ? ST_SQL_FAILED : outcome;
     }
     if (outcome == ST_SQL_ROW) {
@@ -220,15 +218,15 @@ static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
     return outcome;
 }
 
-/* Writes the row of a record. If the record has a stage (data written in advance), the stage
- * becomes a content or an edit of the mesh. */
+/* Writes the row of a record. If mesh data or a large edit was written in advance for the record (a
+ * stage), it now becomes part of the mesh. */
 static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
 {
     const bool is_base = entry->barrier && !entry->staged_edit &&
                          (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
     st_sql outcome = ST_SQL_DONE;
-    /* A record whose content is a stage needs no row of its own, because the row of the snapshot,
-     * which the stage becomes, contains the facts of the record. */
+    /* If a record's mesh data was written in advance, the row of that snapshot also contains the
+     * encoded record, so the record needs no row of its own. */
     if (!is_base || entry->stage == NULL) {
         outcome = st_db_do(&self->db, ST_SQL_RECORD_MAKE, "iib", head->row.key, entry->number,
                            entry->frame, entry->size);
@@ -246,7 +244,8 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     }
     if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
         head->row.base = entry->number;
-        /* the damage that the card stated was in records that are purged (deleted) now */
+        /* The damage that the card (short description) of the mesh stated was in records that will
+         * be deleted now, so it is removed from the card. */
         head->row.card.damage[0] = '\0';
         outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
     }
@@ -265,7 +264,7 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
         return outcome;
     }
     if (head == NULL || head->row.card.record + 1 != entry->number) {
-        /* the number of the record must follow that of the last record on the disk, but does not */
+        /* the number of the record is not one more than that of the last record on the disk */
         return ST_SQL_FAILED;
     }
     uint64_t chain = st_frame_seal(entry->frame, entry->size, head->row.chain);
@@ -276,9 +275,9 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
     return outcome;
 }
 
-/* When an Idempotency-Key is stored, up to two expired keys are deleted. Only for about one in
- * CUT_EVERY new keys, chosen by chance, the keys of the mesh are counted and the keys beyond the
- * limit deleted. */
+/* Each time an Idempotency-Key is stored, up to two expired keys are deleted. Counting the keys of
+ * a mesh takes longer, so it is done only for about one in CUT_EVERY new keys, chosen at random;
+ * then keys beyond the limit are deleted. */
 enum { CUT_EVERY = 64, CUT_MOST = 16 * CUT_EVERY };
 
 static st_sql trim_keys(st_sqlite *self, const st_kept_row *row, uint32_t sum)
@@ -301,7 +300,7 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
 {
     st_kept_row row = room->key;
     if (row.mesh != 0 && head == NULL) {
-        /* the key is not stored, because the mesh was removed and its keys with it */
+        /* the mesh and its keys were removed, so the new key is not stored */
         return ST_SQL_DONE;
     }
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
@@ -315,8 +314,8 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 
-/* Stores the Idempotency-Key of a request that changed nothing; the mesh of the request may have
- * been removed meanwhile. */
+/* Stores the Idempotency-Key of a request that changed nothing. The mesh of the request may have
+ * been removed in the meantime. */
 static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
 {
     st_head *head = NULL;
@@ -325,7 +324,7 @@ static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
         outcome = st_head_find(self, room->key.incarnation, &head);
     }
     if (outcome == ST_SQL_DAMAGED) {
-        return ST_SQL_DONE; /* a key is not stored for a mesh whose row is damaged */
+        return ST_SQL_DONE; /* no key is stored for a mesh whose row is damaged */
     }
     return outcome == ST_SQL_DONE && room->has_key ? keep_key(self, room, head) : outcome;
 }
@@ -364,7 +363,7 @@ st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned)
     st_head *head;
     st_sql outcome = st_head_find(self, finding->incarnation, &head);
     if (outcome == ST_SQL_DAMAGED) {
-        return ST_SQL_DONE; /* the row shows damage already */
+        return ST_SQL_DONE; /* the row of the mesh states damage already */
     }
     if (outcome == ST_SQL_DONE && head != NULL && head->row.base == finding->base &&
         head->row.card.damage[0] == '\0') {

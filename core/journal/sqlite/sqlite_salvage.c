@@ -1,7 +1,7 @@
 /* sqlite_salvage.c - reads database files whose structure is damaged: reports the faults, and finds
  * meshes without using indexes. The rows of the table of meshes are read in the order of their
- * keys; if a page of the table cannot be read, each following key is tried until a row is found in
- * a page that can be read. */
+ * keys. If a page of the table cannot be read, the keys that follow are tried one by one until the
+ * row of a key can be read again. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -17,7 +17,8 @@ static const char *const texts[STATEMENTS] = {
 
 /* --- faults of the file --- */
 
-/* Passes each line of the text that SQLite returned to `say`. Returns the number of lines. */
+/* Passes each line of a text that SQLite returned to the function `say`. Returns the number of
+ * lines. */
 static unsigned tell_lines(const char *text, st_say *say, void *context)
 {
     unsigned told = 0;
@@ -98,8 +99,8 @@ static st_sql find_row(st_db *db, unsigned which, int64_t key, st_mesh_row *out)
     return outcome;
 }
 
-/* Returns the largest key that a row of the table of meshes may have, from the counter of keys and
- * from the end of the table. */
+/* Returns the largest key that a row of the table of meshes can have, according to the counter of
+ * keys and to the last row of the table. */
 static int64_t last_key(st_db *db)
 {
     int64_t counted = 0, found = 0;
@@ -112,8 +113,8 @@ static int64_t last_key(st_db *db)
     return found > counted ? found : counted;
 }
 
-/* Reads the next row of the table of meshes that can be read.
- * Returns ST_SQL_DONE after the last row. */
+/* Reads the next row of the table of meshes, skipping rows that cannot be read. Returns ST_SQL_DONE
+ * after the last row. */
 static st_sql next_row(st_db *db, int64_t after, st_mesh_row *out)
 {
     st_sql outcome = find_row(db, NEXT, after, out);

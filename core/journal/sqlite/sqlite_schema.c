@@ -8,8 +8,8 @@ static const char *const tables[] = {
     "CREATE TABLE meta(name TEXT PRIMARY KEY, value, sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), commits INTEGER NOT NULL, "
     "position INTEGER NOT NULL, meshes INTEGER NOT NULL, sum INTEGER NOT NULL)",
-    /* The key of a row of `mesh` belongs to one incarnation of a mesh and is never used again. The
-     * columns `fence` and `node` always have their default values. */
+    /* The key of a row of `mesh` is never used for another mesh, even if a new mesh gets the id of
+     * a removed mesh. The columns `fence` and `node` always have their default values. */
     "CREATE TABLE mesh(key INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, "
     "name TEXT NOT NULL, incarnation INTEGER NOT NULL UNIQUE, origin INTEGER NOT NULL, "
     "metadata INTEGER NOT NULL, revision INTEGER NOT NULL, record INTEGER NOT NULL, "
@@ -18,8 +18,8 @@ static const char *const tables[] = {
     "boundary INTEGER NOT NULL, bytes INTEGER NOT NULL, base INTEGER NOT NULL, "
     "damage TEXT NOT NULL, fence INTEGER NOT NULL DEFAULT 0, node TEXT NOT NULL DEFAULT '', "
     "holder TEXT NOT NULL DEFAULT '', sum INTEGER NOT NULL)",
-    /* The records of all meshes are in one table, whose rows lie in one tree, so that small records
-     * share pages. */
+    /* The records of all meshes are in one table, which is stored as one tree, so that small
+     * records share pages. */
     "CREATE TABLE record(mesh INTEGER, number INTEGER, bytes BLOB NOT NULL, "
     "PRIMARY KEY(mesh, number)) WITHOUT ROWID",
     "CREATE TABLE snapshot(key INTEGER PRIMARY KEY AUTOINCREMENT, mesh INTEGER NOT NULL, "
@@ -46,7 +46,7 @@ static const char *const tables[] = {
 };
 enum { TABLES = sizeof tables / sizeof *tables };
 
-/* How many of the tables above exist in each version of the schema. */
+/* How many of the tables above each version of the schema has. */
 static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {
     [1] = TABLES - 2, [2] = TABLES, [3] = TABLES};
 
@@ -67,8 +67,8 @@ static uint32_t add_time(uint32_t sum, double time)
     return st_crc32c(sum, &time, sizeof time);
 }
 
-/* Adds a text to a checksum, with its NUL, so that different pairs of texts never have the same
- * bytes. */
+/* Adds a text and its NUL to a checksum. Without the NUL, the pairs of texts "a", "bc" and "ab",
+ * "c" would have equal checksums. */
 static uint32_t add_text(uint32_t sum, const char *text)
 {
     return st_crc32c(sum, text, strlen(text) + 1);
@@ -92,8 +92,8 @@ uint32_t st_mesh_row_sum(const st_mesh_row *row)
     sum = add_word(add_word(sum, card->counts.faces), card->counts.boundary);
     sum = add_word(add_word(sum, card->bytes), row->base);
     sum = add_text(sum, card->damage);
-    /* If a mesh has no holder, the checksum does not include the column `holder`; so it equals the
-     * checksum that older versions, which had no such column, gave to the row. */
+    /* If a mesh has no holder (owner), the column `holder` is left out of the checksum. So the
+     * checksum equals that of older versions, which had no such column. */
     return card->holder[0] == '\0' ? sum : add_text(sum, card->holder);
 }
 
@@ -114,8 +114,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row)
 uint32_t st_kept_row_sum(const st_kept_row *row)
 {
     uint32_t sum = add_text(add_word(begin("kept"), (uint64_t)row->mesh), row->text);
-    /* If a key has no holder, the checksum does not include the column `holder`; so it equals the
-     * checksum that older versions, which had no such column, gave to the row. */
+    /* If a key has no holder (owner), the column `holder` is left out of the checksum. So the
+     * checksum equals that of older versions, which had no such column. */
     sum = row->holder[0] == '\0' ? sum : add_text(sum, row->holder);
     sum = add_time(add_word(add_word(sum, row->digest[0]), row->digest[1]), row->time);
     sum = add_word(add_text(sum, row->id), row->incarnation);
@@ -199,7 +199,7 @@ bool st_purge_row_read(sqlite3_stmt *s, st_purge_row *out)
     return sum_is(s, 3, st_purge_row_sum(out));
 }
 
-/* Returns the text of a column, "" if it has none; never NULL. */
+/* Returns the text of a column, or "" if the column has no text; never NULL. */
 static const char *text_of(sqlite3_stmt *s, int column)
 {
     const unsigned char *text = sqlite3_column_text(s, column);
@@ -247,8 +247,7 @@ static const char *const texts[STATEMENTS] = {
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
-/* Returns a copy of the connection `db` with the statements of this file in place of the statements
- * of `db`. */
+/* Returns a copy of the connection `db` that uses the SQL statements of this file. */
 static st_db borrowed(const st_db *db)
 {
     return (st_db){.handle = db->handle, .texts = texts};
@@ -312,8 +311,7 @@ st_sql st_schema_make(st_db *db, const st_identity *identity)
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
 }
 
-/* Reads the version of the schema.
- * Returns ST_SQL_DAMAGED if no release ever had this version. */
+/* Reads the version of the schema. Returns ST_SQL_DAMAGED if no release ever wrote this version. */
 static st_sql read_version(st_db *db, int64_t *out)
 {
     st_sql outcome = st_db_number(db, "PRAGMA user_version", 0, out);
@@ -357,7 +355,8 @@ st_sql st_schema_check(st_db *db)
     return outcome;
 }
 
-/* Reads the value of a name from the table `meta`: a number, or, if `text` is not NULL, a text. */
+/* Reads the value of a name from the table `meta`: a number into *word, or, if `text` is not NULL,
+ * a text into `text`. */
 static st_sql get_meta(st_db *db, const char *name, uint64_t *word, char *text)
 {
     sqlite3_stmt *s;

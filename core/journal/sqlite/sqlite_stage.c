@@ -1,6 +1,7 @@
-/* sqlite_stage.c - stages contents and large edits: writes them to disk in parts before they are
- * published. The thread that stages encodes a slice of parts, and waits until the commit thread has
- * written it together with the records of other threads; then it encodes the next slice. */
+/* sqlite_stage.c - writes mesh data and large edits to the disk in parts before their records are
+ * published; data written in this way is called a stage. The calling thread encodes some parts and
+ * waits until the commit thread has written them, together with the records of other threads; then
+ * it encodes the next parts. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -10,16 +11,16 @@
 
 /* --- the thread that stages --- */
 
-/* The data being staged (written to the disk in advance): a whole content, or those bytes of an
- * encoded edit that are not staged yet. */
+/* The data that is written to the disk in advance: all data of a mesh, or the bytes of an encoded
+ * edit that are not written yet. */
 typedef struct source {
     he_stored_writer *content;
     const unsigned char *edit;
     size_t left;
 } source;
 
-/* Encodes the next part of the data being staged (written in advance). Returns the part's number of
- * bytes, 0 after the last part. */
+/* Encodes the next part of the data that is written in advance. Returns the number of bytes of the
+ * part; 0 after the last part. */
 static size_t next_part(source *from, unsigned char *to, unsigned *coding)
 {
     if (from->content != NULL) {
@@ -33,8 +34,8 @@ static size_t next_part(source *from, unsigned char *to, unsigned *coding)
     return size;
 }
 
-/* Fills a slice (up to ST_SLICE_PARTS parts) with the next parts. Returns false if the data ended
- * before the slice was full. */
+/* Fills a slice, an array of at most ST_SLICE_PARTS parts, with the next parts of the data. Returns
+ * false if the data ended before the slice was full. */
 static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
@@ -52,7 +53,8 @@ static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
     return true;
 }
 
-/* Returns why the journal refuses to stage now, or ST_OK. The caller holds self->lock. */
+/* Returns ST_OK if data may be written in advance now, else why the journal refuses it. The caller
+ * holds self->lock. */
 static st_status refusal(const st_sqlite *self)
 {
     return self->mode == ST_WRITES ? ST_OK : self->mode == ST_WRITES_FULL ? ST_FULL : ST_FAILED;
@@ -92,7 +94,8 @@ static st_status stage_parts(st_sqlite *self, source *from, uint64_t parts, st_s
         he_mem_free(slice);
         return ST_NO_MEMORY;
     }
-    /* An edit is staged without compression, because it is loaded as one block of plain bytes. */
+    /* An edit is not compressed, because a load reads its parts into one block of memory as they
+     * are. */
     st_packer *packer = from->content == NULL ? NULL : st_packer_new();
     stage->slice = slice;
     stage->parts = parts;
@@ -137,7 +140,7 @@ static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
 void st_sqlite_unstage(void *context, st_stage *stage)
 {
     if (stage != NULL && stage->key == 0) {
-        /* no part of the stage is on the disk, so nothing is to be deleted there */
+        /* no part is on the disk yet, so nothing must be deleted there */
         he_mem_free(stage);
     } else if (stage != NULL) {
         queue(context, stage, ST_ITEM_UNSTAGE);
@@ -189,7 +192,7 @@ st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most)
         (void)he_put_u32(bytes, st_part_sum(key, part, bytes + 4, size - 4));
         outcome = st_db_do(&self->db, ST_SQL_PART_MAKE, "iib", key, part, bytes, size);
     }
-    /* The parts that this transaction writes count as written only after its commit
+    /* The parts written here count as written only after the transaction is committed
      * (st_stage_written). */
     stage->writing = outcome == ST_SQL_DONE ? count : 0;
     stage->new_key = key;
@@ -218,12 +221,12 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
     return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_PARTS, stage->key, 0) : outcome;
 }
 
-/* The record after which the mesh had the content of a stage. If that record was lost, another
- * record may have its number now. */
+/* The record after which the mesh had the staged data. If that record was lost, another record on
+ * the disk may have its number. */
 typedef struct staged_record {
-    bool same; /* true if the record on the disk is the one from which the stage was made */
-    /* chain: the chain of the record (a hash, record_bytes.h); next: the chain of the record after
-     * it */
+    bool same; /* true if the record on the disk is the record from which the data was taken */
+    /* `chain`: the hash that the record states, which connects it to the record before
+     * (record_bytes.h); `next`: the hash that the record after it must state */
     uint64_t chain, next;
 } staged_record;
 
@@ -248,8 +251,8 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     return ST_SQL_DONE;
 }
 
-/* Returns true if a row of the table of snapshots is a content and not a large edit, which also has
- * a row in that table. */
+/* Returns true if a row of the table of snapshots describes mesh data; other rows of this table
+ * describe large edits. */
 static bool is_content(const st_snapshot_row *row)
 {
     st_frame frame;
@@ -257,8 +260,9 @@ static bool is_content(const st_snapshot_row *row)
            !frame.record.staged_edit;
 }
 
-/* Finds the newest base (record that a mesh can be loaded from) that is newer than the present base
- * and whose revision is not after `needed`; *out is 0 if there is none. */
+/* A base is a record from which a mesh can be loaded. Finds the newest base of the mesh that is
+ * newer than its present base and has a revision of at most `needed`. Sets *out to the number of
+ * the record, or to 0 if there is no such base. */
 static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, uint64_t *out)
 {
     sqlite3_stmt *s;
@@ -288,8 +292,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     } else if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    /* A mesh is loaded from its base, so a stage with the content after an older record than the
-     * base is useless. */
+    /* The base is the record from which the mesh is loaded. Data that shows the mesh before the
+     * present base would never be read. */
     if (head != NULL && stage->number > head->row.base) {
         outcome = read_record(self, stage, head, &record);
     }
@@ -312,8 +316,9 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
-        /* The damage that the card states may be in records that are purged (deleted) now, so it is
-         * taken off the card; the next load checks the remaining records again. */
+        /* The damage that the card (short description) of the mesh states may be in records that
+         * are deleted now, so it is removed from the card. The next load checks the remaining
+         * records again. */
         head->row.card.damage[0] = '\0';
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);
