@@ -3,11 +3,12 @@
 
 #include <string.h>
 
-/* Meshes in memory are listed in batches of at most BATCH: references to more meshes are never held
- * at once. */
+/* The meshes in memory are listed in batches of BATCH meshes, so that references to few meshes are
+ * taken at a time. */
 enum { BATCH = 64 };
 
-/* Copies the card of a mesh in memory. Returns false if the mesh was removed. */
+/* Copies the card (short description) of a mesh that is in memory. Returns false if the mesh was
+ * removed. */
 static bool card_of(st_mesh *mesh, st_card *out)
 {
     st_mesh_info info;
@@ -48,10 +49,11 @@ static size_t cards_in_memory(st_store *store, const char *after, st_card *out, 
     return count;
 }
 
-/* Chooses between two cards with the same id, one from memory and one from the disk. If both
- * describe one mesh, the card on the disk is chosen if it counts more records or the card from
- * memory says that the mesh is damaged. If they describe different meshes, the card from memory is
- * chosen, because the mesh on the disk was removed, which is not written to the disk yet. */
+/* Chooses between two cards (short descriptions of meshes) with one id, one from memory and one
+ * from the disk. If they describe one mesh, the card on the disk is chosen if it counts more
+ * records or if the card from memory states damage. If they describe different meshes, the mesh of
+ * the card on the disk was removed, but the removal is not on the disk yet; so the card from memory
+ * is chosen. */
 static const st_card *newer(const st_card *memory, const st_card *disk)
 {
     bool same = memory->incarnation == disk->incarnation;
@@ -59,7 +61,7 @@ static const st_card *newer(const st_card *memory, const st_card *disk)
     return same && ahead ? disk : memory;
 }
 
-/* A part of an array of cards, in the order of their ids. */
+/* A part of an array of cards (short descriptions of meshes), sorted by id. */
 typedef struct card_run {
     const st_card *at, *end;
 } card_run;
@@ -78,8 +80,9 @@ static size_t merge(card_run memory, card_run disk, st_card *out, size_t limit)
     return count;
 }
 
-/* Lists cards. The meshes in memory are listed first, then those on the disk, so that a mesh that
- * is evicted (removed from memory) in between is in both lists rather than in neither. */
+/* Lists the cards (short descriptions) of all meshes. The meshes in memory are listed first, then
+ * those on the disk: so a mesh that is removed from memory in between is listed twice rather than
+ * not at all. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count)
 {
     const st_journal *journal = &store->journal;

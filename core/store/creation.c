@@ -21,8 +21,8 @@ static st_status book(const st_store *store, const he_mesh *content, size_t reco
     return status;
 }
 
-/* Returns true if the store has as many meshes as it may have. The caller holds the exclusive lock
- * of the table of meshes. */
+/* Returns true if the store has reached its limit of meshes. The caller holds the exclusive lock of
+ * the table of meshes. */
 static bool is_full(const st_store *store)
 {
     const st_journal *journal = &store->journal;
@@ -30,8 +30,8 @@ static bool is_full(const st_store *store)
     return count >= store->max_meshes;
 }
 
-/* Adds the mesh to the store's table of meshes and counts it for its holder (owner). The caller
- * holds the exclusive lock of the table. */
+/* Adds the mesh to the store's table of meshes and counts it for its holder (the owner of the
+ * mesh). The caller holds the exclusive lock of the table. */
 static st_status insert(st_store *store, st_mesh *mesh)
 {
     const st_holding none = {NULL, 0};
@@ -48,9 +48,9 @@ static st_status insert(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* Appends the first record of a new mesh and puts the mesh into the table. The record is appended
- * under the table's lock, so that the record is in the journal when another thread finds the mesh,
- * or finds that its id is taken. */
+/* Appends the first record of a new mesh to the journal and puts the mesh into the store's table.
+ * The record is appended while the table is locked. So if another thread finds the mesh in the
+ * table, or finds that the id is taken, the journal has the record. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     st_lock_write(&store->lock);
@@ -69,8 +69,8 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, 
     return status;
 }
 
-/* Makes a mesh of the content, not yet in the store's table, and reserves space in the journal for
- * `records` records. */
+/* Makes a stored mesh from the data in `content`, without putting it into the store's table, and
+ * reserves space for `records` records in the journal. */
 static st_status prepare(st_store *store, const st_new_mesh *made, he_mesh *content, size_t records,
                          st_booking *booking, st_mesh **out)
 {
@@ -87,8 +87,8 @@ static st_status prepare(st_store *store, const st_new_mesh *made, he_mesh *cont
     return ST_OK;
 }
 
-/* Frees a mesh that was not added to the store, but not its content, which the caller of st_create
- * still owns. */
+/* Frees a stored mesh that was not added to the store. Its mesh data is not freed, because the
+ * caller of st_create still owns it. */
 static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
 {
     mesh->content = NULL;
@@ -102,11 +102,12 @@ static st_status make(st_store *store, const st_new_mesh *made, he_mesh *content
     st_mesh *mesh;
     st_status status = prepare(store, made, content, 1, &booking, &mesh);
     if (status == ST_OK) {
-        /* The time of use is set before the mesh is in the table, because a mesh that was never
-         * used would be evicted first. */
+        /* The time of last use is set before the mesh is in the table. Without it, the mesh would
+         * be the first to be evicted (removed from memory). */
         st_mesh_use(mesh);
-        /* If the records of `made->from` are lost after this check, so is the new mesh's record,
-         * because its space in the journal was reserved before. */
+        /* Space for the record of the new mesh is reserved in the journal already. So if the
+         * records of `made->from` are lost after this check, the record of the new mesh is lost,
+         * too. */
         const bool lost =
             made->from != NULL && st_waits_is_lost(store->followers.waits, made->from);
         status = lost ? ST_LOST : publish(store, mesh, made->cause, &booking);
@@ -131,9 +132,8 @@ static st_status create_as(st_store *store, const st_new_mesh *made, he_mesh *co
     return status;
 }
 
-/* Returns true if there is memory for another mesh. If memory is short, the function makes much
- * more memory free than the mesh needs, because other threads would take a few free bytes at
- * once. */
+/* Returns true if there is memory for another mesh. If memory is short, much more memory is freed
+ * than the mesh needs, because other threads would take a few free bytes at once. */
 static bool has_room(st_store *store)
 {
     st_make_room(store, st_memory_budget() / ST_MEMORY_SHORT_SHARE);
@@ -168,8 +168,8 @@ st_status st_create(st_store *store, const char *id, const char *name, he_mesh *
 
 /* --- replacing a damaged mesh --- */
 
-/* Publishes the removal of the old mesh and the first record of the new one, as one group of
- * records. The caller holds the exclusive lock of the old mesh. */
+/* Appends the removal of the old mesh and the first record of the new mesh to the journal, as one
+ * group of records. The caller holds the exclusive lock of the old mesh. */
 static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_cause *cause,
                          st_booking *booking)
 {
@@ -195,9 +195,9 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     pthread_rwlock_unlock(&store->lock);
 }
 
-/* Subtracts the old mesh from what its holder (owner) has and adds the new mesh to what its own
- * holder has, unless the new mesh would exceed the limit. The caller holds the exclusive lock of
- * the old mesh. */
+/* Counts the new mesh for its holder (owner), and no longer counts the old mesh for the old mesh's
+ * holder. Refuses if the new mesh exceeds the limit of its holder. The caller holds the exclusive
+ * lock of the old mesh. */
 static st_status count_over(st_store *store, const st_mesh *old, st_mesh *fresh)
 {
     const st_holding come = {fresh->holding.holder, he_mesh_bytes(fresh->content)};
@@ -226,7 +226,7 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
         discard(store, fresh, &booking);
         return status;
     }
-    st_release(damaged); /* releases the reference that the store's table had to the old mesh */
+    st_release(damaged); /* releases the reference of the store's table to the old mesh */
     *out = fresh;
     return ST_OK;
 }

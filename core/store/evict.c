@@ -1,5 +1,5 @@
-/* evict.c - evicts unused meshes (removes them from memory) while memory is short; they are loaded
- * from the journal again when a request needs them. */
+/* evict.c - evicts unused meshes, which means that it removes them from memory, while memory is
+ * short. A mesh is loaded from the journal again when a request needs it. */
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/memory.h"
@@ -7,20 +7,21 @@
 
 #include <time.h>
 
-/* The number of classes into which the times of last use of meshes are sorted to choose which
- * meshes to evict (remove from memory). */
+/* Times of last use are sorted into AGES classes to choose which meshes to evict (remove from
+ * memory). */
 enum { AGES = 256 };
 
-/* Meshes are evicted (removed from memory) in batches of BATCH meshes, so that the store's table of
- * meshes is not locked for long. */
+/* Meshes are evicted (removed from memory) in batches of at most BATCH meshes, so that the lock of
+ * the table of meshes is not held for long. */
 enum { BATCH = 64 };
 
-/* A mesh that was not used for COLD_MICROS may be evicted before a request needs its memory; after
- * an attempt that found no mesh to evict, no further attempt is made for BARREN_MICROS. */
+/* A mesh that was not used for COLD_MICROS may be evicted although no request needs its memory yet.
+ * After an attempt that found no mesh to evict, the next attempt is made only after
+ * BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
-/* LOCK_NANOS is how long a thread waits for the lock of the store's table of meshes; DISK_MICROS,
- * how long it waits for the disk if meshes can be evicted as soon as their changes are durable. */
+/* LOCK_NANOS: how long a thread waits for the lock of the table of meshes. DISK_MICROS: how long it
+ * waits for the disk if meshes can be evicted once their changes are durable. */
 enum {
     LOCK_NANOS = 100 * 1000 * 1000,
     SECOND_NANOS = 1000 * 1000 * 1000,
@@ -32,9 +33,9 @@ void st_mesh_use(st_mesh *mesh)
     atomic_store_explicit(&mesh->used, st_clock_micros(), memory_order_relaxed);
 }
 
-/* Takes the lock of the store's table of meshes. Returns false if that takes longer than
- * LOCK_NANOS. A thread that asks for memory may hold locks that the owner of the table's lock waits
- * for, or may own the table's lock itself, so that thread must not wait for ever. */
+/* Takes the lock of the table of meshes. Returns false after LOCK_NANOS. The wait is limited
+ * because the calling thread may already have this lock, or may have a lock for which the owner of
+ * this lock waits. */
 static bool lock_table(st_store *store)
 {
     struct timespec until;
@@ -47,10 +48,10 @@ static bool lock_table(st_store *store)
     return pthread_rwlock_timedwrlock(&store->lock, &until) == 0;
 }
 
-/* Returns true if the mesh can be evicted: only the table of meshes has a reference to the mesh,
- * and the disk has all its changes. The caller holds the table's exclusive lock, under which no
- * thread can begin to use the mesh. A message that waits to be sent to listeners holds a reference,
- * too. */
+/* Returns true if the mesh can be evicted (removed from memory): all its changes are on the disk,
+ * and only the table of meshes has a reference to it. A message that waits to be sent to listeners
+ * also has a reference. The caller holds the exclusive lock of the table, so no thread can begin to
+ * use the mesh. */
 static bool is_cold(st_store *store, st_mesh *mesh)
 {
     if (atomic_load_explicit(&mesh->uses, memory_order_acquire) > 1) {
@@ -65,10 +66,11 @@ static uint64_t bytes_of(const st_mesh *mesh)
     return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
-/* The bytes of meshes, summed up by classes of their time of last use. These sums tell up to which
- * time of last use meshes must be evicted to free a number of bytes. */
+/* For each class of times of last use, the bytes of the meshes in this class. The sums tell which
+ * meshes must be evicted to free a number of bytes: those last used before a limit. */
 typedef struct ages {
-    /* first: the earliest time of last use of any mesh; span: the time from it to the latest one */
+    /* `first`: the earliest time of last use of any mesh; `span`: the time from `first` to the
+     * latest time of last use */
     uint64_t first, span;
     uint64_t bytes[AGES];
 } ages;
@@ -78,7 +80,7 @@ static size_t age_of(const ages *a, uint64_t used)
     return (size_t)((used - a->first) / (a->span / AGES + 1));
 }
 
-/* Returns the time of last use before which meshes are evicted to free about `bytes` bytes. The
+/* Returns a time such that evicting the meshes last used before it frees about `bytes` bytes. The
  * caller holds the lock of the table of meshes. */
 static uint64_t find_limit(st_store *store, uint64_t bytes)
 {
@@ -104,8 +106,8 @@ static uint64_t find_limit(st_store *store, uint64_t bytes)
     return a.first + age * (a.span / AGES + 1);
 }
 
-/* Takes up to BATCH meshes that were last used before `limit` out of the table of meshes, beginning
- * at index *place. */
+/* Takes at most BATCH meshes that were last used before `limit` out of the table of meshes. The
+ * search begins at index *place, which is then set to where the next search must begin. */
 static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *batch[BATCH])
 {
     size_t count = 0, to = *place, from = *place;
@@ -130,9 +132,9 @@ static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *
     return count;
 }
 
-/* Evicts meshes that were last used before `newest`, as many as it takes to free `bytes` bytes.
- * Returns the number of evicted meshes. *locked says whether the lock of the table of meshes could
- * be taken. */
+/* Evicts meshes that were last used before `newest`, least recently used first, until about `bytes`
+ * bytes are free. Returns the number of evicted meshes. *locked is set to false if the lock of the
+ * table of meshes could not be taken. */
 static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *locked)
 {
     st_mesh *batch[BATCH];
@@ -156,12 +158,13 @@ static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *lock
 }
 
 /* Returns how many bytes must be freed so that `bytes + share` bytes of the memory budget are
- * free. */
+ * available. */
 static uint64_t missing(uint64_t bytes, uint64_t share)
 {
     const uint64_t held = st_memory_used() + st_resident_beside();
     const uint64_t wanted = held + bytes + share, budget = st_memory_budget();
-    return wanted > budget ? wanted - budget : 0; /* other threads free memory meanwhile */
+    /* the amount of used memory may change during the calculation */
+    return wanted > budget ? wanted - budget : 0;
 }
 
 static void make_room(st_store *store, uint64_t bytes)
@@ -169,34 +172,34 @@ static void make_room(st_store *store, uint64_t bytes)
     const uint64_t budget = st_memory_budget();
     uint64_t share = budget / 16;
     bool locked;
-    /* While this thread waited for the lock, another one may have freed memory. */
+    /* Another thread may have freed memory while this thread waited for the lock. */
     pthread_mutex_lock(&store->room);
     if (missing(bytes, share) > 0) {
         st_resident_measure();
     }
-    /* If meshes must be evicted at all, more than `share` bytes are made free, so that the next
-     * requests need not measure memory and evict again. */
+    /* If meshes must be evicted, more bytes than `share` are made free, so that the next requests
+     * need not evict meshes again. */
     share += share / 4;
     if (missing(bytes, share) > 0) {
         st_store_shed(store);
     }
     if (store->journal.keeps && missing(bytes, share) > 0) {
-        /* More bytes are evicted than are missing, so that the next eviction is not due at once. */
+        /* More bytes are evicted than necessary, so that the next eviction need not follow soon. */
         (void)evict(store, missing(bytes, 2 * budget / 16), UINT64_MAX, &locked);
     }
     pthread_mutex_unlock(&store->room);
 }
 
-/* Returns the position of the newest record if records are being written to the disk, else 0.
- * Meshes whose records are not durable cannot be evicted. */
+/* Returns the position of the newest record if some records are not on the disk yet, else 0. A mesh
+ * cannot be evicted before its records are durable. */
 static uint64_t on_its_way(const st_store *store)
 {
     const uint64_t newest = st_waits_newest(store->followers.waits);
     return newest > st_waits_durable(store->followers.waits) ? newest : 0;
 }
 
-/* Waits until the record at position `newest` and all records before it are durable. Returns true
- * if another eviction may then find more meshes. */
+/* Waits until all records up to position `newest` are durable. Returns true if more meshes can then
+ * be evicted. */
 static bool await_disk(st_store *store, uint64_t newest, uint64_t until)
 {
     return store->journal.keeps && newest != 0 &&
@@ -214,14 +217,14 @@ void st_make_room(st_store *store, uint64_t bytes)
     do {
         newest = on_its_way(store);
         make_room(store, bytes);
-        /* If `bytes` is 0, the caller is an edit. It does not wait for the disk, because the memory
-         * that is free may suffice for the edit. */
+        /* If `bytes` is 0, memory is needed for an edit. An edit does not wait for the disk,
+         * because the memory that is free may suffice. */
     } while (bytes > 0 && !st_memory_has(bytes + share) && await_disk(store, newest, until));
 }
 
-/* Frees memory for a thread whose allocation would be refused (a memory giver, see memory.h). That
- * thread may hold any lock except the lock of the table of meshes and the locks that st_store_shed
- * takes. */
+/* Frees memory for a thread whose allocation would otherwise be refused (memory.h calls such a
+ * function a giver). The thread may hold any lock except that of the table of meshes and those that
+ * st_store_shed takes. */
 static bool give_room(void *context, uint64_t bytes)
 {
     st_store *store = context;

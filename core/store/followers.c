@@ -9,9 +9,9 @@
 static void is_known(st_wait *wait);
 static bool end_wait(st_mesh *mesh);
 
-/* Allows listeners to read the messages whose records are durable, and begins to wait for the
- * records of the other messages. A mesh has only one wait at a time: if a wait has begun already,
- * is_known looks for newer messages when that wait ends. */
+/* Allows listeners to read the messages whose records are durable, and waits for the records of the
+ * other messages. A mesh has at most one such wait. If there is one already, newer messages are
+ * handled when it ends. */
 static void allow(st_mesh *mesh)
 {
     st_waits *waits = mesh->followers->waits;
@@ -33,8 +33,8 @@ static void allow(st_mesh *mesh)
     }
 }
 
-/* Ends the queue's wait for durable records. Returns true if there may be more messages that
- * listeners can now be allowed to read. */
+/* Ends the wait of the mesh's queue of messages for durable records. Returns true if listeners may
+ * perhaps read more messages now. */
 static bool end_wait(st_mesh *mesh)
 {
     const st_wait wait = mesh->wait;
@@ -67,8 +67,8 @@ void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_chan
     }
 }
 
-/* Informs the listeners of a mesh about a group of records. The records become durable together, so
- * their messages have the same place in the queue. */
+/* Puts the messages about a group of records into the queue for the mesh's listeners. The records
+ * of a group become durable together, so listeners may read all its messages from one moment on. */
 void st_mesh_tell(st_mesh *mesh, const st_group *group)
 {
     bool followed = st_queue_is_followed(&mesh->queue);
@@ -104,8 +104,8 @@ void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length)
     allow(mesh);
 }
 
-/* Makes a listener begin after the revision that `since` names, or, if `since` is NULL, after the
- * present revision. The caller holds the mesh's lock. */
+/* Makes a listener begin with the messages after the revision `since`, or after the present
+ * revision if `since` is NULL. The caller holds the mesh's lock. */
 static st_missed begin(st_listener *listener, const st_since *since, const st_mesh_info *info)
 {
     if (!since->given) {

@@ -5,15 +5,15 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* After replaying TURN_BYTES bytes of deltas (recorded changes), which takes some milliseconds, the
- * mesh's lock is released so that writers can take it. */
+/* Moving a copy of a mesh to another revision by TURN_BYTES bytes of deltas (recorded changes)
+ * takes some milliseconds. Then the lock of the mesh is released, so that writers can take it. */
 enum { TURN_BYTES = 8 << 20 };
 
 struct st_cursor {
     st_mesh *mesh;
     he_replay *replay;
     uint64_t at;
-    /* the step (one change) that the last call of st_cursor_next returned; the cursor holds a
+    /* the step (one change of the mesh) that st_cursor_next returned last; the cursor has a
      * reference to it */
     st_step *held;
 };
@@ -32,8 +32,8 @@ static st_status bounds(const st_revision_log *log, uint64_t revision)
 }
 
 /* Moves a copy of the mesh towards the wanted revision by at most `most` bytes of deltas (recorded
- * changes). If there is no copy yet, the function first copies the newest revision. The caller
- * holds the mesh's shared lock. */
+ * changes). If there is no copy yet, copies the mesh at its newest revision first. The caller holds
+ * the shared lock of the mesh. */
 static he_status one_turn(const st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision,
                           uint64_t most)
 {
@@ -62,9 +62,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
         if (walked == HE_NO_MEMORY) {
             status = no_memory();
         } else if (walked != HE_OK) {
-            /* Steps of the mesh were undone and redone meanwhile, so this copy cannot be moved to
-             * the wanted revision. A new copy of the newest revision can be moved there, unless the
-             * mesh changes again. */
+            /* In the meantime changes were undone and redone, so that this copy cannot be moved to
+             * the wanted revision. It is replaced by a new copy of the newest revision. */
             he_replay_free(*replay);
             *replay = NULL;
             most = UINT64_MAX;
@@ -77,8 +76,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
     return status;
 }
 
-/* Begins a cursor at a revision that the history in memory has dropped: the records on the disk may
- * still lead to the revision, so a second copy of the mesh is loaded with its whole history. */
+/* Begins at a revision that is no longer in the history in memory. The records on the disk may
+ * still lead to it, so the mesh is loaded a second time from the disk with its whole history. */
 static st_status begin_on_disk(st_cursor *cursor, st_mesh *mesh, uint64_t revision)
 {
     st_status status = st_mesh_load_apart(mesh, 0, &cursor->mesh);
@@ -117,7 +116,7 @@ uint64_t st_cursor_revision(const st_cursor *cursor)
     return cursor->at;
 }
 
-/* Moves the cursor one revision further. The caller holds the mesh's shared lock. */
+/* Moves the cursor to the next revision. The caller holds the shared lock of the mesh. */
 static st_status advance(st_cursor *cursor, st_action *action)
 {
     const st_revision_log *log = &cursor->mesh->log;

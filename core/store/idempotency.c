@@ -40,7 +40,7 @@ static st_keyed **find(const st_keys *keys, const char *key, const char *holder,
     return at;
 }
 
-/* Takes an entry out of the table of Idempotency-Keys. */
+/* Removes an entry from the table of Idempotency-Keys. */
 static void forget(st_keys *keys, st_keyed *keyed)
 {
     *find(keys, keyed->text, keyed->key.holder, keyed->hash) = keyed->next;
@@ -65,8 +65,8 @@ void st_keys_clear(st_keys *keys)
     pthread_mutex_destroy(&keys->lock);
 }
 
-/* Grows the hash table, if necessary. If memory is out, the table does not grow, and its chains of
- * entries become longer. */
+/* Enlarges the hash table if it is too full. If memory is out, the table is not enlarged, and the
+ * lists of entries with equal hash become longer. */
 static bool reserve_bucket(st_keys *keys)
 {
     if (keys->count < keys->bucket_count) {
@@ -99,7 +99,8 @@ static void forget_old(st_keys *keys, double now)
     }
 }
 
-/* Adds an entry for an Idempotency-Key whose request begins now. Returns NULL if memory is out. */
+/* Adds an entry for a request with an Idempotency-Key that begins now. Returns NULL if memory is
+ * out. */
 static st_keyed *add(st_keys *keys, const st_key *key, const char *whose, uint64_t hash, double now)
 {
     size_t length = strlen(key->text), holder = strlen(whose);
@@ -166,8 +167,8 @@ void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
     if (body != NULL) {
         memcpy(body, answer->body, answer->length);
     } else if (answer->length > 0 && !answer->changed) {
-        /* The answer is not kept, because the request changed nothing and can be executed again if
-         * it is repeated. */
+        /* The request changed nothing, so it can be executed again if the client repeats it. Its
+         * answer is not kept. */
         return;
     }
     pthread_mutex_lock(&keys->lock);
@@ -199,7 +200,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
                       .metadata = kept->metadata};
     snprintf(answer.id, sizeof answer.id, "%s", kept->id);
     st_keyed *keyed;
-    /* The stored time of a damaged key cannot be trusted, so the present time is used instead. */
+    /* The time in a damaged row may be wrong, so the present time is used instead. */
     const double time = kept->is_damaged ? st_clock_utc() : was->time;
     switch (st_keys_begin(keys, &key, time, &keyed)) {
     case ST_KEYED_NEW:
@@ -207,7 +208,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
         st_keyed_keep(keyed, &answer);
         st_keyed_end(keyed);
         break;
-    /* the key was used again meanwhile, and the answer in memory is newer than the stored key */
+    /* the key was used again in the meantime, so memory has a newer answer than the disk */
     case ST_KEYED_KEPT:
         st_keyed_end(keyed);
         break;

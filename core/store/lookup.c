@@ -7,16 +7,16 @@
 
 #include <string.h>
 
-/* How many microseconds a thread waits for another thread's lookup of an id on the disk. */
+/* How long, in microseconds, a thread waits while another thread looks up an id on the disk. */
 enum { LOOKUP_MICROS = 30 * 1000 * 1000 };
 
 struct st_lookup {
     char id[ST_MESH_ID + 1];
-    /* Number of threads that use this lookup: the thread that owns it and the threads that wait for
-     * it. */
+    /* Number of threads that use this lookup: the thread that searches the disk, and the threads
+     * that wait for its result. */
     size_t uses;
     bool ended;
-    /* the result of the lookup: ST_OK if the mesh is in memory now, else why it is not */
+    /* the result: ST_OK if the mesh is in memory now, else the reason why it is not */
     st_status status;
     st_lookup *next;
 };
@@ -66,8 +66,8 @@ static st_status add(st_lookups *lookups, const char *id, st_lookup **out)
     return ST_OK;
 }
 
-/* Waits until another thread's lookup has ended. If the result is ST_OK, the caller must search the
- * table of meshes again. */
+/* Waits until another thread has ended its lookup of an id. If the result is ST_OK, the caller must
+ * search the table of meshes again. */
 static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
 {
     const uint64_t since = st_clock_micros();
@@ -133,7 +133,7 @@ st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
     st_status status;
     do {
         status = st_lookup_begin(store, id, &mesh, out);
-        /* another thread's lookup of the id found no such mesh, so the id may be free */
+        /* the lookup of another thread found no mesh with this id, so the id may be free */
     } while (status == ST_ABSENT);
     if (status != ST_OK) {
         return status;
@@ -160,8 +160,8 @@ void st_lookup_end(st_store *store, st_lookup *lookup)
 
 /* --- a mesh that is on the disk --- */
 
-/* Makes a mesh that stands in for one that cannot be loaded: it has the id, name and counts of the
- * card, but no content. */
+/* Makes a substitute for a mesh that cannot be loaded. It has no mesh data, but the id, name and
+ * counts of the mesh's card (short description). */
 static st_status stand_in(const st_mesh_options *options, const st_card *card, st_status why,
                           st_mesh **out)
 {
@@ -231,8 +231,8 @@ static st_status put_in(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* Counts the load of a mesh from the disk for monitoring. `mesh` is NULL if no mesh was found; a
- * mesh that cannot be read has no content. */
+/* Counts a load of a mesh from the disk for monitoring. `mesh` is NULL if no mesh was found. If the
+ * mesh could not be read, its `content` is NULL. */
 static void count_load(st_store *store, st_status status, const st_mesh *mesh, uint64_t micros)
 {
     st_store_counts *counts = &store->followers.counts;
@@ -302,8 +302,8 @@ st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold
     return ST_OK;
 }
 
-/* Makes a mesh without content, which is never in the store's table. It stands for a mesh that is
- * not in memory, so that the record of that mesh's removal can be appended. */
+/* Makes a substitute without mesh data for a mesh that is not in memory, so that the removal of
+ * that mesh can be appended to the journal. The substitute is never in the table of meshes. */
 static st_mesh *new_stand_in(const st_cold *cold)
 {
     const st_mesh_options options = st_store_mesh_options(cold->store);

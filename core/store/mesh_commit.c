@@ -1,6 +1,6 @@
-/* mesh_commit.c - the kinds of commit: an edit (of the mesh, or of the copy that a claim works on),
- * undo and redo, replace, rename, removal. Each change is first put into the history, then appended
- * to the journal and sent to the listeners. */
+/* mesh_commit.c - the kinds of commit: an edit of the mesh, or of the copy on which a long edit
+ * works; undo and redo; replacement of the mesh data; rename; removal. Each change is put into the
+ * history, then appended to the journal and sent to listeners. */
 #include "store/mesh_commit.h"
 
 #include "system/clock.h"
@@ -22,8 +22,8 @@ static double revise(st_mesh *mesh)
     return mesh->info.modified;
 }
 
-/* Counts the elements that a change has created, deleted and modified. If the whole content was
- * replaced, the numbers are not known. */
+/* Counts the elements that a change has created, deleted and modified. If the change replaced all
+ * data of the mesh, the numbers are unknown. */
 static st_tally tally_of(const he_changes *changes)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -36,8 +36,8 @@ static st_tally tally_of(const he_changes *changes)
     return tally;
 }
 
-/* Commits an edit. A reference keeps the delta (recorded changes) of the edit in memory until the
- * edit was published, even if the history drops the delta. */
+/* Commits an edit. A reference to the edit's delta (recorded changes) keeps it in memory until the
+ * edit is published, even if the history drops it. */
 static void commit_edit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
@@ -95,8 +95,8 @@ static void rename_mesh(st_mesh *mesh, const char *name)
     mesh->info.modified = st_clock_utc();
 }
 
-/* Commits a replacement of the content, a rename, or both. Both together make two records, which
- * are appended as one group. */
+/* Commits a replacement of the mesh data, a rename, a replacement with a rename, or a removal. A
+ * replacement with a rename makes two records, which are appended as one group. */
 static void commit_facts(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -129,7 +129,8 @@ static void commit_facts(st_write *w)
                   .booking = &w->booking, .records = records, .changes = changes, .count = count});
 }
 
-/* Puts the new content into the mesh and returns the old content, which the caller frees. */
+/* Puts the new mesh data into the mesh. Returns the old data, which the caller frees, or NULL if
+ * nothing was exchanged. */
 static he_mesh *exchange_content(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -141,16 +142,17 @@ static he_mesh *exchange_content(st_write *w)
     }
     he_mesh *before = mesh->content;
     if (before == w->content) {
-        /* At a removal the content stays in the mesh, because a long edit that has claimed the mesh
-         * may be reading it. */
+        /* The data also stays in the mesh when the mesh is removed, because a long edit may still
+         * be reading it. */
         return NULL;
     }
     mesh->content = w->content;
     return before;
 }
 
-/* Reserves space in the journal for the records of the write. If the write is a claim, the caller
- * does not hold the mesh's lock, because no other thread knows the claim's copy. */
+/* Reserves space in the journal for the records of the write. During a claim (a long edit that
+ * works on a copy of the mesh) the caller does not hold the mesh's lock; it needs none, because
+ * only this thread uses the copy. */
 static st_status book(st_write *w)
 {
     const st_journal *journal = w->mesh->journal;
@@ -175,9 +177,9 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
-/* Returns true if the change was made from records that are lost. The function must be called after
- * space in the journal was reserved: a loss that comes later then includes the record of this
- * change, too. */
+/* Returns true if the change was made from records that are lost. Space in the journal must have
+ * been reserved before, because then a loss after this check includes the record of this change,
+ * too. */
 static bool is_from_lost(const st_write *w)
 {
     st_waits *waits = w->mesh->followers->waits;
@@ -188,8 +190,8 @@ static bool is_from_lost(const st_write *w)
     return lost;
 }
 
-/* Refuses the commit if the journal has no space, if a claimed mesh was removed or lost meanwhile,
- * or if the mesh would take more than its holder (owner) may have. */
+/* Refuses the commit if the journal has no space, if the mesh was removed or lost during a long
+ * edit, or if the mesh would have more bytes than its holder (owner) may have. */
 static st_status get_ready(st_write *w)
 {
     const st_status unreadable = w->kind == ST_WRITE_REMOVE ? ST_OK : w->info.unreadable;
@@ -241,13 +243,12 @@ st_status st_write_commit(st_write *w, const char *ops)
     }
     st_mesh_facts(mesh, &w->info);
     if (removed) {
-        /* The mesh leaves the store's table after its last record is in the journal, because
-         * another mesh may then get its id. */
+        /* The last record of the mesh is in the journal now. Only then may the mesh leave the
+         * table, after which another mesh can get its id. */
         st_store_take_out(mesh->store, mesh);
     }
     st_write_end(w, discard);
-    /* Cached copies of the mesh cannot be brought forward across a replacement, so they are
-     * freed. */
+    /* Cached copies of the mesh are freed, because they cannot be updated to the replaced data. */
     if (cut_off) {
         st_mesh_shed(mesh);
     }

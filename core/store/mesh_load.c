@@ -10,25 +10,27 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The state of a load. */
+/* The data of the load of a mesh from the journal. */
 typedef struct load {
     const st_mesh_options *options;
-    uint64_t until; /* the revision at which to stop; 0: the last */
-    /* The mesh that is being loaded. Until the base, the first content, was read, the mesh's
-     * content is NULL and its log of revisions is empty. */
+    uint64_t until; /* the revision at which the load stops; 0: the last revision */
+    /* The mesh that is being loaded. Its `content` is NULL and its log of revisions is empty until
+     * the base is read, the mesh data with which the load begins. */
     st_mesh *mesh;
-    uint64_t bytes;    /* bytes that the content takes in memory, according to the card */
+    /* bytes that the mesh data takes in memory, according to the card (short description) of the
+     * mesh */
+    uint64_t bytes;
     uint64_t record;   /* number of the last record that was applied to the mesh; 0: none */
-    uint64_t metadata; /* counter of the mesh's metadata changes after the last applied record */
-    /* The oldest revision that the history still has after the last applied record. */
+    uint64_t metadata; /* how often the name was changed, according to the last applied record */
+    /* The oldest revision in the history, according to the last applied record. */
     uint64_t reach;
-    /* The base or record whose parts are being read; its texts are copies. */
+    /* The record whose parts are being read. Its texts are copies. */
     st_record pending;
-    bool is_base; /* `pending` is a base */
+    bool is_base; /* true if `pending` is the base, with which the load begins */
     char ops[ST_ENTRY_OPS];
-    he_stored_reader *content; /* reads the parts of a content, if `pending` has one */
-    unsigned char *edit;       /* the encoded edit, if `pending` has an edit in parts */
-    /* Number of parts of `pending` not read yet; 0: nothing is pending. */
+    he_stored_reader *content; /* reads the parts, if they are mesh data */
+    unsigned char *edit;       /* the bytes of the parts, if they are an encoded edit */
+    /* Number of parts of `pending` that are not read yet; 0: no record is being read in parts. */
     uint64_t missing;
     char *damage;
 } load;
@@ -48,8 +50,8 @@ static st_status no_memory(void)
     return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
 }
 
-/* Turns an error (he_error) that occurred while reading record `number` into a status and a
- * sentence. */
+/* Returns a status for an error that occurred while record `number` was read, and stores a sentence
+ * about it in l->damage. */
 static st_status status_of(load *l, he_status status, uint64_t number, const he_error *err)
 {
     if (status == HE_OK) {
@@ -82,7 +84,7 @@ static st_status wrong_marks(load *l, const st_record *record)
 
 /* --- contents --- */
 
-/* Begins the history of a mesh with the content of its base, which becomes the mesh's content. */
+/* Puts the mesh data of the base into the mesh and begins the mesh's history with it. */
 static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -94,7 +96,7 @@ static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* Applies a record of a replacement (PUT). */
+/* Applies a record that replaces all data of the mesh (PUT). */
 static st_status replace(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -113,8 +115,8 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* Adds the reserved delta to the history, as the entry of the record from which the delta was
- * read. */
+/* Adds the delta (changes) that was read from a record to the history, as the entry of this
+ * record. */
 static st_status add_edit(load *l, const st_record *record)
 {
     st_mesh *mesh = l->mesh;
@@ -131,7 +133,7 @@ static st_status add_edit(load *l, const st_record *record)
     return ST_OK;
 }
 
-/* Applies an edit whose record has the whole content after the edit in place of a delta. */
+/* Applies an edit whose record has, in place of a delta, all mesh data after the edit. */
 static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -152,8 +154,8 @@ static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
     return add_edit(l, record);
 }
 
-/* Puts a content that has been read completely into the mesh. The content belongs to the base or to
- * a record. */
+/* Puts mesh data that was read completely into the mesh. The data belongs to the base or to a later
+ * record. */
 static st_status take_content(load *l, const st_record *record, bool is_base, he_mesh *takes)
 {
     if (!has_marks(takes, record->issued)) {
@@ -164,7 +166,7 @@ static st_status take_content(load *l, const st_record *record, bool is_base, he
         return begin_history(l, record, takes);
     }
     if (record->barrier) {
-        /* the revisions before this one may be purged (deleted) from the disk */
+        /* records of earlier revisions may have been deleted from the disk */
         l->mesh->base = record->revision;
     }
     return record->kind == ST_RECORD_CONTENT ? replace(l, record, takes)
@@ -180,8 +182,8 @@ static void free_parts(load *l)
     l->missing = 0;
 }
 
-/* Allocates memory for an encoded edit that was stored in parts. The exact size of the edit is
- * known only when all parts are read. */
+/* Allocates memory for an encoded edit that is stored in parts. The size of the edit is not known
+ * before its last part is read, so memory for the largest possible parts is allocated. */
 static st_status begin_edit(load *l, const st_piece *piece)
 {
     if (piece->parts > ST_MOST_BODY / HE_STORED_PART + 1) {
@@ -308,8 +310,8 @@ static st_status take_step(load *l, const st_record *record)
     } else {
         he_delta_redo(delta, mesh->content);
     }
-    /* If an edit replaced the whole content, the record's count of issued ids is the only place
-     * that states the ids which the edit issued. */
+    /* If an edit replaced all mesh data, only this number in its record tells how many ids it has
+     * issued. */
     he_status status = he_mesh_issue(mesh->content, record->issued, &err);
     if (status == HE_OK && !has_marks(mesh->content, record->issued)) {
         return wrong_marks(l, record);
@@ -320,7 +322,7 @@ static st_status take_step(load *l, const st_record *record)
     return status_of(l, status, record->number, &err);
 }
 
-/* Checks that a record is the next one of this mesh. */
+/* Checks that a record is the next record of this mesh. */
 static st_status check_record(load *l, const st_record *record)
 {
     const st_mesh *mesh = l->mesh;
@@ -357,7 +359,8 @@ static st_status take_record(load *l, const st_piece *piece)
     case ST_RECORD_CONTENT:
         return record->stage != NULL ? begin_parts(l, piece) : take_whole(l, record);
     case ST_RECORD_RENAME:
-        return ST_OK; /* a rename is not applied, because the mesh's name is taken from its card */
+        /* nothing is to be done, because the name of the mesh is taken from its card */
+        return ST_OK;
     case ST_RECORD_REMOVE:
         break;
     }
@@ -375,8 +378,8 @@ static st_status take_base(load *l, const st_piece *piece)
     if (l->until != 0 && record->revision > l->until) {
         return ST_GONE;
     }
-    /* More memory is made free than the content takes, because the arrays of a mesh have spare
-     * capacity, and an earlier revision is copied once more. */
+    /* More memory is freed than the mesh data takes, because the arrays of a mesh have spare
+     * capacity, and because an earlier revision is copied after the load. */
     st_make_room(l->options->store, l->until == 0 ? l->bytes + l->bytes / 2 : 2 * l->bytes);
     l->record = record->number;
     l->metadata = record->metadata;
@@ -437,16 +440,16 @@ static st_status check_content(load *l)
     return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
 }
 
-/* Ends the loading of the history, which is then as it was before the mesh left memory, unless the
- * undo budget is much smaller now. */
+/* Ends the loading of the history. It is now as it was before the mesh left memory, unless the undo
+ * budget is much smaller now. */
 static void end_history(load *l)
 {
     st_log_drop(&l->mesh->log, l->reach);
     st_log_limit(&l->mesh->log, l->options->undo_budget);
 }
 
-/* Returns true if this piece of the stored mesh comes after the revision at which the load is to
- * stop. */
+/* Returns true if `piece`, the next thing read from the disk, belongs to a later revision than that
+ * at which the load stops. */
 static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||

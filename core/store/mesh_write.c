@@ -1,5 +1,5 @@
-/* mesh_write.c - begins a write (a change of a mesh), prepares what the write commits, and aborts
- * it. */
+/* mesh_write.c - begins a write, which is a change of a mesh; prepares what the write commits; and
+ * aborts the write. */
 #include "store/mesh_commit.h"
 
 #include "store/table.h"
@@ -46,7 +46,8 @@ static st_cause cause_of(const st_cause *cause)
 
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
-    /* If memory is short, the caches of meshes are freed before the request is refused memory. */
+    /* If memory is short, caches of meshes are freed before the request is refused for lack of
+     * memory. */
     st_make_room(mesh->store, 0);
     *out = (st_write){.mesh = mesh, .cause = cause_of(cause)};
     st_lock_write(&mesh->lock);
@@ -83,8 +84,8 @@ void st_claimed_by(st_mesh *mesh, const char *id)
     pthread_rwlock_unlock(&mesh->lock);
 }
 
-/* Returns the content of a claimed mesh. The caller needs no lock, because other writes cannot
- * change the mesh until the claim ends. */
+/* Returns the data of a mesh that a long edit has claimed. The caller needs no lock, because no
+ * other write can change the mesh until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *w)
 {
     assert(w->claimed);
@@ -102,8 +103,8 @@ he_status st_write_copy(st_write *w, he_progress *progress, he_error *err)
     return status;
 }
 
-/* Frees the copy that a claim works on and empties the claim's delta (recorded changes), because
- * the delta holds columns and contents of the copy. */
+/* Frees the copy on which a long edit works. Also empties the delta of the edit (its recorded
+ * changes), because the delta refers to arrays of the copy. */
 void st_write_discard_copy(st_write *w)
 {
     assert(w->claimed);
@@ -135,8 +136,8 @@ bool st_write_undoable(const st_write *w)
     return !w->changes.renumbered && st_log_fits(&w->mesh->log);
 }
 
-/* Rolls the content back to the state in which the write began, empties the delta (recorded
- * changes) of the write and stops recording. */
+/* Undoes all changes that the write has made to the mesh data, empties the delta in which they were
+ * recorded, and stops recording. */
 static void roll_back(st_write *w)
 {
     if (w->delta != NULL) {
@@ -202,9 +203,9 @@ static bool reserve_steps(st_write *w)
     return true;
 }
 
-/* Renders the message for listeners of the i-th undo or redo. The message shows the values after
- * this step, so it must be rendered before the next step is applied. If there is only one step, its
- * net changes were computed for the answer already. */
+/* Renders the message to listeners about the i-th undo or redo of this write. The message shows
+ * values after this undo or redo, so it must be rendered before the next one is applied. If there
+ * is only one, its net changes are already known, because the answer needs them. */
 static void write_event(st_write *w, uint32_t i)
 {
     const st_mesh *mesh = w->mesh;
@@ -220,7 +221,7 @@ static void write_event(st_write *w, uint32_t i)
     st_event_write(mesh, &info, &change, &w->events[i]);
 }
 
-/* Computes the net changes of all steps together. */
+/* Computes the net changes of all undos or redos of this write together. */
 static bool find_sum(st_write *w)
 {
     he_change_part *parts = he_mem_array(NULL, w->steps, sizeof *parts);
@@ -252,8 +253,8 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     if (steps > (which == ST_UNDO ? log->undo_count : log->redo_count)) {
         return ST_NOTHING;
     }
-    /* Each step becomes a revision with a delta of its own, so the reserved delta, which would
-     * record all steps in one, is emptied and not used. */
+    /* Each undo or redo becomes a revision with a delta of its own. The delta that was reserved for
+     * the write would record all of them as one change, so it is emptied and not used. */
     roll_back(w);
     w->which = which;
     w->steps = steps;

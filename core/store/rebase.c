@@ -1,42 +1,45 @@
-/* rebase.c - makes a newer base for a mesh with many records. A base is the content from which a
- * mesh is loaded, so loading time and disk space stay bounded.
+/* rebase.c - makes a newer base for a mesh with many records. The base is the mesh data with which
+ * a load of the mesh begins; later records are then applied. A newer base bounds the time of a load
+ * and the disk space of the mesh.
  *
  *     base ... records ... | ... records ...
- *                          +-- snapshot, staged while edits go on; when no revision before the
- *                              snapshot can be undone, redone or read any more, the snapshot
- *                              becomes the base, and the records before it are deleted
+ *                          |
+ *                          snapshot; later the new base
  *
- * A snapshot is due when the records since the last snapshot take more bytes than the content, and
- * at least ST_BASE_BYTES. A snapshot is staged: written to the disk before it is published. If a
- * change before the snapshot is undone, the snapshot becomes useless, because the records after the
- * undo need the records before the snapshot. The snapshot also becomes useless if a record holds
- * the whole content and ends the history, as that of a PUT does: that record is a base itself. A
- * snapshot that waits to become the base is dropped when its mesh is evicted. */
+ * A snapshot of the mesh is taken when the records since the last snapshot have more bytes than the
+ * mesh data, and at least ST_BASE_BYTES. It is written to the disk while edits go on. When no
+ * revision before the snapshot can be undone, redone or read any more, the snapshot becomes the
+ * base, and the records before it are deleted.
+ *
+ * A snapshot becomes useless if a change before it is undone, because the records after the undo
+ * need the records before the snapshot. It also becomes useless if a record contains all mesh data
+ * and ends the history, such as the record of a PUT: that record is then the new base. When a mesh
+ * is evicted (removed from memory), its snapshot is dropped unless it is the base already. */
 #include "store/table.h"
 #include "system/lock.h"
 
 #include <string.h>
 
-/* Returns true if the mesh can be loaded from this record on, without any record before it. */
+/* Returns true if the mesh can be loaded from this record without any record before it. */
 static bool is_base(const st_record *record)
 {
     return record->barrier && !record->staged_edit &&
            (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
 }
 
-/* Two estimates: FRAME_BYTES is how many bytes a record without its body takes, PACKED_SHARE is by
- * which factor a content is smaller on the disk than in memory. */
+/* FRAME_BYTES: about how many bytes a record takes without its body. PACKED_SHARE: about how many
+ * times smaller mesh data is on the disk than in memory. */
 enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
 
-/* A snapshot of a mesh's content that may become its base, from which the mesh is loaded. */
+/* A snapshot of the data of a mesh. It may become the base, from which the mesh is loaded. */
 struct st_next_base {
-    /* The snapshot is being staged (written to the disk): only the thread that stages it may change
-     * this struct. */
+    /* True while a thread writes the snapshot to the disk. Only this thread may then change the
+     * struct. */
     bool taking;
     bool spoiled;
     st_stage *stage;
     uint64_t before; /* value of st_mesh.appended when the snapshot was taken */
-    st_record facts; /* describes the mesh (name, revision, counts) when the snapshot was taken */
+    st_record facts; /* name, revision and counts of the mesh when the snapshot was taken */
     char name[ST_MESH_NAME + 1];
 };
 
@@ -56,9 +59,10 @@ void st_rebase_drop(st_mesh *mesh)
     mesh->next_base = NULL;
 }
 
-/* Makes the snapshot the base of the mesh if no revision before the snapshot is needed any more.
- * Entries of the history that cannot be loaded from the new base are then dropped in memory, too.
- * The caller holds the mesh's exclusive lock, and the snapshot is on the disk. */
+/* If no revision before the snapshot is needed any more, makes the snapshot the base of the mesh,
+ * from which it is loaded. Then drops from the history in memory the entries that cannot be loaded
+ * from the new base. The caller holds the exclusive lock of the mesh; the snapshot is on the
+ * disk. */
 static void settle(st_mesh *mesh)
 {
     st_next_base *next = mesh->next_base;
@@ -75,8 +79,8 @@ static void settle(st_mesh *mesh)
     }
 }
 
-/* Takes an immutable copy of the mesh, and its description. The caller holds the mesh's shared
- * lock. */
+/* Takes an immutable copy of the mesh with its name, revision and counts. The caller holds the
+ * shared lock of the mesh. */
 static st_status begin(st_mesh *mesh, st_snapshot **out)
 {
     st_next_base *next = mesh->next_base;
@@ -94,7 +98,7 @@ static st_status begin(st_mesh *mesh, st_snapshot **out)
     return st_snapshot_held(mesh, out);
 }
 
-/* Takes a snapshot of the mesh and writes it to the disk. It runs on a thread of the pool. */
+/* Takes a snapshot of the mesh and writes it to the disk. Runs on a thread of the pool. */
 static void take(void *context)
 {
     st_mesh *mesh = context;
@@ -116,8 +120,8 @@ static void take(void *context)
         mesh->appended -= next->before;
         settle(mesh);
     } else {
-        /* If memory or disk space is out, another snapshot is tried only after further records of
-         * as many bytes. */
+        /* Memory or disk space is out. The next snapshot is tried only when the mesh has as many
+         * bytes of further records again. */
         mesh->appended = 0;
         st_rebase_drop(mesh);
     }

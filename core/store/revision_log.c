@@ -5,11 +5,11 @@
 #include <assert.h>
 #include <string.h>
 
-/* A reserved delta (memory for recorded changes) of more than SPARE_BYTES bytes is freed rather
- * than reused for the next edit. */
+/* If the memory that was reserved for recording an edit grows beyond SPARE_BYTES, it is freed
+ * instead of used again for the next edit. */
 enum { SPARE_BYTES = 64 * 1024 };
 
-/* A ring with more than FEWEST_PLACES places is kept at least a quarter full, or else shrunk. */
+/* A ring with more than FEWEST_PLACES places is shrunk when less than a quarter of it is used. */
 enum { FEWEST_PLACES = 8 };
 
 static void note_marks(st_point *point, const he_mesh *content)
@@ -130,8 +130,8 @@ static void forget_delta(st_revision_log *log, st_revision *entry)
     }
 }
 
-/* Empties the redo stack. The steps (deltas) that were on the stack stay as long as entries of the
- * log use them, so copies of the mesh can still be moved from revision to revision. */
+/* Empties the redo stack. A step (the delta of one change) stays in memory as long as an entry of
+ * the log uses it, so copies of the mesh can still be moved from revision to revision. */
 static void clear_redo(st_revision_log *log)
 {
     while (log->redo_top != NULL) {
@@ -149,8 +149,8 @@ static void clear_stacks(st_revision_log *log)
     }
 }
 
-/* Frees the deltas of all entries. The entries stay in the history without deltas; only the newest
- * revision can be read then. */
+/* Frees the deltas (recorded changes) of all entries. The entries stay in the history, but only the
+ * newest revision can then be read. */
 static void forget_deltas(st_revision_log *log)
 {
     clear_stacks(log);
@@ -179,9 +179,9 @@ static void drop_undo_bottom(st_revision_log *log)
     release_step(log, step);
 }
 
-/* Drops the oldest entry. Steps lie on the undo stack in the order in which they were last applied.
- * So if the oldest entry was the last to apply its step and the step is on the undo stack, the step
- * is at the bottom of this stack. */
+/* Drops the oldest entry of the log. If this entry was the last to apply its step (the delta of one
+ * change) and the step is on the undo stack, the step is at the bottom of the stack, because steps
+ * lie on it in the order in which they were last applied. */
 static void drop_oldest(st_revision_log *log)
 {
     st_revision *entry = st_entry_at(log, 0);
@@ -208,7 +208,7 @@ static void drop_oldest(st_revision_log *log)
     log->dropped++;
 }
 
-/* Shrinks a ring that has become mostly empty, if there is memory for a smaller one. */
+/* Shrinks the ring of entries if it is mostly empty and there is memory for a smaller ring. */
 static void shrink_ring(st_revision_log *log)
 {
     if (log->capacity > FEWEST_PLACES && log->count < log->capacity / 4) {
@@ -226,7 +226,7 @@ void st_log_drop(st_revision_log *log, uint64_t reach)
 
 void st_log_settle(st_revision_log *log)
 {
-    /* The newest entry stays even if it alone exceeds the budget, because it describes the present
+    /* The newest entry stays, even if it exceeds the budget, because it describes the present
      * revision. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
@@ -242,8 +242,8 @@ void st_log_limit(st_revision_log *log, uint64_t budget)
     }
     st_log_settle(log);
     if (log->bytes > budget) {
-        /* The log is still too large although only its newest entry is left, because redo steps
-         * never leave the stack to save memory. */
+        /* Only the newest entry is left, but steps on the redo stack still use too many bytes. So
+         * all deltas and both stacks are dropped. */
         forget_deltas(log);
     }
 }
@@ -323,7 +323,7 @@ void st_log_unreserve(st_revision_log *log)
     }
 }
 
-/* Returns the bytes that the step of the reserved delta would take. */
+/* Returns how many bytes the recorded edit would take in the log. */
 static size_t spare_bytes(const st_revision_log *log)
 {
     const he_delta *delta = log->spare_step->delta;
@@ -333,7 +333,7 @@ static size_t spare_bytes(const st_revision_log *log)
 
 static size_t entry_size(size_t ops)
 {
-    /* A ring that has just grown is half empty, so an entry counts for two slots. */
+    /* A ring that has just grown is half empty, so two pointers are counted for an entry. */
     return sizeof(st_revision) + ops + 1 + 2 * sizeof(st_revision *);
 }
 
@@ -342,7 +342,8 @@ bool st_log_fits(const st_revision_log *log)
     return spare_bytes(log) + entry_size(ST_ENTRY_OPS) <= log->budget;
 }
 
-/* Copies the names of operations. A list that is too long ends with a whole name and "...". */
+/* Copies a list of names of operations. A list that is too long is cut after a whole name and ends
+ * with "...". */
 static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
 {
     size_t length = strlen(ops);
@@ -358,7 +359,7 @@ static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
     memcpy(out + end, end == 0 ? "..." : ",...", end == 0 ? sizeof "..." : sizeof ",...");
 }
 
-/* Adds the entry to the log's ring as the newest entry. */
+/* Adds an entry to the log's ring as the newest entry. */
 static void add_entry(st_revision_log *log, st_revision *entry)
 {
     assert(log->count < log->capacity && entry->point.revision == st_log_head(log) + 1);
@@ -367,8 +368,8 @@ static void add_entry(st_revision_log *log, st_revision *entry)
     log->bytes += entry->size;
 }
 
-/* Adds the reserved entry for a change that is no undo or redo, so that the entry has a new state:
- * contents that no earlier entry has. */
+/* Adds the reserved entry for a change that is neither undo nor redo, so that the mesh is in a
+ * state in which it never was before. */
 static st_revision *add_spare(st_revision_log *log, const st_logged *change, const he_mesh *content)
 {
     st_revision *entry = log->spare;
@@ -418,8 +419,8 @@ void st_log_add_edit(st_revision_log *log, const st_logged *edit, const he_mesh 
         log->bytes += step->charged;
     }
     st_log_settle(log);
-    /* If memory was too short to trim the delta, the step can exceed the budget although
-     * st_log_fits has counted fewer bytes for the delta. */
+    /* If memory was too short to trim the delta, it takes more bytes than st_log_fits has counted,
+     * and may exceed the budget. */
     if (log->bytes > log->budget) {
         forget_deltas(log);
     }
@@ -446,7 +447,7 @@ void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, 
     }
 }
 
-/* Swaps the numbers of created and deleted elements, because an undo creates the elements that its
+/* Swaps the numbers of created and deleted elements, because an undo creates the elements that the
  * edit deleted. */
 static void turn_tally(st_tally *tally)
 {
@@ -455,9 +456,9 @@ static void turn_tally(st_tally *tally)
     memcpy(tally->deleted, before.created, sizeof tally->deleted);
 }
 
-/* Makes an entry that undoes or redoes a step. The new entry copies the texts of the entry that
- * applied the step last, and has the other direction. Every step on a stack still has an entry that
- * applied it last. */
+/* Makes an entry for the undo or redo of a step (the delta of one change). The entry that applied
+ * the step last still exists; the new entry copies the names of its operations, and its counts with
+ * created and deleted exchanged. */
 static st_revision *step_entry(const st_revision_log *log, const st_step *step)
 {
     const st_revision *last = step->kept != NULL ? step->kept : st_entry_of(log, step->applied);
@@ -499,8 +500,8 @@ void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, d
     log->steps = entry->next;
     st_step *step = which == ST_UNDO ? pop_undo(log) : pop_redo(log);
     assert(step->revision == entry->inverts);
-    /* Applying the delta exchanged its columns and contents with those of the mesh, so the step
-     * holds a different number of bytes now. */
+    /* Applying the delta has exchanged arrays between the delta and the mesh, so the step takes a
+     * different number of bytes now. */
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
     entry->action = which;
     entry->forward = which == ST_REDO;

@@ -67,8 +67,8 @@ st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t 
     if (revision > st_log_head(log)) {
         return ST_AHEAD;
     }
-    /* If the entry of an edit was dropped, its step may still be on a stack, so undo or redo can
-     * lead to its revision. */
+    /* Even if the entry of an edit was dropped, its step (the delta of the edit) may still be on a
+     * stack, so that undo or redo leads to its revision. */
     bool has_entry = revision >= log->before.revision;
     uint64_t wanted = has_entry ? point_of(log, revision)->state : revision;
     bool undo = which == ST_UNDO;
@@ -76,8 +76,8 @@ st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t 
         *steps = 0;
         return ST_OK;
     }
-    /* Undos have led to the wanted revision when the step of its edit is on top of the undo stack,
-     * redos when that step was redone. */
+    /* Undo has led to the wanted revision when the step of that revision's edit is on top of the
+     * undo stack; redo has, when that step was redone. */
     uint32_t count = undo ? 0 : 1;
     const st_step *step = undo ? log->undo_top : log->redo_top;
     for (; step != NULL && step->revision != wanted; step = step->below) {
@@ -128,8 +128,8 @@ he_status st_log_walk(const st_revision_log *log, he_replay *copy, uint64_t *at,
             .key = step->revision,
             .delta = step->delta,
             .undo = entry->forward == back,
-            /* The delta holds the columns and contents that the mesh had before the entry that
-             * applied the delta last. */
+            /* The delta contains the arrays that the mesh had before the delta was last applied,
+             * and this entry applied it last. */
             .held = back && step->applied == entry->point.revision,
             .issued = point_of(log, next)->issued,
         };

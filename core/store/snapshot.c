@@ -6,8 +6,8 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* A snapshot: a reference to a copy of the mesh that many callers may share, and the mesh's
- * description when the snapshot was taken. */
+/* A snapshot: a reference to a copy of the mesh, which many snapshots may share, and the name,
+ * revision and counts of the mesh when the snapshot was taken. */
 struct st_snapshot {
     st_copy *copy;
     st_mesh_info info;
@@ -22,8 +22,8 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Counts the memory of a cached copy of a mesh for monitoring: the present bytes of its content.
- * Edits that bring the copy forward later add little, so the count is not updated. */
+/* Counts the bytes of a cached copy of a mesh for monitoring. Edits that are applied to the copy
+ * later add few bytes, so the number is not updated. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
     copy->counts = &mesh->followers->counts;
@@ -31,16 +31,16 @@ static void count_copy(st_copy *copy, const st_mesh *mesh)
     st_count(&copy->counts->copies, copy->bytes);
 }
 
-/* Returns true if only the cache has a reference to a copy. While the caller holds the snapshot
- * lock, no other thread can get a reference. */
+/* Returns true if only the cache has a reference to a copy. The caller holds the snapshot lock,
+ * without which no other thread can get a reference. */
 static bool is_cached_alone(const st_copy *copy)
 {
     return atomic_load_explicit(&copy->uses, memory_order_acquire) == 1;
 }
 
-/* Decides whether a cached copy is brought forward to the present revision rather than made anew.
- * Replaying deltas costs about one random access for each record, copying is sequential: if the
- * deltas take more than half the mesh's bytes, a new copy is cheaper. */
+/* Decides whether the cached copy of a mesh is updated to the present revision or made anew.
+ * Applying a delta takes about one random memory access for each record; copying is sequential. So
+ * if the deltas have more than half as many bytes as the mesh, a new copy is cheaper. */
 static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
 {
     return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
@@ -68,8 +68,8 @@ static st_copy *copy_new(const st_mesh *mesh)
     return copy;
 }
 
-/* Returns the cached copy at the present revision, or NULL. The caller holds the mesh's shared lock
- * and the snapshot lock. */
+/* Returns the cached copy if it shows the present revision, else NULL. The caller holds the mesh's
+ * shared lock and the snapshot lock. */
 static st_copy *present_copy(st_mesh *mesh)
 {
     st_copy *copy = mesh->copy;
@@ -118,8 +118,8 @@ st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
     return status;
 }
 
-/* Makes `replay`, a copy that was brought to an earlier revision, the mesh's cached copy of an
- * earlier revision, and takes it. The caller holds the past lock (store.h). */
+/* Makes `replay`, which shows an earlier revision of the mesh, the cached copy of an earlier
+ * revision; the cache then owns it. The caller holds the past lock (store.h). */
 static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision, double time)
 {
     st_copy *copy = he_mem_zero(1, sizeof *copy);
@@ -138,7 +138,7 @@ static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision,
 }
 
 /* Decides whether the history in memory reaches back to the wanted revision, and whether the cached
- * copy of an earlier revision can be moved there. */
+ * copy of an earlier revision can be moved to this revision. */
 static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool *movable)
 {
     const st_copy *copy = mesh->past;
@@ -156,7 +156,7 @@ static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool 
     return status;
 }
 
-/* Makes the copy of an earlier revision from the history in memory. The caller holds the past lock
+/* Makes the copy of an earlier revision by the history in memory. The caller holds the past lock
  * (store.h). */
 static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
 {
@@ -179,9 +179,9 @@ static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
     return status == ST_OK ? cache_past(mesh, replay, revision, time) : status;
 }
 
-/* Makes the copy of an earlier revision that the history in memory has dropped: loads the mesh a
- * second time from the records on the disk, up to that revision; the content becomes the cached
- * copy. The caller holds the past lock (store.h). */
+/* Makes the copy of a revision that is no longer in the history in memory. The mesh is loaded a
+ * second time from the disk, up to this revision, and becomes the cached copy. The caller holds the
+ * past lock (store.h). */
 static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
 {
     st_mesh *loaded;
@@ -201,7 +201,7 @@ static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
     return status;
 }
 
-/* Moves the cached copy of an earlier revision to the wanted revision, or makes a new copy. The
+/* Makes the cached copy show the wanted earlier revision: moves it there, or makes a new copy. The
  * caller holds the past lock (store.h). */
 static st_status seek_past(st_mesh *mesh, uint64_t revision)
 {
@@ -221,8 +221,8 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     st_lock_mutex(&mesh->past_lock);
     st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
-        /* In the snapshot's description, the revision and its time are those of the copy; the name
-         * and all else are those of the present mesh. */
+        /* The snapshot states the revision and time of the copy, and the present name and counts of
+         * the mesh. */
         snapshot->copy = mesh->past;
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
         (void)st_read_begin(mesh, &snapshot->info);
@@ -269,7 +269,7 @@ void st_copy_shed(st_mesh *mesh)
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
     st_queue_shed(&mesh->queue);
-    /* If another thread holds the lock, it is making a copy, so this copy is not freed. */
+    /* A thread that holds this lock is making a copy, so the copy must not be freed. */
     if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);

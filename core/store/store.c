@@ -19,8 +19,8 @@ static void moved(void *context, uint64_t position)
     st_waits_moved(store->followers.waits, position);
 }
 
-/* Handles a loss of records that the journal reports. The loss is passed to the waiting answers
- * first, so that none made from a lost mesh is sent any more. */
+/* Handles a loss of records that the journal reports. The answers that wait for durable records
+ * learn of the loss first, so that no answer made from a lost change is sent any more. */
 static void lost(void *context, const st_loss *loss)
 {
     st_store *store = context;
@@ -35,9 +35,10 @@ static void lost(void *context, const st_loss *loss)
             st_release(batch[i]);
         }
     }
-    /* Lost changes no longer count for the holders of meshes, so the journal's counts are read
-     * again. The journal accepts no write until the last loss was reported, so the disk has every
-     * change when the counts are read. If they cannot be read, they stay as they were. */
+    /* Lost changes must no longer count for the holders (owners) of meshes, so what each holder has
+     * is read from the journal again. The journal accepts no write until the last loss was
+     * reported, so all changes are on the disk at this moment. If reading fails, the counts stay as
+     * they were. */
     (void)st_holders_count(&store->holders, &store->journal);
 }
 
@@ -219,8 +220,8 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
     return given;
 }
 
-/* Returns true if the change that a kept answer reports was lost. Such an answer is not given
- * again; if the request comes again, it is executed anew. */
+/* Returns true if the change that a kept answer reports was lost. Such an answer is not sent again;
+ * if the request is repeated, it is executed again. */
 static bool is_lost(const st_store *store, const st_kept *kept)
 {
     const st_shown shown = {kept->position, kept->position - 1, kept->incarnation};
@@ -243,8 +244,8 @@ st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key
 
 /* --- notes in the journal --- */
 
-/* Writes a note (the state of a job or a key of a request) to the journal. A journal that a test
- * has made may lack the function `note`. */
+/* Writes a note (the state of a job, or the Idempotency-Key of a request) to the journal. Journals
+ * that tests make may lack the function `note`. */
 static st_status note(st_store *store, const st_note *what, uint64_t *position)
 {
     const st_journal *journal = &store->journal;
@@ -337,7 +338,7 @@ void st_store_health(const st_store *store, st_health *out)
     }
 }
 
-/* Measures the store. The numbers may come from slightly different moments. */
+/* Measures the store. The numbers may be from slightly different moments. */
 void st_store_measure(st_store *store, st_store_measures *out)
 {
     st_store_counts *counts = &store->followers.counts;

@@ -10,7 +10,7 @@ static void copy_name(char *out, size_t size, const char *name)
     size_t length = strlen(name);
     if (length >= size) {
         length = size - 1;
-        /* The name is cut between characters, not inside the UTF-8 sequence of one. */
+        /* The name is cut before a character, never inside a UTF-8 sequence. */
         while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) {
             length--;
         }
@@ -19,8 +19,8 @@ static void copy_name(char *out, size_t size, const char *name)
     out[length] = '\0';
 }
 
-/* Initialises a readers-writer lock that prefers writers, so that a steady stream of readers does
- * not starve a writer. */
+/* Initialises a readers-writer lock that prefers writers, so that many readers cannot make a writer
+ * wait for ever. */
 static int init_lock(pthread_rwlock_t *lock)
 {
     pthread_rwlockattr_t attributes;
@@ -96,8 +96,8 @@ static void put_weights(st_mesh *mesh, const uint64_t weights[ST_WEIGHT_COUNT])
     st_store_counts *counts = &mesh->followers->counts;
     for (size_t i = 0; i < ST_WEIGHT_COUNT; i++) {
         if (weights[i] != mesh->weights[i]) {
-            /* Unsigned subtraction wraps around, so the sum is right even if the new weight is
-             * smaller. */
+            /* The subtraction is unsigned and wraps around, so adding its result is right even if
+             * the weight has become smaller. */
             st_count(&counts->weights[i], weights[i] - mesh->weights[i]);
             mesh->weights[i] = weights[i];
         }
@@ -221,8 +221,8 @@ st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cau
     return record;
 }
 
-/* Notes that the mesh can be loaded from this record on, if the record has a whole content and
- * clears the history. */
+/* If this record has all mesh data and ends the history before it, notes that the mesh can be
+ * loaded from this record on. */
 static void note_base(st_mesh *mesh, const st_record *record)
 {
     if (record->barrier && (record->kind == ST_RECORD_CONTENT || record->stage != NULL)) {
@@ -240,8 +240,8 @@ st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes)
     return status;
 }
 
-/* Sets the bytes by which the mesh counts for its holder to those that its newest record states.
- * st_holders_count counts these bytes, too, when it reads the cards in the journal. */
+/* Sets how many bytes the mesh counts for its holder (owner) to the number in its newest record.
+ * st_holders_count gets equal numbers when it reads the cards in the journal. */
 static void count_held(st_mesh *mesh, const st_record *record)
 {
     const bool removed = record->kind == ST_RECORD_REMOVE;
@@ -298,8 +298,8 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
     pthread_rwlock_unlock(&mesh->lock);
     if (found) {
         st_lock_write(&mesh->lock);
-        /* Whether the newest change is lost is checked again under the lock: the mesh may have been
-         * removed meanwhile, and the removal is then lost, too. */
+        /* The check is repeated under the lock: the mesh may have been removed in the meantime, and
+         * then the removal is its newest change and may be lost, too. */
         if (is_lost(&mesh->info, loss)) {
             mesh->info.lost = true;
             st_queue_lose(&mesh->queue);
@@ -359,8 +359,8 @@ bool st_cache_get(st_mesh *mesh, void *value, size_t size)
     return found;
 }
 
-/* Keeps a value derived from the mesh. If memory is out, the value is not kept and is computed
- * again next time. */
+/* Keeps a value that was derived from the mesh. If memory is out, the value is not kept and must be
+ * derived again. */
 void st_cache_put(st_mesh *mesh, const void *value, size_t size)
 {
     pthread_mutex_lock(&mesh->cache_lock);

@@ -4,8 +4,8 @@
 
 #include <assert.h>
 
-/* A domain, type or rule is stored as its index in these arrays. Their order must not change, even
- * if an enum of column.h gets another order. */
+/* A domain, type or rule of an attribute is stored as its index in one of these arrays. Their order
+ * must never change, even if the enums in column.h do. */
 static const he_kind domains[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE, HE_MESH_KIND};
 static const he_type types[] = {HE_BOOL, HE_INT32, HE_UINT32, HE_FLOAT, HE_DOUBLE};
 static const he_rule rules[] = {HE_COPY, HE_INTERPOLATE, HE_DEFAULT};

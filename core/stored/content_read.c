@@ -1,29 +1,32 @@
-/* content_read.c - reads a stored content part by part: he_stored_reader of stored.h. Bytes are
- * copied into a buffer until the header is complete, and from then on directly into the arrays of
- * the mesh, whose sizes the header declares. */
+/* content_read.c - reads the stored data of a mesh part by part: he_stored_reader of stored.h.
+ * Bytes are copied into a buffer until the header is complete, then directly into the arrays of the
+ * mesh, whose sizes the header states. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
 struct he_stored_reader {
-    /* most: how many bytes the content may have; total: how many it has, UINT64_MAX until the
+    /* `most`: how many bytes the mesh data may have; `total`: how many it has, UINT64_MAX until the
      * header is read */
     uint64_t most, total;
-    uint64_t at; /* number of bytes of the content read so far */
+    uint64_t at; /* number of bytes read so far */
     unsigned char *header;
-    /* header_size: bytes of the header read so far; header_room: size of the buffer `header` */
+    /* `header_size`: number of bytes of the header read so far; `header_room`: size of the buffer
+     * `header` */
     size_t header_size, header_room;
-    uint64_t header_wanted; /* length of the header as far as it is known */
+    /* length of the header; only that of its first bytes until these are read */
+    uint64_t header_wanted;
     he_content c;
-    size_t array;      /* number of the next array to fill: after HE_CONTENT_ARRAYS fixed ones come
-                          those of the attributes */
-    unsigned char *to; /* where the next bytes of the present array go */
-    size_t left;       /* bytes of the present array that are not read yet */
+    /* number of the next array to fill: the HE_CONTENT_ARRAYS fixed arrays come first, then one
+     * array for each attribute */
+    size_t array;
+    unsigned char *to; /* where the next bytes of the current array are written */
+    size_t left;       /* number of bytes of the current array that are not read yet */
     he_links links;
-    uint32_t row;  /* row of the next link to read */
-    uint32_t last; /* the id in the last link read, if has_last is true */
-    bool has_last; /* true if an id was read before in this part and array */
+    uint32_t row;  /* index in the current array of the next link (id) to read */
+    uint32_t last; /* the last id that was read, if has_last is true */
+    bool has_last; /* true if an id was read before in this part of this array */
 };
 
 he_status he_stored_reader_new(uint64_t most, he_stored_reader **out, he_error *err)
@@ -53,7 +56,7 @@ static he_status refuse(const he_stored_reader *r, he_error *err, const char *wh
     return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, r->at, "%s", what);
 }
 
-/* Reads the first bytes of the header, which say how long the header is. */
+/* Reads the first bytes of the header, which state its length. */
 static he_status read_start(he_stored_reader *r, he_error *err)
 {
     he_cursor c = he_cursor_over(r->header, r->header_size);
@@ -77,8 +80,8 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     return HE_OK;
 }
 
-/* Reads one attribute of the header. Memory for its rows is allocated later, once all attributes
- * are known. */
+/* Reads the description of one attribute from the header. Memory for its values is allocated later,
+ * when all attributes are known. */
 static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size_t *rows,
                            he_error *err)
 {
@@ -127,8 +130,8 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
     return HE_OK;
 }
 
-/* Reads the slots of attributes. Sets the number of rows of each column without allocating them,
- * and adds the bytes that they will take to *bytes. */
+/* Reads the descriptions of all attributes. Sets the number of values of each without allocating
+ * memory for them, and adds the bytes that they will take to *bytes. */
 static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, uint64_t *bytes,
                             he_error *err)
 {
@@ -215,7 +218,7 @@ static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots, uint32
            he_take_u32(c, materials) && he_take_u32(c, &zero) && zero == 0;
 }
 
-/* Allocates all arrays. Their sizes must have been checked before. */
+/* Allocates all arrays of the mesh. Their sizes must have been checked before. */
 static he_status make_room(he_content *c, he_error *err)
 {
     he_rows rows[3] = {c->vertices, c->edges, c->faces};
@@ -242,7 +245,7 @@ static he_status make_room(he_content *c, he_error *err)
     return status;
 }
 
-/* Makes the next array that is not empty the present one. After the last array `left` becomes 0. */
+/* Begins to fill the next array that is not empty. After the last array, `left` is 0. */
 static void next_array(he_stored_reader *r)
 {
     r->left = 0;
@@ -299,7 +302,8 @@ static he_status read_header(he_stored_reader *r, he_error *err)
     return status;
 }
 
-/* Reads more of the header. Sets *taken to the number of bytes that belonged to the header. */
+/* Copies bytes to the header until it is complete. Sets *taken to the number of bytes that were
+ * copied. */
 static he_status take_header(he_stored_reader *r, const unsigned char *bytes, size_t size,
                              size_t *taken, he_error *err)
 {
@@ -324,7 +328,7 @@ static he_status take_header(he_stored_reader *r, const unsigned char *bytes, si
     return r->header_size == HE_CONTENT_START ? read_start(r, err) : read_header(r, err);
 }
 
-/* Reads more of the present array from the cursor: at most `room` bytes of the content. */
+/* Reads more bytes of the current array from the cursor, at most `room` bytes. */
 static he_status take_array(he_stored_reader *r, bool as_links, size_t room, he_cursor *c,
                             he_error *err)
 {
@@ -411,8 +415,8 @@ he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mes
 {
     he_stored_reader *r;
     he_cursor c = he_cursor_over(bytes, size);
-    /* Each link takes at least one byte of the input, so the content has at most four times as many
-     * bytes as the input. */
+    /* Each link takes at least one byte of the input and four bytes in the mesh, so the mesh data
+     * has at most four times as many bytes as the input. */
     he_status status = he_stored_reader_new(sizeof(uint32_t) * (uint64_t)size, &r, err);
     if (status != HE_OK) {
         return status;

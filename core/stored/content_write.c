@@ -1,12 +1,13 @@
-/* content_write.c - writes a mesh as a stored content: he_stored_writer of stored.h. The bytes are
- * made piece by piece (a head, a label, an array) and cut into parts, which need not end where a
- * piece ends. */
+/* content_write.c - writes the data of a mesh as a sequence of bytes: he_stored_writer of stored.h.
+ * The sequence is made piece by piece (a head, a label, an array), and cut into parts of equal
+ * length, so a part may end inside a piece. */
 #include "mesh/layout.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
-/* The kinds of pieces. `stage` of the writer (he_stored_writer) is the kind of the next piece. */
+/* The kinds of pieces, which are sections of the byte sequence. `stage` of he_stored_writer is the
+ * kind of the next piece. */
 enum stage {
     HEADER,
     SLOT,
@@ -17,7 +18,7 @@ enum stage {
     MATERIAL,
     MATERIAL_NAME,
     PADDING,
-    ARRAYS, /* the first of HE_CONTENT_ARRAYS kinds: each array is a kind of piece */
+    ARRAYS, /* the first of HE_CONTENT_ARRAYS kinds, one for each fixed array of a mesh */
     COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
     DONE
 };
@@ -27,7 +28,7 @@ static const he_column *slot_of(const he_stored_writer *w)
     return w->mesh->c.columns[w->slot];
 }
 
-/* Returns the number of bytes of an attribute's slot after its kind and length. */
+/* Returns how many bytes the description of an attribute takes, without its kind and length. */
 static uint64_t slot_bytes(const he_column *column)
 {
     return column == NULL ? 0
@@ -213,8 +214,8 @@ static void make_column(he_stored_writer *w)
     w->slot++;
 }
 
-/* Makes the next piece that is not empty if the present one has been written. Returns false after
- * the last piece. */
+/* If the current piece of the byte sequence is written, makes the next piece that is not empty.
+ * Returns false after the last piece. */
 static bool has_piece(he_stored_writer *w)
 {
     while (w->left == 0 && w->stage != DONE) {
@@ -258,7 +259,7 @@ static bool has_piece(he_stored_writer *w)
     return w->left > 0;
 }
 
-/* Writes the links in the next `bytes` bytes of the present piece, each as a varint. */
+/* Writes the links (ids) in the next `bytes` bytes of the current piece, each as a varint. */
 static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char *to)
 {
     for (size_t i = 0; i < bytes; i += sizeof(uint32_t)) {
@@ -275,7 +276,7 @@ static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char
     return to;
 }
 
-/* Writes a part in one of the codings. Returns SIZE_MAX if it would be longer than in
+/* Writes a part in the given coding. Returns SIZE_MAX if the part would be longer than it is in
  * HE_CODING_PLAIN. */
 static size_t make_part(he_stored_writer *w, unsigned coding, unsigned char *to, bool *has_links)
 {
@@ -321,8 +322,8 @@ size_t he_stored_writer_next(he_stored_writer *w, unsigned char *to, unsigned *c
 size_t he_stored_content_bound(const he_mesh *mesh)
 {
     uint64_t bytes = all_bytes(mesh), last = bytes % HE_STORED_PART;
-    /* A link may take more bytes than a word, so the bound assumes that all words of the last part
-     * are links. */
+    /* A link may take more bytes as a varint than the four bytes of a word, so the bound assumes
+     * that all words of the last part are links. */
     last += last / sizeof(uint32_t) * (HE_LINK_BYTES - sizeof(uint32_t));
     last = last > HE_STORED_PART ? HE_STORED_PART : last;
     return (size_t)(bytes / HE_STORED_PART * (HE_PART_HEAD + HE_STORED_PART) + HE_PART_HEAD + last);

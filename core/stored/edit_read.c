@@ -17,18 +17,20 @@ static const he_col columns[] = {
     [HE_CODE_ATTRIBUTE] = HE_COL_ATTRIBUTE,
 };
 
-/* The number of attribute slots that a record can name: its `column` has 24 bits. */
+/* A record names an attribute by 24 bits of its member `column`. So it can name this many slots. */
 enum { MOST_SLOTS = (1 << 24) - HE_COL_ATTRIBUTE };
 
 typedef struct edit_reader {
     he_cursor c;
-    uint64_t changes;             /* number of changes that are not read yet */
-    he_code code;                 /* code of the present run of changes to one column */
-    uint64_t run;                 /* number of changes of the present run that are not read yet */
-    uint32_t slot;                /* slot of the attribute that the present run changes */
+    uint64_t changes; /* number of changes that are not read yet */
+    /* code (kind of change) of the current run, which is a sequence of changes to one column */
+    he_code code;
+    uint64_t run;                 /* number of changes in the current run that are not read yet */
+    uint32_t slot;                /* slot of the attribute that the current run changes */
     uint32_t last[HE_CODE_COUNT]; /* for each code, the row of the last change with this code */
-    he_object kind;               /* kind of the present object */
-    he_cursor object;             /* bytes of the present object */
+    /* kind of the object (attribute, material or mesh data) of the current change */
+    he_object kind;
+    he_cursor object; /* bytes of the object of the current change */
 } edit_reader;
 
 static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, he_error *err)
@@ -134,7 +136,8 @@ static bool take_links(edit_reader *r, he_record *out)
     return true;
 }
 
-/* Reads the next change; for a change with an object it only finds the object's bytes. */
+/* Reads the next change of the edit. If the change has an object (an attribute, a material or mesh
+ * data), only finds its bytes. */
 static he_status next(edit_reader *r, he_record *out, he_error *err)
 {
     if (r->run == 0) {
@@ -174,7 +177,7 @@ static he_status take_slot(he_cursor *c, uint32_t *slot, he_error *err)
     return HE_OK;
 }
 
-/* Reads the values of all rows of a column, up to the end of the bytes. */
+/* Reads the values of a column for all elements, up to the end of the bytes. */
 static he_status take_rows(he_cursor *c, he_column *column, he_error *err)
 {
     uint64_t rows;
@@ -219,9 +222,9 @@ static bool same_head(const he_column *a, const he_column *b)
            memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
 }
 
-/* Reads the record of an attribute that was dropped. Checks that the mesh has this attribute,
- * unless the edit itself added or dropped an attribute in that slot before: `named` has a bit for
- * each slot of the mesh, which is set if the edit did so. */
+/* Reads the record of an attribute that the edit removed. Checks that the mesh has this attribute,
+ * unless the edit itself has already added or removed an attribute in this slot. `named` has a bit
+ * for each slot of the mesh, which is set if the edit has done so. */
 static he_status take_dropped(he_cursor *c, const he_mesh *mesh, const uint64_t *named,
                               uint32_t *slot, he_error *err)
 {
@@ -268,8 +271,8 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
     return HE_OK;
 }
 
-/* Reads the record of a material put in a slot. The material that was there before is identified by
- * its mark (material.h), which the record keeps in `after`. */
+/* Reads the record of a material that the edit put into a slot. The material that was in the slot
+ * before is identified by its mark (material.h), which is stored in out->after. */
 static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot, he_material **row,
                                    he_error *err)
 {
@@ -289,7 +292,8 @@ static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot,
     return status;
 }
 
-/* Reads the present object and appends it to the objects of the delta. */
+/* Reads the object of the current change (an attribute, a material or mesh data) and appends it to
+ * the objects of the delta. */
 static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *named, he_delta *delta,
                              he_record *out, he_error *err)
 {
@@ -362,8 +366,8 @@ static he_status take_changes(edit_reader *r, const he_mesh *mesh, he_delta *del
     return status;
 }
 
-/* Returns true if an added attribute has no more rows than there are elements of its domain after
- * the edit. */
+/* Returns true if an added attribute has no more values than the mesh has elements of its domain
+ * after the edit. */
 static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
 {
     switch (column->domain) {
@@ -380,9 +384,9 @@ static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
     return column->rows <= 1;
 }
 
-/* Checks `issued`, the high-water marks after the edit (how many ids of each kind were ever
- * issued). Each may only rise, by no more than the number of changes, unless the edit replaces the
- * content: then they are the marks of the new content. */
+/* Checks `issued`, which states for each kind of element how many ids are issued after the edit. If
+ * the edit replaces all mesh data, these must be the numbers of the new data. Otherwise each may be
+ * larger than before by no more than the number of changes. */
 static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
                              const uint32_t issued[HE_KIND_COUNT], he_error *err)
 {
@@ -409,7 +413,8 @@ static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
     return HE_OK;
 }
 
-/* Returns the byte at which a change begins in a stored edit that was read without an error. */
+/* Returns the index of the byte at which a change begins in a stored edit, which was read before
+ * without an error. */
 static uint64_t place_of(const unsigned char *bytes, size_t size, size_t change)
 {
     edit_reader r;

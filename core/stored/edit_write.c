@@ -1,4 +1,5 @@
-/* edit_write.c - writes a delta as the bytes of stored.h. */
+/* edit_write.c - writes a delta (the recorded changes of an edit) as the bytes that stored.h
+ * describes. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/edit_code.h"
@@ -38,8 +39,8 @@ static he_code code_of(const he_record *r)
     return HE_CODE_ATTRIBUTE;
 }
 
-/* Returns true if a record of the delta replaces the whole content. Sets *renumbers to true if ids
- * then mean other elements than before. */
+/* Returns true if a record of the delta replaces all mesh data. Sets *renumbers to true if ids mean
+ * other elements afterwards. */
 static bool replaces(const he_delta *delta, bool *renumbers)
 {
     bool found = false;
@@ -53,8 +54,8 @@ static bool replaces(const he_delta *delta, bool *renumbers)
     return found;
 }
 
-/* Finds the next record after record i that adds or drops a column in the slot of record i. Returns
- * delta->count if there is none. */
+/* Returns the index of the next record after record i that adds or removes an attribute in the slot
+ * that record i names; delta->count if there is none. */
 static size_t next_of_slot(const he_delta *delta, size_t i)
 {
     uint32_t slot = delta->records[i].row;
@@ -67,8 +68,8 @@ static size_t next_of_slot(const he_delta *delta, size_t i)
     return k;
 }
 
-/* Returns the column that record i added. It is in the mesh, unless record `next` of this delta
- * dropped it again: then it is the object of that record. */
+/* Returns the attribute that record i added. If record `next` of this delta has removed the
+ * attribute again, the attribute is the object of record `next`; otherwise the mesh has it. */
 static const he_column *added_column(const he_delta *delta, size_t i, size_t next,
                                      const he_mesh *after)
 {
@@ -76,8 +77,9 @@ static const he_column *added_column(const he_delta *delta, size_t i, size_t nex
                                 : delta->objects[delta->records[next].before];
 }
 
-/* Returns the material that record i put in its slot. It is in the mesh, unless a later record
- * replaced it: then it is the object of that record. Returns NULL if record i emptied the slot. */
+/* Returns the material that record i put into its slot. If a later record of this delta has
+ * replaced the material, it is the object of that record; otherwise the mesh has it. Returns NULL
+ * if record i emptied the slot. */
 static const he_material *put_material(const he_delta *delta, size_t i, const he_mesh *after)
 {
     uint32_t slot = delta->records[i].row;
@@ -133,7 +135,7 @@ static unsigned char *begin_object(unsigned char *to, he_object kind)
 }
 
 /* Ends an object that was written from `from` to `to`: writes its length into the 8 bytes before
- * it, which begin_object left free. */
+ * `from`, which begin_object has left free. */
 static unsigned char *end_object(unsigned char *from, unsigned char *to)
 {
     (void)he_put_u64(from - 8, (uint64_t)(to - from));
@@ -160,8 +162,8 @@ static unsigned char *put_material_change(unsigned char *to, const he_delta *del
     return end_object(from, to);
 }
 
-/* Writes an added column with the values it had when it was added. The delta's later changes to
- * these values are stored separately, so they are undone here in the values that are written. */
+/* Writes an attribute that record i added, with the values that it had then. Later changes of the
+ * values have records of their own, so they are undone in the written values. */
 static unsigned char *put_added(unsigned char *to, const he_delta *delta, size_t i,
                                 const he_mesh *after)
 {

@@ -40,7 +40,7 @@ static char *put_digits(char *at, int value, int digits)
     return at + digits;
 }
 
-/* Formats a time without the C library's functions: these would take as long as writing all the
+/* Formats a time without the functions of the C library, which would take as long as writing the
  * rest of a line of the access log. */
 void st_clock_format(double utc, char out[ST_TIMESTAMP])
 {

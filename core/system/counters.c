@@ -6,21 +6,22 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* The most copies of a table. More copies would cost memory and save little: there are about as
- * many counting threads as cores, and a cache line that two threads share is still fast enough. */
+/* The largest number of copies of a table of counters. More copies would take memory and save
+ * little time: there are about as many counting threads as cores, and a cache line that two threads
+ * share is still fast enough. */
 enum { MOST_COPIES = 8, LINE = 64 / sizeof(uint64_t) };
 
 struct st_counters {
     size_t count;  /* number of counters in each copy */
-    size_t stride; /* distance between two copies */
+    size_t stride; /* distance between two copies in `values`, in words */
     size_t copies; /* number of copies, a power of two */
     _Atomic uint64_t values[];
 };
 
-/* The number of threads that have counted so far. A thread gets its number when it counts for the
+/* The number of threads that have counted so far. Each thread gets a number when it counts for the
  * first time. */
 static _Atomic size_t threads;
-/* number of this thread, from 1; 0: the thread has none yet */
+/* the number of the calling thread, from 1; 0: it has no number yet */
 static _Thread_local size_t own_number;
 
 static size_t number(void)

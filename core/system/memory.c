@@ -9,15 +9,17 @@
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
-static _Atomic uint64_t outside; /* how many of the used bytes st_memory_count has added */
+static _Atomic uint64_t outside; /* how many of the used bytes were counted by st_memory_count */
 static _Atomic uint64_t budget_bytes;
-/* True if the memory budget, and not the C library, refused the last block that was refused. */
+/* True if the last allocation that failed was refused by the memory budget; false if it was refused
+ * by the C library. */
 static _Atomic bool over_budget;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
 
-/* Counts `size` bytes more, unless that exceeds the budget. The bytes are added first and
- * subtracted on failure, which keeps two threads from passing the limit together. */
+/* Adds `size` bytes to the used bytes, unless that exceeds the budget. The bytes are added first
+ * and subtracted again if the sum is too large, so that two threads cannot exceed the budget
+ * together. */
 static bool try_take(size_t size)
 {
     uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
@@ -33,8 +35,9 @@ static bool try_take(size_t size)
     return false;
 }
 
-/* Takes `size` bytes from the budget, if necessary after calling the thread's giver, a function
- * that frees memory. The giver is not called for allocations that it makes itself. */
+/* Takes `size` bytes from the memory budget. If too few bytes are left, first calls the giver of
+ * this thread, a function that frees memory. If the giver itself allocates memory, it is not called
+ * again. */
 static bool take(size_t size)
 {
     const st_memory_giver *giver = asked;
@@ -57,14 +60,15 @@ static void give_back(size_t size)
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
 }
 
-/* Returns the bytes of a block, including the word that the C library stores before it. */
+/* Returns the bytes of a block of memory, including the word that the C library stores before
+ * it. */
 static size_t block_bytes(void *memory)
 {
     return malloc_usable_size(memory) + sizeof(size_t);
 }
 
-/* Changes the size of a block. Its true size is known only after it is allocated, so the requested
- * growth is taken from the budget first and corrected afterwards. */
+/* Changes the size of a block of memory. How many bytes the new block takes is known only
+ * afterwards, so the requested growth is first taken from the budget and then corrected. */
 static void *resize(void *context, void *memory, size_t size)
 {
     (void)context;
@@ -86,15 +90,16 @@ static void *resize(void *context, void *memory, size_t size)
         return NULL;
     }
     size_t after = block_bytes(resized);
-    /* Unsigned subtraction wraps around, so the sum is right even if the block has become
-     * smaller. */
+    /* The subtraction is unsigned and wraps around, so adding its result is right even if the block
+     * has become smaller. */
     atomic_fetch_add_explicit(&used, (uint64_t)after - before - growth, memory_order_relaxed);
     return resized;
 }
 
-/* The C library maps a block of this size or more separately (mmap): growing it moves page tables
- * and not bytes, so the first edit of a large mesh does not copy it, and freeing it returns it to
- * the system. By default glibc would raise this threshold to 32 MB as blocks are freed. */
+/* The C library gives a block of at least this size its own mapping (mmap). Such a block grows by
+ * moving page tables and not bytes, so the first edit of a large mesh does not copy the mesh; and
+ * its memory returns to the system when it is freed. Without this setting, glibc raises the limit
+ * up to 32 MB as blocks are freed. */
 enum { OWN_MAPPING_BYTES = 1 << 20 };
 
 void st_memory_install(uint64_t budget)
@@ -111,7 +116,7 @@ void st_memory_set_budget(uint64_t budget)
 
 void st_memory_count(int64_t bytes)
 {
-    /* Unsigned addition wraps around, so adding a negative number subtracts. */
+    /* The addition is unsigned and wraps around, so adding a negative number subtracts. */
     atomic_fetch_add_explicit(&used, (uint64_t)bytes, memory_order_relaxed);
     atomic_fetch_add_explicit(&outside, (uint64_t)bytes, memory_order_relaxed);
 }
@@ -163,11 +168,11 @@ bool st_memory_is_short(void)
            st_memory_used() + budget / ST_MEMORY_SHORT_SHARE > budget - budget / RESERVE_SHARE;
 }
 
-/* The process counts as idle, and returns memory to the system, if it used at least WORKED_MICROS
- * of processor time since it last did so, and less than RESTING_MICROS since the last call of
- * st_memory_rests. glibc has a heap for each thread, and returns only memory that is free at the
- * end of a heap. Free pages in the middle stay: after minutes of mixed requests they are more than
- * all memory in use. */
+/* Free memory is returned to the system when the process is idle: when it has used at least
+ * WORKED_MICROS of processor time since the last return, and less than RESTING_MICROS since the
+ * last call of st_memory_rests. By itself, glibc returns only the free end of a heap, and each
+ * thread has a heap. Free pages in the middle stay; after minutes of mixed requests they are more
+ * than all memory in use. */
 enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
 
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor)

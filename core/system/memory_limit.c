@@ -7,13 +7,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The most bytes of a line of /proc/self/mountinfo that are read. Only an overlay file system with
- * many layers has a longer line. */
+/* The most bytes that are read of a line of /proc/self/mountinfo. A longer line can only be that of
+ * an overlay file system with many layers. */
 enum { LINE = 8192, DIGITS = 19 };
 
-/* A version of Linux control groups: the name of its file system, and the files in it that limit
- * memory. memory.high counts as a limit, too, because the kernel slows a group that uses more down
- * until the group hardly runs. */
+/* A version of Linux control groups: the name of its file system, and the files that state limits
+ * of memory. memory.high counts as a limit, too, because the kernel slows down a group that exceeds
+ * it until the group hardly runs. */
 typedef struct version {
     const char *filesystem;
     const char *files[3];
@@ -26,13 +26,13 @@ static const version versions[] = {
 
 enum { VERSION_1, VERSION_2, VERSIONS };
 
-/* The path of the process's control group in the hierarchy (tree of groups) of each version; empty
- * if the process is in no group of that version. */
+/* The path of the control group to which the process belongs, in the tree of groups of each
+ * version; empty if the process belongs to no group of that version. */
 typedef struct membership {
     char path[VERSIONS][PATH_MAX];
 } membership;
 
-/* Reads a limit from a file. "max" and any other text that is no number mean no limit. */
+/* Reads a limit from a file. "max", or any other text that is no number, means no limit. */
 static uint64_t read_limit(const char *path)
 {
     char text[32];
@@ -59,8 +59,8 @@ static void keep_smallest(st_memory_limit *limit, uint64_t bytes, const char *so
     }
 }
 
-/* Reads the next line without its end; a line that is too long is cut. Returns false after the last
- * line. */
+/* Reads the next line, without the newline; a line that is too long is cut. Returns false after the
+ * last line. */
 static bool next_line(FILE *file, char line[LINE])
 {
     if (fgets(line, LINE, file) == NULL) {
@@ -78,7 +78,7 @@ static bool next_line(FILE *file, char line[LINE])
     return true;
 }
 
-/* Returns true if `word` is in a list whose words are separated by commas. */
+/* Returns true if `word` is in a list of words that are separated by commas. */
 static bool has_word(const char *list, const char *word)
 {
     size_t length = strlen(word);
@@ -98,9 +98,8 @@ static FILE *open_beneath(const char *root, const char *name)
     return length < 0 || (size_t)length >= sizeof path ? NULL : fopen(path, "re");
 }
 
-/* Reads the path of the process's control group in each hierarchy (tree of groups) from
- * /proc/self/cgroup. Its lines are NUMBER:CONTROLLERS:PATH; the line of version 2 names no
- * controllers. */
+/* Reads from /proc/self/cgroup to which control group of each version the process belongs. A line
+ * of this file is NUMBER:CONTROLLERS:PATH; the line of version 2 names no controllers. */
 static void read_membership(const char *root, membership *m)
 {
     char line[LINE];
@@ -124,7 +123,8 @@ static void read_membership(const char *root, membership *m)
     }
 }
 
-/* Replaces octal escapes such as \040, by which mountinfo writes blanks and similar characters. */
+/* Replaces octal escapes in a path, such as \040, by which mountinfo writes blanks and similar
+ * characters. */
 static void unescape(char *text)
 {
     char *to = text;
@@ -139,11 +139,11 @@ static void unescape(char *text)
 }
 
 typedef struct mount {
-    char *root;  /* path of the control group whose files are in the folder `point` */
+    char *root;  /* path of the control group that is visible at the folder `point` */
     char *point; /* the folder where the tree of control groups is mounted */
     char *filesystem;
-    /* Options of the mounted file system; for control groups of version 1 they include the names of
-     * the controllers, such as "memory". */
+    /* Options of the mounted file system. For control groups of version 1 they include the names of
+     * controllers, such as "memory". */
     char *options;
 } mount;
 
@@ -172,8 +172,8 @@ static bool parse_mount(char *line, mount *m)
     return true;
 }
 
-/* Returns the end of `path` that follows the folder `above`: "" if the two paths are equal, NULL if
- * `path` is not below `above`. */
+/* Returns the rest of `path` after the folder `above`: "" if the paths are equal, NULL if `path` is
+ * not inside `above`. */
 static const char *below(const char *path, const char *above)
 {
     size_t length = strlen(above);
@@ -187,9 +187,9 @@ static const char *below(const char *path, const char *above)
 }
 
 /* Reads the limits of the process's control group and of all groups above it that are visible in
- * the folder of this mount. If the process's own group is not visible there, the group at the
- * mount's root is either a group above the process (a namespace calls that "/..") or the only
- * visible group; the limit of that group is then read. */
+ * the folder of this mount. If the process's group is not visible there, only the limit of the
+ * group at the root of the mount is read: it is either a group above the process's group (whose
+ * path then begins with "/.."), or the only group that is visible. */
 static void look_through(const char *root, const mount *m, const version *v, const char *path,
                          st_memory_limit *limit)
 {

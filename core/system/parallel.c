@@ -5,17 +5,18 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 
-/* A loop in parts. This struct is on the stack of the thread that called `run`. */
+/* A parallel loop, which runs in parts. The struct is on the stack of the thread that called
+ * `run`. */
 typedef struct work {
     he_part part;
     void *context;
     uint32_t parts, begun, running;
-    bool stopped; /* no more parts are begun */
-    /* index of the first part that failed; if no part failed, the number of parts */
+    bool stopped; /* true if no further parts may begin */
+    /* index of the first part that failed; the number of parts if none failed */
     uint32_t failed;
     he_status status;
     he_error err;
-    pthread_cond_t ended; /* signalled when no part of this work is running */
+    pthread_cond_t ended; /* signalled when no part of this loop is running */
     struct work *next;
 } work;
 
@@ -24,13 +25,13 @@ struct st_parallel {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
-    work *first; /* list of the loops that have parts which no thread has begun */
+    work *first; /* list of the loops that have parts which no thread has begun yet */
     size_t thread_count;
     pthread_t *threads;
 };
 
-/* All functions below are called with the lock of the pool held. The lock is released only while a
- * part (a piece of a parallel loop) runs. */
+/* The caller of each function below holds h->lock. The lock is released only while a part of a loop
+ * runs. */
 
 static bool has_parts(const work *w)
 {
@@ -57,9 +58,9 @@ static void take_out(st_parallel *h, const work *w)
     }
 }
 
-/* Runs the next part of the loop `w` with the lock released. When no other part of `w` is running
- * any more, the thread that owns `w` is woken and may free `w`, so a pool thread must not use `w`
- * afterwards. */
+/* Runs the next part of the loop `w` while h->lock is released. If no other part of `w` is running
+ * afterwards, the thread that owns `w` is woken and may free it, so the calling thread must not use
+ * `w` any more. */
 static void run_next(st_parallel *h, work *w)
 {
     he_error err = {0};

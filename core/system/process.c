@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Reads a file by its descriptor. A FILE of the C library would allocate memory that the memory
+/* Reads a file through a descriptor. A FILE of the C library would allocate memory that the memory
  * budget (memory.h) does not count. */
 static void read_text(const char *path, char *out, size_t size)
 {
@@ -25,7 +25,8 @@ static void read_text(const char *path, char *out, size_t size)
     out[got > 0 ? got : 0] = '\0';
 }
 
-/* Reads a number after blanks. Returns the text after it, NULL if there is no number. */
+/* Reads a number that may follow blanks. Returns the text after the number; NULL if there is no
+ * number. */
 static const char *read_number(const char *text, uint64_t *out)
 {
     size_t used = 0;
@@ -47,9 +48,9 @@ static void read_memory(st_process *out)
     }
 }
 
-/* Reads the time at which the process started from /proc/self/stat. The start time is in ticks
- * since the machine was booted. It is word 22, the 20th after the process's name, which is in
- * parentheses and may contain anything. */
+/* Reads from /proc/self/stat when the process was started, in clock ticks since the machine was
+ * booted. It is word 22 of the file. The search begins after the second word, the name of the
+ * process, which is in parentheses and may contain any character. */
 static void read_start(st_process *out)
 {
     char text[1024];
@@ -68,9 +69,9 @@ static void read_start(st_process *out)
     }
 }
 
-/* Returns the number of open descriptors. Since Linux 6.2 the size of the folder /proc/self/fd is
- * this number. On older systems the entries of the folder are counted; one of the entries is the
- * descriptor by which the folder is read. */
+/* Returns the number of open descriptors. Since Linux 6.2 it is the size of the folder
+ * /proc/self/fd. On older systems the entries of the folder are counted, without the descriptor by
+ * which the folder is read. */
 static uint64_t count_descriptors(void)
 {
     static const char folder[] = "/proc/self/fd";
@@ -87,7 +88,7 @@ static uint64_t count_descriptors(void)
         count++;
     }
     closedir(open_ones);
-    /* the folder's entries "." and ".." are not counted, because they are no descriptors */
+    /* subtracts ".", ".." and the descriptor by which the folder is read */
     return count > 3 ? count - 3 : 0;
 }
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <sys/random.h>
 
-/* Fills bytes with random numbers. The system call getrandom fails only when a signal interrupts
- * it; the daemon needs a kernel that has this call. */
+/* Fills bytes with random numbers from the system call getrandom. If a signal interrupts the call,
+ * it is repeated; it cannot fail in another way on the kernels that the daemon supports. */
 static void fill(void *bytes, size_t size)
 {
     unsigned char *at = bytes;

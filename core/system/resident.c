@@ -12,18 +12,18 @@
 
 enum { MEASURE_MICROS = 100 * 1000 };
 
-/* The resident memory is too near to the budget when less than 1/NEAR_SHARE of the budget is left.
- * Before this is reported again, the resident memory must grow by 1/GROWTH_SHARE of the budget:
- * after meshes were evicted (removed from memory), resident memory does not fall at once, so
- * otherwise every call would evict more, until no mesh is left in memory. */
+/* The resident memory is too near to the memory budget when less than 1/NEAR_SHARE of the budget is
+ * left. It is reported again only after the resident memory has grown by 1/GROWTH_SHARE of the
+ * budget. The reason: resident memory does not fall at once when meshes are evicted (removed from
+ * memory), so otherwise each call would evict more meshes until none is left. */
 enum { NEAR_SHARE = 32, GROWTH_SHARE = 192 };
 
 static bool watched;
 static _Atomic uint64_t beside;
-static _Atomic uint64_t measured; /* when `beside` was last measured */
+static _Atomic uint64_t measured; /* time at which `beside` was last measured */
 static _Atomic uint64_t told;     /* resident bytes when st_resident_is_beyond last returned true */
 
-/* Returns the resident bytes of the process, 0 if the system does not reveal them. */
+/* Returns the resident bytes of the process; 0 if they cannot be read. */
 static uint64_t resident(void)
 {
     char text[64];
@@ -34,8 +34,8 @@ static uint64_t resident(void)
     const ssize_t length = read(fd, text, sizeof text - 1);
     close(fd);
     text[length < 0 ? 0 : length] = '\0';
-    /* The first number in the file is the process's pages of address space, the second is its
-     * resident pages. */
+    /* The file contains the number of pages of the address space, then the number of resident
+     * pages. */
     const char *second = strchr(text, ' ');
     return second == NULL ? 0 : strtoull(second, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE);
 }

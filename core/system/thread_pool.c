@@ -6,9 +6,9 @@
 #include <string.h>
 #include <sys/prctl.h>
 
-/* The number of stamps (virtual times) that are kept for flows. A flow is the tasks of one client
- * for one mesh (thread_pool.h). Flows whose hashes have equal low bits share a stamp, so they are
- * scheduled as if they were one flow. */
+/* The number of stamps (virtual times) that are kept for flows. A flow is all tasks of one client
+ * for one mesh (thread_pool.h). Flows whose hashes have equal low bits share a stamp and are
+ * scheduled like one flow. */
 enum { FLOWS = 256 };
 
 enum { NAME = 16 /* most bytes of a thread's name with its NUL, a limit of prctl(2) */ };
@@ -16,11 +16,12 @@ enum { NAME = 16 /* most bytes of a thread's name with its NUL, a limit of prctl
 typedef struct waiting {
     st_task task;
     double stamp;
-    uint64_t number; /* number of the task, in the order of submission */
+    /* number of the task; tasks are numbered in the order in which they were submitted */
+    uint64_t number;
 } waiting;
 
-/* The waiting tasks of a share, as a binary heap: a task never precedes its parent, and the parent
- * of the task at index i is at (i - 1) / 2. */
+/* The waiting tasks of one share (kind of tasks), as a binary heap. The parent of the task at index
+ * i is at index (i - 1) / 2, and no task is to begin before its parent. */
 typedef struct queue {
     waiting *heap;
     size_t count, room;
@@ -34,9 +35,11 @@ struct st_pool {
     bool ending;
     size_t capacity; /* most tasks that each queue can hold */
     queue queues[ST_SHARES];
-    size_t most_long;     /* how many tasks of the shares LONG and JOB together may run at once */
-    size_t idle;          /* threads that wait for `wake`, or were woken and do not run yet */
-    double clock;         /* stamp (virtual end time) of the task that was begun last */
+    /* how many tasks of the shares LONG and JOB may run at a time, counted together */
+    size_t most_long;
+    /* number of threads that wait for `wake`, or were woken and have not continued yet */
+    size_t idle;
+    double clock;         /* stamp (virtual end time) of the task that began last */
     double stamps[FLOWS]; /* for each flow, the stamp of its newest task */
     uint64_t submitted;
     char name[NAME];
@@ -51,7 +54,7 @@ static bool is_before(const waiting *a, const waiting *b)
     return a->stamp != b->stamp ? a->stamp < b->stamp : a->number < b->number;
 }
 
-/* Makes memory available for one more task in a queue. Returns false if memory is out. */
+/* Makes sure that a queue has memory for one more task. Returns false if memory is out. */
 static bool make_room(queue *q)
 {
     if (q->count < q->room) {
@@ -66,7 +69,7 @@ static bool make_room(queue *q)
     return heap != NULL;
 }
 
-/* Adds a task to a queue. make_room must have been called. */
+/* Adds a task to a queue. make_room must have succeeded before. */
 static void push(queue *q, const waiting *w)
 {
     size_t at = q->count++;
@@ -108,7 +111,7 @@ static bool may_begin(const st_pool *pool, st_share share)
 }
 
 /* Returns the share (kind of tasks) whose first task is to begin next; ST_SHARES if no task may
- * begin. */
+ * begin now. */
 static st_share next_share(const st_pool *pool)
 {
     st_share next = ST_SHARES;
@@ -131,10 +134,10 @@ static bool is_empty(const st_pool *pool)
     return count == 0;
 }
 
-/* Unlocks the pool, and wakes a thread only if there is a task that it can begin, because waking a
- * thread in vain costs more than a short task. The woken thread needs the lock at once, so the
- * signal is sent after the lock is released. A thread that has ended a task looks for another
- * without a signal. */
+/* Unlocks the pool. Wakes a thread only if there is a task that may begin now, because waking a
+ * thread in vain costs more time than a short task. The signal is sent after the lock is released,
+ * because the woken thread needs the lock at once. A thread that has finished a task looks for the
+ * next one without a signal. */
 static void unlock(st_pool *pool)
 {
     const bool wakes = pool->idle > 0 && next_share(pool) != ST_SHARES;
@@ -150,7 +153,7 @@ static void run_next(st_pool *pool, st_share share)
     const waiting next = pop(q);
     pool->clock = next.stamp > pool->clock ? next.stamp : pool->clock;
     q->running++;
-    unlock(pool); /* Another waiting task may be able to begin now, so a thread is woken. */
+    unlock(pool); /* another thread is woken if another waiting task may begin now */
     next.task.work(next.task.context);
     pthread_mutex_lock(&pool->lock);
     q->running--;
@@ -171,7 +174,7 @@ static void *run(void *context)
             run_next(pool, share);
         }
     }
-    /* The pool is closing and no task is added any more, so all waiting threads are woken, to
+    /* The pool is closing, so no task is added any more. All waiting threads are woken so that they
      * end. */
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
@@ -261,8 +264,8 @@ void st_pool_look(st_pool *pool, st_share share, st_pool_state *out)
     pthread_mutex_unlock(&pool->lock);
 }
 
-/* Adds a text to a hash by FNV-1a, 64 bits. Each text is added with its NUL, so different pairs of
- * texts are hashed as different sequences of bytes. */
+/* Adds a text and its NUL to a hash (FNV-1a, 64 bits). Without the NUL, the pairs of texts "a",
+ * "bc" and "ab", "c" would have equal hashes. */
 static uint64_t add_text(uint64_t hash, const char *text)
 {
     do {

@@ -34,7 +34,7 @@ static st_holder **place_of(st_holders *holders, const char *name)
     return at;
 }
 
-/* Finds the holder of this name, or adds a holder of this name. Returns NULL if memory is out. */
+/* Returns the holder with this name; adds it if there is none. Returns NULL if memory is out. */
 static st_holder *find_or_add(st_holders *holders, const char *name)
 {
     st_holder **at = place_of(holders, name);

@@ -24,7 +24,8 @@ static bool replaces(const he_delta *delta)
     return false;
 }
 
-/* Encodes an edit that is too large for a record's body and writes the encoded edit to the disk. */
+/* Encodes an edit that is too large for the body of a record, and writes the encoded edit to the
+ * disk. */
 static st_status stage_edit(const st_journal *journal, const he_delta *delta, const he_mesh *after,
                             size_t bound, st_booking *out)
 {

@@ -7,8 +7,8 @@
 #include <string.h>
 
 struct st_message {
-    /* number of references to the message from the queue's ring and from listeners, guarded by the
-     * queue's lock */
+    /* number of references to the message, from the ring of the queue and from listeners; guarded
+     * by the queue's lock */
     uint32_t uses;
     st_place place;
     uint64_t made; /* time (st_clock_micros) at which the message was added */
@@ -133,7 +133,7 @@ static uint64_t newest_number(const st_queue *queue)
     return queue->floor_number + queue->count;
 }
 
-/* Returns the index of the first message that may not be read yet. Messages are in the order of
+/* Returns the index of the first message that listeners may not read yet. Messages are sorted by
  * their stamps. */
 static size_t first_forbidden(const st_queue *queue)
 {
@@ -177,8 +177,8 @@ static st_message *message_new(const char *bytes, size_t length)
     return message;
 }
 
-/* Appends a message, which the queue then owns. If `message` is NULL, because memory was out, the
- * queue is emptied: every listener learns that it missed messages. */
+/* Appends a message, which the queue then owns. If `message` is NULL, memory was out when it was
+ * made. The queue is then emptied, and each listener learns that it has missed messages. */
 static void append(st_queue *queue, st_message *message)
 {
     if (message == NULL || !reserve_place(queue)) {
@@ -319,7 +319,7 @@ void st_queue_leave(st_listener *listener)
     *listener = (st_listener){0};
 }
 
-/* Makes the next message that the listener may read the one that it is reading. */
+/* Takes the next message that the listener may read as the message that it reads now. */
 static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
     if (listener->number < queue->floor_number) {

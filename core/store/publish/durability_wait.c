@@ -9,18 +9,18 @@
 struct st_waits {
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
-    st_wait *top; /* top of the heap */
-    /* number of threads that have taken waits off the heap and are calling the waits' functions
-     * `resume` */
+    st_wait *top; /* top of the heap of waits: the wait for the earliest position */
+    /* number of threads that have taken ended waits off the heap and are calling `resume` for
+     * these */
     size_t resuming;
-    /* Signalled when the durable position was raised, the waits were stopped, or the number
-     * `resuming` fell. */
+    /* Signalled when more records are durable, when all waits are stopped, or when `resuming`
+     * falls. */
     pthread_cond_t caught;
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
-    /* The losses for which there was no memory to list them, merged into one loss; there are none
-     * if `from` is above `to`. */
+    /* One loss that covers all losses for which there was no memory in the list; if `from` is above
+     * `to`, there are no such losses. */
     st_loss rest;
     bool stopped;
 };
@@ -50,8 +50,8 @@ static st_wait *meld(st_wait *a, st_wait *b)
     return a;
 }
 
-/* Removes the top of the pairing heap: melds the children in pairs, then the pairs from the last to
- * the first. */
+/* Removes the top of the pairing heap: melds its children in pairs, then melds these pairs from the
+ * last to the first. */
 static st_wait *without_top(st_wait *top)
 {
     st_wait *pairs = NULL, *left = top->child, *all = NULL;
@@ -78,8 +78,9 @@ static bool concerns(const st_loss *loss, const st_shown *shown)
     bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
                 loss->incarnation == shown->incarnation;
     /* If all records that the answer shows were durable when the answer was begun (position <=
-     * since), none of these records can be lost. `since` may be above `position`: the journal may
-     * report a record as durable before its writer calls st_waits_appended. */
+     * since), none of them can be lost. `since` may be greater than `position`, because the journal
+     * may report a record as durable before the thread that wrote it has called
+     * st_waits_appended. */
     return same && shown->since < shown->position && loss->from <= shown->position &&
            loss->to > shown->since;
 }
@@ -109,8 +110,8 @@ static bool reserve_loss(st_waits *waits)
     return true;
 }
 
-/* Extends the newest loss of the list by this loss if the positions of the two are adjacent: after
- * the disk has failed, the journal reports many small losses. */
+/* If the positions of a loss follow directly those of the newest loss in the list, merges the two.
+ * This keeps the list short: after the disk has failed, the journal reports many small losses. */
 static bool extend_last(st_waits *waits, const st_loss *loss)
 {
     st_loss *last = waits->loss_count == 0 ? NULL : &waits->losses[waits->loss_count - 1];
@@ -122,13 +123,13 @@ static bool extend_last(st_waits *waits, const st_loss *loss)
     return true;
 }
 
-/* Stores a loss of records. If memory is out, every record from this loss on counts as lost, which
- * is safe because it only refuses more answers. */
+/* Stores a loss of records. If memory is out, all later records count as lost, too. This is safe,
+ * because it only makes the store refuse more answers. */
 void st_waits_lose(st_waits *waits, const st_loss *loss)
 {
     pthread_mutex_lock(&waits->lock);
     if (extend_last(waits, loss)) {
-        /* The loss was merged into the last loss of the list. */
+        /* The loss was merged into the newest loss of the list. */
     } else if (reserve_loss(waits)) {
         waits->losses[waits->loss_count++] = *loss;
     } else if (loss->from < waits->rest.from) {
@@ -142,7 +143,8 @@ void st_waits_lose(st_waits *waits, const st_loss *loss)
 
 /* --- waiting --- */
 
-/* Returns true if a wait is over, and sets how the wait ended. The caller holds the lock. */
+/* Returns true if a wait has ended, and stores how it ended. The caller holds the lock of
+ * `waits`. */
 static bool is_over(const st_waits *waits, st_wait *wait)
 {
     const st_shown *shown = &wait->shown;
@@ -154,8 +156,8 @@ static bool is_over(const st_waits *waits, st_wait *wait)
     return durable || waits->stopped;
 }
 
-/* Resumes the waits that are over, in the order of positions. All these waits are taken off the
- * heap first, because the function `resume` of a wait may free it. */
+/* Calls the function `resume` of each wait that has ended, in the order of positions. All these
+ * waits are first taken off the heap, because `resume` may free its wait. */
 static void resume_those_over(st_waits *waits)
 {
     st_wait *first = NULL, **end = &first;
@@ -237,16 +239,15 @@ bool st_waits_is_lost(st_waits *waits, const st_shown *shown)
     return found;
 }
 
-/* Decides whether records are durable. The journal reports a loss before it raises the durable
- * position above the lost records, so the position is checked first and the losses afterwards. */
+/* Decides whether records are durable. The position is read before the list of losses: the journal
+ * reports a loss before it raises the durable position beyond the lost records. */
 bool st_waits_is_durable(st_waits *waits, const st_shown *shown)
 {
     return shown->position <= atomic_load(&waits->durable) && !st_waits_is_lost(waits, shown);
 }
 
-/* Adds a wait. The function checks again under the lock whether the wait is over, because records
- * may have become durable since the caller's check. Once the wait is added, st_waits_moved ends
- * it. */
+/* Adds a wait, unless it has ended already: records may have become durable since the caller
+ * checked. st_waits_moved ends an added wait later. */
 bool st_waits_add(st_waits *waits, st_wait *wait)
 {
     pthread_mutex_lock(&waits->lock);
