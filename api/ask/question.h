@@ -93,8 +93,9 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question);
 typedef struct api_target {
     he_kind kind;
     bool dense;
-    uint32_t id;        /* the element, if `dense` is false */
-    const uint32_t *of; /* the elements, if `dense` is true; NULL: all elements of the kind */
+    uint32_t id; /* the element, if `dense` is false */
+    /* ids of the elements if `dense` is true; NULL stands for all elements of this kind */
+    const uint32_t *of;
     size_t count;
 } api_target;
 

@@ -16,8 +16,8 @@ struct api_decompressor {
     bool (*take)(void *context, const char *bytes, size_t length);
     void *context;
     uint64_t at; /* number of bytes of the compressed body that were read */
-    /* Decompressed bytes by which earlier gzip members or zstd frames exceeded
-     * API_DECOMPRESS_RATIO. */
+    /* By how many decompressed bytes the earlier gzip members or zstd frames of this body have
+     * exceeded the ratio API_DECOMPRESS_RATIO, added up. */
     uint64_t beyond;
     /* How many bytes of the present gzip member or zstd frame were read (from: compressed) and
      * written (to: decompressed). */

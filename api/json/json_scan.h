@@ -14,8 +14,8 @@
  * parsed document leaves out (api_items), and counts the items. */
 bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *problem);
 
-/* Reads the next token of a control document, and counts the values of the document in
- * `*values`. */
+/* Reads the next token of a JSON document, and adds to *values the number of JSON values that begin
+ * with it (0 or 1). Refuses the document if it has more than `most` values. */
 bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, api_problem *problem);
 
 /* Refuses the text because of the byte at offset `place`. Returns false. The caller sets the JSON

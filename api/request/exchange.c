@@ -40,7 +40,7 @@ uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallbac
     uint64_t number = fallback;
     size_t used;
     if (value != NULL && he_u64_parse(value, value + strlen(value), &number, &used) != HE_OK) {
-        assert(!"the parameter was not checked against its route");
+        assert(!"the checks of the route let an invalid parameter pass");
     }
     return number;
 }
@@ -52,7 +52,7 @@ double api_param_number(const api_exchange *x, const char *name, double fallback
     size_t used;
     if (value != NULL &&
         he_double_parse(value, value + strlen(value), HE_JSON_NUMBER, &number, &used) != HE_OK) {
-        assert(!"the parameter was not checked against its route");
+        assert(!"the checks of the route let an invalid parameter pass");
     }
     return number;
 }
@@ -85,7 +85,7 @@ unsigned api_param_choices(const api_exchange *x, const char *name)
     const api_parameter *parameter = find_parameter(x, name);
     unsigned out = 0;
     if (value != NULL && !api_choices_parse(parameter->choices, value, &out)) {
-        assert(!"the parameter was not checked against its route");
+        assert(!"the checks of the route let an invalid parameter pass");
     }
     return out;
 }

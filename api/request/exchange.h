@@ -49,7 +49,8 @@ struct api_service {
     api_options options;
     api_backfills backfills;
     api_tickets *tickets;
-    /* The buckets of tokens and of addresses; NULL: no client has a limit. */
+    /* The token buckets that limit the requests of each access token and of each address; NULL: no
+     * client is limited. */
     api_rates *token_rates, *address_rates;
     api_limited limited;
     api_metrics *metrics;

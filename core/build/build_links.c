@@ -16,8 +16,8 @@ typedef struct linking {
     uint32_t *swing;
     uint32_t *first; /* first corner of each vertex */
     uint32_t lanes;
-    /* For each lane, which is a range of faces that one thread handles (parallel.h): first the
-     * number of its edges, then the id of its next edge. */
+    /* Two numbers in turn for each lane, which is a range of faces that one thread handles
+     * (parallel.h): first the number of its edges, then the id of its next edge. */
     uint32_t edges[HE_MOST_LANES];
 } linking;
 

@@ -67,7 +67,7 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     (void)err;
     for (size_t f = from; f < to; f++) {
         const uint32_t first = soup->starts[f], count = he_soup_end(soup, f) - first;
-        /* this test also protects a soup without corners, which may have no array of corners */
+        /* tested first, because a soup without corners may have no array of corners */
         if (count < 3) {
             found |= BAD_FACE;
             break;
@@ -178,7 +178,7 @@ static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint
     }
 }
 
-/* For each corner at a vertex, the vertex before it and the vertex behind it in its face. */
+/* The vertices before and behind each corner at a vertex, in the face of the corner. */
 typedef struct neighbours {
     uint32_t before[SMALL_VERTEX], behind[SMALL_VERTEX];
 } neighbours;

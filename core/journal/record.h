@@ -154,11 +154,11 @@ typedef struct st_record {
     /* The body (encoded data) of the record, which lies in the member `bytes` of an st_room; NULL
      * in a journal that stores nothing. */
     const unsigned char *body;
-    /* Number of bytes of the body. A staged edit has no body; then this is the number of bytes of
-     * the encoded edit. */
+    /* Number of bytes of the body. An edit that was written to the disk in advance has no body;
+     * then it is the number of bytes of the encoded edit. */
     size_t body_size;
-    /* What was written to the disk in place of the body; NULL: there is no stage. The journal owns
-     * the stage once the record is appended. */
+    /* The data that was written to the disk in advance, in place of the body; NULL: there is none.
+     * The journal owns the stage once the record is appended. */
     st_stage *stage;
     /* True if the stage is the encoded edit, false if it is the whole content after the edit. */
     bool staged_edit;
@@ -182,8 +182,8 @@ void st_copy_text(char *to, const char *from, size_t most);
 void st_card_of_record(const st_record *record, st_card *card);
 
 typedef enum st_piece_kind {
-    /* the description (id, name, counts) of the mesh at its base; the parts of the base's content
-     * follow */
+    /* The base, which is the mesh data with which a load begins: this piece has the id, name and
+     * counts of the mesh. The next pieces are the parts of the mesh data. */
     ST_PIECE_BASE,
     /* a part of the base's content, or of the stage of the record that was read before */
     ST_PIECE_PART,

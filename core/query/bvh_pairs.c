@@ -22,8 +22,8 @@ typedef struct common {
 
 typedef struct walk {
     he_pair_search search;
-    /* For each node the hubs and the face that all triangles below it share. NULL if the mesh has
-     * neither hubs nor faces of very many triangles. */
+    /* The hubs and the face that all triangles below each node share. NULL if the mesh has neither
+     * hubs nor faces of very many triangles. */
     common *commons;
     /* number of triangles that were tested against all triangles after them in the tree */
     uint32_t done;

@@ -14,7 +14,7 @@ typedef struct he_idmap {
     /* Hash table with open addressing, at most half full. An entry is an index in `ids`, plus 1; 0
      * if it is free. */
     uint32_t *slots;
-    unsigned log2; /* logarithm of the number of slots, 0 while there are none */
+    unsigned log2; /* base-2 logarithm of the number of slots; 0: there are no slots yet */
 } he_idmap;
 
 /* Returns the index of an id, HE_NONE if the id was never added. */

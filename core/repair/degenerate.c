@@ -34,8 +34,8 @@ typedef struct mending {
     uint32_t *stamp; /* a mark for each vertex, used by he_soup_find_repeat */
     he_ids loops;    /* the corners of all kept loops: their numbers in the soup, loop after loop */
     he_ids ends;     /* index in `loops` at which each loop ends */
-    /* For each loop the number of the face in `flat` that is cut into triangles in its place;
-     * HE_NONE if the loop stays one face. */
+    /* The number of the face in `flat` that is cut into triangles in place of each loop; HE_NONE if
+     * the loop stays one face. */
     he_ids cut;
     /* for each degenerate face, the number of loops of all degenerate faces up to it */
     he_ids done;

@@ -9,8 +9,8 @@ typedef enum state { UNSEEN, KEPT, TURNED } state;
 typedef struct orienting {
     he_soup *soup;
     he_repaired *out;
-    /* For each corner, the corner of the adjacent face whose half-edge runs along this edge;
-     * HE_NONE unless the edge has exactly two faces. */
+    /* The mate of each corner, which is the corner of the adjacent face whose half-edge runs along
+     * this edge; HE_NONE unless the edge has exactly two faces. */
     uint32_t *mate;
     uint32_t *face_of; /* face of each corner */
     uint32_t *queue;   /* the faces in the order of the search, component after component */
@@ -32,7 +32,7 @@ static he_status find_mates(orienting *o, he_error *err)
         return status;
     }
     uint32_t *met = he_mem_zero(
-        /* For each edge the number of its corners; later its first corner if it has two. */
+        /* The number of corners of each edge; later its first corner if it has two. */
         edges + 1, sizeof *met);
     if (met == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to orient %zu faces", soup->face_count);

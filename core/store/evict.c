@@ -66,8 +66,8 @@ static uint64_t bytes_of(const st_mesh *mesh)
     return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
-/* For each class of times of last use, the bytes of the meshes in this class. The sums tell which
- * meshes must be evicted to free a number of bytes: those last used before a limit. */
+/* The bytes of the meshes in each class of times of last use. The sums tell which meshes must be
+ * evicted to free a number of bytes: those last used before a limit. */
 typedef struct ages {
     /* `first`: the earliest time of last use of any mesh; `span`: the time from `first` to the
      * latest time of last use */

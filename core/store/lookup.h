@@ -39,8 +39,8 @@ st_status st_lookup_begin(st_store *store, const char *id, st_mesh **mesh, st_lo
  * Returns ST_LOADING if another thread's lookup takes too long.
  * Returns ST_NO_MEMORY or ST_FAILED if the lookup cannot be made. */
 st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out);
-/* Ends a lookup, which may be NULL. From now on the store's table of meshes says what the id
- * names. */
+/* Ends a lookup, which may be NULL. Threads that waited for it then search the store's table of
+ * meshes for the id. */
 void st_lookup_end(st_store *store, st_lookup *lookup);
 
 #endif

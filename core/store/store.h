@@ -258,15 +258,15 @@ st_status st_create_from(st_store *store, const st_new_mesh *made, he_mesh *cont
  * Returns ST_ABSENT if the damaged mesh was removed before. */
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
                          const st_cause *cause, st_mesh **out);
-/* Writes a large content to the disk before it replaces another (st_write_replace), so that
- * st_write_commit need not write it while it holds the mesh's lock. The function waits, so only
- * threads that may wait can call it, and without holding a lock. *out is NULL if the content is
- * small, or the journal stores nothing.
- * Returns ST_NO_MEMORY, ST_BEHIND, ST_FULL or ST_FAILED if the content cannot be written. */
+/* Writes large mesh data to the disk before it replaces the data of a mesh (st_write_replace), so
+ * that st_write_commit need not write it while it holds the mesh's lock. The function waits for the
+ * disk, so the caller must be a thread that may wait, and must hold no lock. *out is NULL if the
+ * data is small or the journal stores nothing.
+ * Returns ST_NO_MEMORY, ST_BEHIND, ST_FULL or ST_FAILED if the data cannot be written. */
 st_status st_store_stage(const st_store *store, const he_mesh *content, st_stage **out);
 void st_store_unstage(const st_store *store,
-                      /* frees a stage (content written in advance) that no write took; `stage` may
-                       * be NULL */
+                      /* frees a stage (mesh data that was written in advance) that no write has
+                       * used; `stage` may be NULL */
                       st_stage *stage);
 /* Returns true if an encoded edit of `bytes` bytes is too large for the body of a record. The edit
  * should then claim its mesh: only the commit of a claim can write the encoded edit to the disk in

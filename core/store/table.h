@@ -14,8 +14,8 @@ struct st_store {
     /* the threads that make new bases (contents from which meshes are loaded); NULL: no bases are
      * made */
     st_pool *pool;
-    /* when the records since a mesh's base exceed this number of bytes, the mesh may get a new
-     * base */
+    /* A mesh may get a new base, from which it is loaded, when the records since its present base
+     * have more bytes than this. */
     uint64_t base_bytes;
     st_followers followers;
     st_lookups lookups;

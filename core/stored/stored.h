@@ -108,7 +108,8 @@ typedef struct he_stored_writer {
     size_t slot, label;
     uint64_t header; /* length of the header in bytes */
     uint64_t done;   /* number of bytes of all pieces made so far */
-    /* Points to those bytes of the present piece that are not written yet. */
+    /* Points to the bytes of the current piece (a header, a label or an array) that are not written
+     * yet. */
     const unsigned char *from;
     size_t left;   /* how many bytes of the present piece are not written yet */
     int links;     /* how links of the present piece are coded: he_links of content_code.h */

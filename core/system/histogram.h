@@ -13,7 +13,7 @@
 
 enum { ST_BOUNDS = 14, ST_BUCKETS = ST_BOUNDS + 1 };
 
-/* A scale consists of ST_BOUNDS rising bounds. */
+/* A scale of a histogram has ST_BOUNDS numbers in rising order, the upper bounds of its buckets. */
 /* The scale for times: 100 microseconds to 300 seconds. */
 extern const uint64_t st_scale_micros[ST_BOUNDS];
 /* the scale for counts of things: 1 to 8192, each bound twice the one before */

@@ -260,8 +260,8 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     assert_int_equal(journal.staged_edits, 1);
     assert_true(journal.record.staged_edit && journal.record.body == NULL);
     journal.staging = NULL;
-    /* The next edits set one value for all vertices. The first of them is a dry run, for which
-     * nothing may be staged. */
+    /* The next edits set one value for all vertices. The first of them is a dry run, for which no
+     * data may be written to the disk in advance. */
     bench_done(bench_expect(200, bench_send(b, "PUT", path, NULL,
                                             "{\"type\":\"double\",\"value\":2,\"dry_run\":true}")));
     assert_int_equal(journal.staged_edits, 1);

@@ -38,7 +38,7 @@ static uint32_t interior_edge_at(md_draft *d, uint32_t v, uint32_t not )
     return OR_NONE;
 }
 
-/* Draws edges along a path, or random edges. */
+/* Chooses random edges for edge_cut: consecutive edges of a path, or edges anywhere in the mesh. */
 static bool draw_edge_cut(md_draft *d)
 {
     uint32_t path[5];

@@ -288,7 +288,8 @@ static void may_move(or_vertex *v, double reach)
     v->high = (he_vec3){v->at.x + reach, v->at.y + reach, v->at.z + reach};
 }
 
-/* Returns the mean of the centroids of those faces of the part that meet at the vertex v. */
+/* Returns the mean of the centroids of those faces at vertex v that belong to the part p, a set of
+ * connected faces. */
 static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 sum = {0, 0, 0};

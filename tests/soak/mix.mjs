@@ -134,7 +134,7 @@ export class Mix {
     // --- meshes that come and go ---
 
     shape() {
-        // Sizes from ten faces to `most`; each size is as frequent as its double.
+        // A number of faces from ten to `most`. Numbers around n and around 2 n are equally likely.
         const faces = Math.floor(10 * (this.most / 10) ** (this.below(1000) / 1000));
         const side = Math.max(3, Math.floor(Math.sqrt(faces)));
         return this.pick([

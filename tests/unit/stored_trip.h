@@ -15,7 +15,8 @@ typedef struct stored_bytes {
 stored_bytes stored_content(const he_mesh *mesh);
 /* Encodes an edit; `after` is the mesh after the edit. */
 stored_bytes stored_edit(const he_delta *delta, const he_mesh *after);
-/* Decodes a mesh, which must be possible; the caller must free the mesh. */
+/* Decodes a stored mesh, and fails the test if this is impossible. The caller must free the
+ * mesh. */
 he_mesh *stored_load(stored_bytes content);
 
 /* Encodes and decodes `before`, then applies the encoded edit to it: the result must equal `after`,

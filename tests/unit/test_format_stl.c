@@ -43,8 +43,8 @@ static void put_facet(file *f, const float *corners, unsigned attribute)
     f->bytes[f->length++] = (unsigned char)(attribute >> 8);
 }
 
-/* The facets of a tetrahedron. Its corners have coordinates 0 and -0, which must be the same
- * position. */
+/* The facets of a tetrahedron. Some coordinates are 0 and some are -0; the reader must treat them
+ * as equal. */
 static const float facets[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
                                    {-0.0f, 0, 0, 1, 0, 0, 0, 0, 1},
                                    {0, -0.0f, -0.0f, 0, 0, 1, -0.0f, 1, 0},

@@ -104,8 +104,8 @@ static void welding_is_what_comparing_all_would_do(void **state)
 
 /* --- random soups and all repairs --- */
 
-/* Makes random faces on few vertices. Most of the faces are triangles on an edge of the face
- * before. */
+/* Makes random faces on few vertices. Most faces are triangles that share an edge with the face
+ * made before them. */
 static void random_soup(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 3 + md_below(random, 8), corners[8] = {0, 1, 2};

@@ -225,8 +225,8 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
  * the disk may have its number. */
 typedef struct staged_record {
     bool same; /* true if the record on the disk is the record from which the data was taken */
-    /* `chain`: the hash that the record states, which connects it to the record before
-     * (record_bytes.h); `next`: the hash that the record after it must state */
+    /* `chain`: the hash by which this record is connected to the record before it (record_bytes.h);
+     * `next`: the hash by which the next record must be connected to this record */
     uint64_t chain, next;
 } staged_record;
 

@@ -38,7 +38,7 @@ enum { ST_LOG_PAGE_BYTES = 4096 };
 typedef enum st_item_kind {
     ST_ITEM_ROOM,    /* a group of records */
     ST_ITEM_REBASE,  /* the item asks that a stage becomes a base, from which its mesh is loaded */
-    ST_ITEM_UNSTAGE, /* the item asks that a stage (content written in advance) is deleted */
+    ST_ITEM_UNSTAGE, /* the item asks that mesh data is deleted that was written in advance */
     /* The item asks that the card (short description) of a mesh is marked as damaged. */
     ST_ITEM_CONDEMN
 } st_item_kind;
@@ -77,7 +77,7 @@ typedef struct st_sqlite_room {
     bool freeing;
     /* `most` is how many records fit into the room, `count` how many it has so far */
     size_t most, count;
-    uint64_t last; /* position of the room's last record, or of the note */
+    uint64_t last; /* position of the last record in the room, or of the note */
     /* Number of meshes that the records create, less the number that they remove. */
     uint64_t meshes;
     st_card card; /* card (short description) of the mesh after the records of the room */

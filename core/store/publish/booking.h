@@ -13,9 +13,9 @@
 
 typedef struct st_booking {
     st_room *room;
-    size_t body; /* how many bytes of `room` the first record's body takes */
-    /* What was written to the disk in place of the first record's body: a content or an encoded
-     * edit. */
+    size_t body; /* how many of the bytes reserved in `room` are the body of the first record */
+    /* Data that was written to the disk in place of the body of the first record: all mesh data, or
+     * an encoded edit. */
     st_stage *stage;
     bool staged_edit;
 } st_booking;

@@ -2,12 +2,12 @@
 #ifndef HE_STORE_LIMITS_H
 #define HE_STORE_LIMITS_H
 
-/* A content or encoded edit of more than ST_BODY_BYTES bytes is staged, which means that it is
+/* Mesh data, or an encoded edit, of more than ST_BODY_BYTES bytes is staged, which means that it is
  * written to the disk before the change is published (journal.h). */
 enum { ST_BODY_BYTES = 1 << 20 };
 
-/* A mesh gets a new base, the content from which it is loaded, when its records since the last base
- * take more than ST_BASE_BYTES bytes and more bytes than its content. */
+/* A mesh gets a new base, the stored mesh data from which it is loaded, when its records since the
+ * last base take more than ST_BASE_BYTES bytes and more bytes than its data. */
 enum { ST_BASE_BYTES = 16 << 20 };
 
 /* ST_QUEUE_MESSAGES and ST_QUEUE_BYTES are the most messages, and bytes of messages, that a mesh

@@ -160,7 +160,8 @@ static void stored_forward(bench_side *side, bench_result *out)
     he_mesh_free(m);
 }
 
-/* Returns a block as large as the mesh. It has been written to, so that its pages are allocated. */
+/* Returns a block of memory that is large enough for the encoded mesh and contains it. All pages of
+ * the block have been written to. */
 static unsigned char *block_of(const he_mesh *m, size_t *size)
 {
     unsigned char *block = calloc(he_stored_content_bound(m), 1);
