@@ -9,7 +9,7 @@ static uint32_t end_of(const he_soup *soup, size_t face)
 
 static he_status no_memory(const he_soup *soup, he_error *err)
 {
-    return he_fail_plain(err, HE_NO_MEMORY, "no memory to order %zu faces", soup->face_count);
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu faces", soup->face_count);
 }
 
 /* Moves each row i of a column to row to[i]. */

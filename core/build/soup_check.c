@@ -205,7 +205,8 @@ static void pair_large(pairing *p, uint32_t low, const filed *entries, const uin
 
 static he_status no_memory(const he_soup *soup, he_error *err)
 {
-    return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to find the edges of %zu corners",
+                         soup->corner_count);
 }
 
 /* Visits all edges in the order of the vertices, and finds the mates of their corners or numbers

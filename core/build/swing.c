@@ -339,7 +339,8 @@ static he_status turn_vertices(void *context, uint32_t part, size_t from, size_t
 
 static he_status no_memory(const he_soup *soup, he_error *err)
 {
-    return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
+    return he_fail_plain(err, HE_NO_MEMORY, "no memory to find the edges of %zu corners",
+                         soup->corner_count);
 }
 
 /* Finds the swings at vertices of many corners, one vertex after another, because these vertices

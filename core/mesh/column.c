@@ -129,7 +129,7 @@ he_status he_column_reserve(he_column *column, size_t rows, he_error *err)
     size_t capacity = column->rows == 0 ? rows : he_rows_grown(column->capacity, rows);
     unsigned char *data = he_mem_array(column->data, capacity, column->row_bytes);
     if (data == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu rows of attribute %s", rows,
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu values of attribute %s", rows,
                              column->name);
     }
     column->data = data;

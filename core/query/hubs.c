@@ -168,7 +168,8 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
 {
     hubs->first = he_mem_zero((size_t)hubs->count + 1, sizeof *hubs->first);
     if (hubs->first == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u positions of many triangles",
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory for %u positions at which many triangles meet",
                              hubs->count);
     }
     uint64_t total = 0;

@@ -181,9 +181,10 @@ static he_status turn_all(he_mend *m, const unsigned char *states, he_error *err
     he_status status = account->parts > 0 ? he_mend_corners(m, err) : HE_OK;
     if (status == HE_OK && account->parts > 0) {
         m->turned = he_bits_new(m->soup->face_count);
-        status = m->turned != NULL ? HE_OK
-                                   : he_fail_plain(err, HE_NO_MEMORY, "no memory to turn %zu faces",
-                                                   m->soup->face_count);
+        status = m->turned != NULL
+                     ? HE_OK
+                     : he_fail_plain(err, HE_NO_MEMORY, "no memory to reverse %zu faces",
+                                     m->soup->face_count);
     }
     for (uint32_t f = 0; f < m->soup->face_count && status == HE_OK; f++) {
         if (states[f] == TURNED) {

@@ -95,7 +95,7 @@ static he_status carry_column(he_column *column, const uint32_t *from, size_t ro
     }
     unsigned char *data = he_mem_array(NULL, rows, column->row_bytes);
     if (data == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu rows of attribute %s", rows,
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu values of attribute %s", rows,
                              column->name);
     }
     for (size_t i = 0; i < rows; i++) {

@@ -258,7 +258,7 @@ he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err)
         he_gltf_spend(asset, value, count * (2 * sizeof(uint32_t) + sizeof(he_source_run)), err);
     uint32_t *order = status != HE_OK ? NULL : he_mem_array(NULL, count, sizeof *order);
     if (status == HE_OK && order == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to order %zu faces", count);
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to sort %zu faces", count);
     }
     if (status == HE_OK) {
         status = read_order(asset, &a, order, &fits, err);
