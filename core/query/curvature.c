@@ -12,8 +12,8 @@
  * in `ids`. */
 typedef struct chosen {
     bool all;
-    he_ids ids;   /* sorted, each once; empty if all elements are chosen */
-    /* faces beside the chosen elements, sorted, each once; empty if all elements are chosen */
+    he_ids ids; /* ids of the chosen elements, sorted, each once; empty if `all` is true */
+    /* ids of the faces beside the chosen elements, sorted, each once; empty if `all` is true */
     he_ids faces;
 } chosen;
 

@@ -158,7 +158,8 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
         g->runs[i] = (uint64_t)list[i] << 32 | list[next];
     }
     *out = false;
-    if (count > 0) { /* qsort must not be called with NULL */
+    /* `runs` may be NULL if `count` is 0, and qsort must not be called with NULL */
+    if (count > 0) {
         qsort(g->runs, count, sizeof *g->runs, compare);
     }
     for (size_t i = 1; i < count; i++) {

@@ -309,8 +309,8 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
         st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiiit", row.mesh, row.text, row.digest,
                  sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
                  row.position, (uint64_t)row.made, (uint64_t)sum, row.holder);
-    self->keys++; /* if a key replaces an equal key, it is counted twice until the daemon starts
-                     again */
+    /* a key that replaces an equal key is counted twice until the daemon is restarted */
+    self->keys++;
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 

@@ -319,7 +319,8 @@ void st_queue_leave(st_listener *listener)
     *listener = (st_listener){0};
 }
 
-/* Takes the next message that the listener may read as the message that it reads now. */
+/* If the listener may read the next message of the queue, makes it the listener's current
+ * message. */
 static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
     if (listener->number < queue->floor_number) {
