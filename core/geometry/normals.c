@@ -119,30 +119,6 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     return is_plain(t.square, reach);
 }
 
-/* Prefetches memory for faces that a loop over all faces will visit soon: the links of the face
- * that is LINKS faces ahead, and the corners of the face that is CORNERS faces ahead. If ids are in
- * no spatial order, every access misses the caches; prefetching makes the processor wait for many
- * of these accesses at once. */
-static inline void look_ahead(const he_mesh *m, uint32_t f)
-{
-    enum { LINKS = 24, CORNERS = 12 };
-    const uint32_t end = 2u * m->c.edges.issued;
-    if (m->c.faces.issued - f <= LINKS) {
-        return;
-    }
-    uint32_t far = m->c.face_halfedge[f + LINKS], near = m->c.face_halfedge[f + CORNERS];
-    if (far < end) {
-        __builtin_prefetch(&m->c.next[far]);
-        __builtin_prefetch(&m->c.origin[far]);
-    }
-    if (near < end && m->c.next[near] < end) {
-        __builtin_prefetch(&m->c.next[m->c.next[near]]);
-        __builtin_prefetch(&m->c.origin[m->c.next[near]]);
-        __builtin_prefetch(&m->c.position[m->c.origin[near]]);
-        __builtin_prefetch(&m->c.position[m->c.origin[near ^ 1u]]);
-    }
-}
-
 /* --- normals of faces --- */
 
 /* The number of faces in a block. Normals are computed block by block, in three loops over the
