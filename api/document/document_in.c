@@ -316,8 +316,9 @@ static bool open_member(api_document_in *in)
 
 /* --- handling tokens --- */
 
-/* Refuses the value that the lexer reads next if such a value may not stand there. Sets `*taken` if
- * the value was read at once. */
+/* Refuses the value that the lexer is about to read if the document may not have such a value in
+ * this place. Sets `*taken` to true if the whole value was read here, so that the lexer must go on
+ * after it. */
 static bool expect(api_document_in *in, bool *taken)
 {
     switch (in->member) {

@@ -115,7 +115,7 @@ enum { ST_HEALTH_TEXT = 200 };
 typedef struct st_health {
     st_status status; /* ST_OK if changes are accepted, else ST_FULL or ST_FAILED */
     uint64_t fulls;   /* how often the disk became full since the journal was opened */
-    /* Number of stored keys of requests that were found damaged, at the start or later. */
+    /* Number of stored idempotency keys that were found to be damaged, at the start or later. */
     uint64_t damaged_keys;
     /* If `status` is ST_FAILED, the system's message about the failure; "" if there was none. */
     char reason[ST_HEALTH_TEXT];

@@ -181,8 +181,9 @@ static void move_row(const he_column *from, size_t row, he_column *to, size_t fr
     }
 }
 
-/* Copies the attribute values of live elements to a new column. `per` is the number of values for
- * each element of the blocks: 2 in a column of half-edges, which uses the blocks of edges,
+/* Copies the attribute values of live elements to a new column. The blocks
+ * say which elements are live. `per` is the number of values for each element of the blocks: 2 if
+ * the attribute belongs to half-edges, because an edge of the blocks stands for two half-edges;
  * otherwise 1. */
 static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
                       he_column *to)

@@ -15,8 +15,8 @@ enum {
     /* Most bytes of a refused body that are skipped; if more are to come, the connection is
      * closed. */
     SWALLOW = 256 * 1024,
-    /* Microseconds that a worker thread spends on a read before the read moves to the pool of
-     * threads. */
+    /* Microseconds that a worker thread, which serves many connections, spends on a request that
+     * only reads. The request then moves to the thread pool. */
     WORKER_MICROS = 20000
 };
 

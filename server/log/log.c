@@ -42,7 +42,8 @@ struct srv_log {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     _Atomic bool ending;
-    /* True if a line of the daemon itself is in the ring, which must be written without delay. */
+    /* True if the ring holds a line that is not about a request. Such a line is written without
+     * delay. */
     bool urgent;
     entry *ring;
     size_t capacity, first, count;

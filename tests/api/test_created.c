@@ -56,8 +56,9 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
     api_bench *b = bench_new();
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         meddling = true;
-        /* the second request deletes another vertex in each step, because the third mesh is a copy
-         * of the second one, in which a vertex is already missing */
+        /* A second writer deletes vertex i of the i-th mesh. Vertex 1 is already missing in the
+         * third mesh, which is a copy of the second mesh, so a different vertex must be deleted
+         * there. */
         victim = (uint32_t)i;
         bench_reply r = bench_expect(201, bench_send(b, made[i][0], made[i][1], NULL, made[i][2]));
         meddling = false;

@@ -1,5 +1,5 @@
-/* Limits per client: requests and bytes a second of tokens and addresses, connections, and jobs.
- * The test sets the time of the clock. */
+/* Limits for each client: requests per second and bytes per second of a token or an address;
+ * connections; jobs. The test sets the time of the clock. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>

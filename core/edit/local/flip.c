@@ -62,8 +62,8 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
         return status;
     }
     /* The search for an edge from c to d walks in both directions around c. It starts at
-     * twin(next(h)), which leaves c along a side of face(h), so it soon visits the edges on both
-     * sides of that face. */
+     * the half-edge twin(next(h)), which leaves c on the border of face(h), so it finds an edge of
+     * that face or of a face next to it after few steps. */
     he_halfedge joined = he_find_halfedge_from(m, he_twin(he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
