@@ -121,6 +121,12 @@ static void cut_polygon(const he_subdivide_step *s, uint32_t f, uint32_t first_h
     at->face += count - 1;
 }
 
+static he_status refuse_polygon(uint32_t f, he_error *err)
+{
+    return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
+                   "face %u is not a triangle, and the scheme loop needs triangles", f);
+}
+
 static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_error *err)
 {
     const he_content *from = s->from;
@@ -133,8 +139,7 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     h[2] = from->next[h[1]];
     if (from->next[h[2]] != h[0]) {
         if (s->scheme == HE_LOOP) {
-            return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
-                           "face %u is not a triangle, and the scheme loop needs triangles", f);
+            return refuse_polygon(f, err);
         }
         cut_polygon(s, f, h[0], at);
         return HE_OK;
@@ -148,15 +153,20 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     return HE_OK;
 }
 
-/* Counts the new elements that cutting face f makes. The face must be live. */
-static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
+/* Counts the new elements that cutting face f makes. The face must be live. The arrays of the finer
+ * mesh have room for what the scheme makes of faces that it accepts. A face that the scheme refuses
+ * must not be counted, because later lanes would then write beyond the end of these arrays. */
+static he_status count_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_error *err)
 {
     const he_content *from = s->from;
     uint32_t h = from->face_halfedge[f], i = from->next[h], count = 3;
     if (from->next[from->next[i]] == h && s->scheme != HE_CATMULL_CLARK) {
         at->edge += 3;
         at->face += 3;
-        return;
+        return HE_OK;
+    }
+    if (s->scheme == HE_LOOP) {
+        return refuse_polygon(f, err);
     }
     for (i = from->next[from->next[i]]; i != h; i = from->next[i]) {
         count++;
@@ -164,6 +174,7 @@ static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
     at->vertex++;
     at->edge += count;
     at->face += count - 1;
+    return HE_OK;
 }
 
 /* The data for cutting faces in parallel. Each thread handles a lane, which is a range of
@@ -178,14 +189,14 @@ static he_status count_lane(void *context, uint32_t lane, size_t from, size_t to
 {
     cutting *c = context;
     fresh at = c->at[lane];
-    (void)err;
-    for (size_t f = from; f < to; f++) {
+    he_status status = HE_OK;
+    for (size_t f = from; f < to && status == HE_OK; f++) {
         if (he_subdivide_is_live(c->s->from->face_halfedge, (uint32_t)f)) {
-            count_face(c->s, (uint32_t)f, &at);
+            status = count_face(c->s, (uint32_t)f, &at, err);
         }
     }
     c->at[lane] = at;
-    return HE_OK;
+    return status;
 }
 
 static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, he_error *err)

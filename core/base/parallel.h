@@ -15,7 +15,8 @@
  * The result must not depend on the number of threads: how ranges are cut depends on `count` alone,
  * and lanes are only for work whose result is equal for any number of lanes, such as counting. If
  * several parts fail, the job returns the error of the first of them in order; parts that were not
- * begun are skipped.
+ * begun are skipped. A part may run although an earlier part fails, so each part must be safe
+ * whatever the others find.
  *
  * Only the caller's thread checks for cancellation: it reports progress between parts, so each part
  * must be short. */
