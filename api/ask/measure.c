@@ -457,7 +457,8 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, dou
     *count = q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->target.kind);
     double *values = he_mem_array(NULL, *count + 1, q->measure->components * sizeof *values);
     if (values == NULL) {
-        return api_in_fail(question, HE_NO_MEMORY, "no memory for %zu values", *count);
+        return api_in_fail(question, HE_NO_MEMORY,
+                           "no memory for the measured values of %zu elements", *count);
     }
     if (!find(a, question, q, &(selection){q->target.of, *count}, values)) {
         he_mem_free(values);

@@ -170,8 +170,8 @@ static void answer(api_exchange *x, api_asker *a)
         }
         if (api_media_choose(x->request.headers[API_HEADER_ACCEPT], json_only) < 0) {
             api_fail(x, API_NOT_ACCEPTABLE,
-                     "an answer as application/octet-stream needs exactly one question, about a "
-                     "list of elements or \"all\"");
+                     "application/octet-stream can carry the answer to only one question, which "
+                     "must be about a list of elements or \"all\"");
             x->problem.supported = json_only;
             return;
         }

@@ -135,7 +135,7 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
                 strncat(list, he_kind_name(k), sizeof list - strlen(list) - 1);
             }
         }
-        return api_in_fail(&member, HE_BAD_VALUE, "a %s is given, and %s is expected",
+        return api_in_fail(&member, HE_BAD_VALUE, "the element is a %s, but must be %s",
                            he_kind_name(*kind), list);
     }
     return he_mesh_require(a->mesh, *kind, *id, &err) == HE_OK ||

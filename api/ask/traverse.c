@@ -64,7 +64,7 @@ static bool read_steps(api_asker *a, const api_in *walk, path *out)
     }
     he_step *steps = api_arena_array(a->arena, api_in_count(&list), sizeof *steps);
     if (steps == NULL) {
-        return api_in_fail(&list, HE_NO_MEMORY, "no memory for the path");
+        return api_in_fail(&list, HE_NO_MEMORY, "no memory for the path of a walk");
     }
     for (bool more = api_in_first(&list, &child); more; more = api_in_next(&child)) {
         int step;

@@ -302,15 +302,18 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     api_out_object_begin(out);
     if (status == 202) {
         write_header(out, "Location", "The path of the job.", (route->flags & API_LONG) != 0);
-        write_header(out, "Preference-Applied", "respond-async, if the client asked for it.",
-                     false);
+        write_header(
+            out, "Preference-Applied",
+            "The preference that the server followed: respond-async, if the client asked for it.",
+            false);
     }
     if (tagged) {
         /* A dry run makes no state of the mesh that an ETag could name, and an answer 204 that
          * replaces another answer (api_publish) may be sent when the state is not known. So such
          * answers do not always have an ETag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
-        write_header(out, "ETag", "Identifies the state that the answer shows.", always);
+        write_header(out, "ETag", "The ETag of the state of the mesh that the answer shows.",
+                     always);
     }
     if (status == 201) {
         write_header(out, "Location", "The path of the new mesh.", true);
@@ -338,13 +341,15 @@ static const char *const job_media[] = {"application/json", NULL};
 static void write_success(api_out *out, const api_examples *examples, const api_route *route,
                           int status)
 {
-    const char *what = status == 201 ? "Created. The answer has no body and no ETag if memory ran "
-                                       "out after the mesh was created, or if the request repeats "
-                                       "an Idempotency-Key whose first answer was not kept."
-                       : status == 202 ? "Not finished yet: the answer is a job."
-                       : status == 204 ? "Done. The answer has no body."
-                       : status == 304 ? "The client's copy is up to date."
-                                       : "Success.";
+    const char *what =
+        status == 201 ? "Created. The answer has no body and no ETag if memory ran "
+                        "out after the mesh was created, or if the request repeats "
+                        "an Idempotency-Key whose first answer was not kept."
+        : status == 202
+            ? "The request is not finished yet: the answer is the job that will finish it."
+        : status == 204 ? "Done. The answer has no body."
+        : status == 304 ? "The client's copy is up to date, so the answer has no body."
+                        : "Success.";
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
@@ -444,25 +449,29 @@ static void write_header_parameter(api_out *out, const char *name, const char *d
 static void write_header_parameters(api_out *out, const api_route *route)
 {
     if (answers(route, 304)) {
-        write_header_parameter(out, "If-None-Match", "The ETag of the client's copy.");
+        write_header_parameter(out, "If-None-Match",
+                               "The ETag of the client's copy. If the copy is up to date, the "
+                               "answer is 304 without a body.");
     }
     if (answers(route, 412)) {
         write_header_parameter(out, "If-Match",
-                               "The ETag of the state that the request is meant for.");
+                               "The ETag of the state of the mesh that the request is meant for. "
+                               "If the mesh has changed since, the answer is 412.");
         write_header_parameter(out, "If-None-Match",
                                "The ETag of a state in which the request must not be done; or *: "
                                "the request is done only if the mesh does not exist yet.");
     }
     if (route->body_kind != API_BODY_NONE) {
-        write_header_parameter(out, "Content-Encoding",
-                               "gzip or zstd, but not both; the window of zstd may be at most 8 "
-                               "MiB. The decompressed body may not exceed the limit of an "
-                               "uncompressed body nor, past 1 MiB, 100 times its compressed size.");
+        write_header_parameter(
+            out, "Content-Encoding",
+            "The content coding of the body: gzip or zstd, but not both. The window of zstd may be "
+            "at most 8 MiB. The decompressed body may not exceed the limit of an uncompressed body "
+            "nor, past 1 MiB, 100 times its compressed size.");
     }
     if (is_stream(route)) {
-        write_header_parameter(
-            out, "Last-Event-ID",
-            "The id of the last event that the client has seen. It overrides `since`.");
+        write_header_parameter(out, "Last-Event-ID",
+                               "The id of the last event that the client has seen. It overrides "
+                               "the parameter `since`.");
     }
     bool minimal = answers(route, 204) && answers(route, 200);
     if (route->flags & API_LONG) {
@@ -494,7 +503,8 @@ enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
 {
-    static const char expensive[] = "Expensive: pages of other sites may not send this request.";
+    static const char expensive[] =
+        "This request is expensive, so pages of other sites may not send it.";
     const char *doc = route->doc == NULL ? "" : route->doc;
     char text[MOST_DOC];
     bool is_expensive = (route->flags & API_EXPENSIVE) != 0;
@@ -619,7 +629,8 @@ static void write_security_schemes(api_out *out)
     api_out_key_string(out, "in", "query");
     api_out_key_string(out, "name", "ticket");
     api_out_key_string(out, "description",
-                       "A ticket of POST /v1/tickets, as the last parameter of a GET.");
+                       "A ticket, which POST /v1/tickets makes. It replaces the header "
+                       "Authorization for one GET and must be the last query parameter.");
     api_out_object_end(out);
     api_out_object_end(out);
 }
@@ -662,11 +673,12 @@ static void write_shared_headers(api_out *out)
     api_out_object_end(out);
     write_header(out, "Vary", "The request headers that the answer depends on.", false);
     write_header(out, "RateLimit-Policy",
-                 "If the client is limited to requests or bytes a second: the quota (q) in a "
-                 "window of seconds (w).",
+                 "The limits of the client, if it has limits of requests or bytes per second: a "
+                 "quota (q) for a window of w seconds.",
                  false);
     write_header(out, "RateLimit",
-                 "What is left of each quota (r), and the seconds until it is full again (t).",
+                 "How much of each quota is left (r), and the number of seconds until the quota is "
+                 "full again (t).",
                  false);
     api_out_object_end(out);
 }
@@ -711,9 +723,9 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
         "Half-edge meshes over HTTP. Every path with GET also answers HEAD. Every error is "
         "application/problem+json. Bodies of more than 1 KiB are compressed with gzip or zstd if "
         "Accept-Encoding allows; compressed answers have their own ETag, which also works in "
-        "If-Match. Pages of other sites may not change anything, and may not make the reads that "
-        "are described as expensive: these requests are answered 403 if Sec-Fetch-Site is "
-        "cross-site, unless the server's option --allow-origin names the Origin.");
+        "If-Match. Pages of other sites may not change anything, and may not send reads that are "
+        "described as expensive: such a request is answered 403 if Sec-Fetch-Site is cross-site, "
+        "unless the server's option --allow-origin names the Origin of the page.");
     api_out_key(out, "license");
     api_out_object_begin(out);
     api_out_key_string(out, "name", "MIT");

@@ -28,7 +28,8 @@ const api_parameter api_parameter_drawn = {
     1,
     API_MAX_EXACT,
     NULL,
-    "The revision of the arrays that the client has: only changed rows are sent. Needs `layout`."};
+    "The revision of the arrays that the client has: the answer has only the rows that changed "
+    "since then. Needs `layout`."};
 const api_parameter api_parameter_base_faces = {
     "faces",
     API_PARAM_U64,
@@ -55,8 +56,12 @@ const api_parameter api_parameter_boundary_weight = {
 const api_parameter api_parameter_most_splits = {
     "splits", API_PARAM_U64, 0, HE_MAX_ROWS, NULL, "The largest number of vertex splits to send."};
 const api_parameter api_parameter_layout = {
-    "layout",      API_PARAM_U64, 1,
-    API_MAX_EXACT, NULL,          "The layout of the arrays that the client has."};
+    "layout",
+    API_PARAM_U64,
+    1,
+    API_MAX_EXACT,
+    NULL,
+    "The layout of the arrays that the client has, from the header of an earlier answer."};
 const api_parameter api_parameter_turning = {"cw",
                                              API_PARAM_FLAG,
                                              0,
@@ -65,8 +70,12 @@ const api_parameter api_parameter_turning = {"cw",
                                              "true: list the elements clockwise. The first element "
                                              "stays first, the others are in reverse order."};
 const api_parameter api_parameter_last_seen = {
-    "since", API_PARAM_TEXT, 0,
-    64,      NULL,           "Begin after this event (its id) or after this revision."};
+    "since",
+    API_PARAM_TEXT,
+    0,
+    64,
+    NULL,
+    "The stream begins after this event, given by its id, or after this revision of the mesh."};
 const api_parameter api_parameter_format = {
     "format",
     API_PARAM_CHOICE,
@@ -165,13 +174,9 @@ const api_parameter api_parameter_small = {
     "Components count as small if the diagonal of their bounding box is at most this long. "
     "Default: 1e-2 of the diagonal of the bounding box of the edges."};
 const api_parameter api_parameter_dry_run = {
-    "dry_run",
-    API_PARAM_FLAG,
-    0,
-    0,
-    NULL,
-    "true: change nothing, and answer as if the change had been made. In a JSON body, use the "
-    "member dry_run instead of this parameter."};
+    "dry_run", API_PARAM_FLAG,
+    0,         0,
+    NULL,      "The type of the numbers in the body, if the body is application/octet-stream."};
 const api_parameter api_parameter_rule = {
     "rule",
     API_PARAM_CHOICE,

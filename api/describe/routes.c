@@ -10,11 +10,13 @@
 /* --- response headers of single routes --- */
 
 static const api_told_header next_page = {"Link", "A link to the next page, if there is one."};
-static const api_told_header disposition = {"Content-Disposition", "A name for the file."};
-static const api_told_header ranges = {
-    "Accept-Ranges", "`none`: Range is ignored, because a file is generated while it is sent."};
+static const api_told_header disposition = {"Content-Disposition",
+                                            "The name under which a client should save the file."};
+static const api_told_header ranges = {"Accept-Ranges",
+                                       "`none`: the server ignores the request header Range, "
+                                       "because it generates a file while it sends it."};
 static const api_told_header warnings = {
-    "Export-Warnings", "What is missing in the file because its format cannot hold it."};
+    "Export-Warnings", "What the file does not contain because its format cannot hold it."};
 
 /* --- the table of routes --- */
 
@@ -32,7 +34,8 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "mesh_page",
      .summary = "List the meshes",
-     .doc = "A page of ids, names, revisions and counts, in the order of ids."},
+     .doc =
+         "A page of meshes in the order of their ids: the id, name, revision and counts of each."},
     {.method = "POST",
      .path = "/v1/meshes",
      .name = "create_mesh",
@@ -72,7 +75,8 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410},
      .response = "summary",
      .summary = "Summary of a mesh",
-     .doc = "Counts, topology and measures of the present revision, or of the one in `revision`."},
+     .doc = "Counts, topology and measures of the mesh at its present revision, or at the revision "
+            "that the parameter `revision` gives."},
     {.method = "PATCH",
      .path = "/v1/meshes/{mesh}",
      .name = "update_mesh",
@@ -109,8 +113,9 @@ static const api_route routes[] = {
      .request = "create",
      .response = "created",
      .summary = "Replace a mesh, or create it under this id",
-     .doc = "The body is the same as for creating a mesh. Replacing makes a new revision and "
-            "clears the undo history. With If-None-Match: * an existing mesh is answered 412."},
+     .doc = "The body has the same forms as in a request that creates a mesh. Replacing a mesh "
+            "makes a new revision and clears the undo history. If the mesh exists and the request "
+            "has If-None-Match: *, the answer is 412."},
     {.method = "DELETE",
      .path = "/v1/meshes/{mesh}",
      .name = "delete_mesh",
@@ -122,7 +127,8 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {204, 412},
      .summary = "Delete a mesh",
-     .doc = "Its id may be used again for another mesh; ETags and event ids are never repeated."},
+     .doc = "The id of the deleted mesh may be used again for another mesh; ETags and event ids "
+            "are never repeated."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/content",
      .name = "export_mesh",
@@ -138,15 +144,16 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410, 422},
      .response = "document",
      .summary = "Export a mesh",
-     .doc = "The file has the format that `format` or Accept names. What the format cannot hold is "
-            "listed in the header Export-Warnings, in at most 1000 bytes; the rest is counted, as "
-            "in \"and 3 more\". A position too large for a float is an error for glb and binary "
-            "stl. A mesh holds texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (in "
-            "glTF v runs down), and colours `color` from 0 to 1, which are bytes in PLY; reading "
-            "and writing convert both. A file is sent directly however large the mesh is, unless "
-            "the client prefers a job. Until the first byte is sent, each million faces takes "
-            "about a second in STL, half a second in GLB, and little in other formats; a request "
-            "that takes longer than the server's limit for reads is answered 503 `read_timeout`."},
+     .doc =
+         "The file has the format that `format` or Accept names. What the format cannot hold is "
+         "listed in the header Export-Warnings, in at most 1000 bytes; the rest is counted, as in "
+         "\"and 3 more\". A position too large for a float is an error for glb and binary stl. A "
+         "mesh holds texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (in glTF v "
+         "runs down), and colours `color` from 0 to 1, which are bytes in PLY; reading and writing "
+         "convert both. A file is sent directly however large the mesh is, unless the client "
+         "prefers a job. Before the first byte is sent, the server needs about a second for each "
+         "million faces in STL, half a second in GLB, and little time in other formats; a request "
+         "that takes longer than the server's limit for reads is answered 503 `read_timeout`."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "get_geometry",
@@ -162,16 +169,17 @@ static const api_route routes[] = {
      .doc =
          "Little-endian. First a header of 96 bytes: \"HEDG\", u32 version 2, u64 revision, u64 "
          "base, u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x "
-         "3 origin, f64 scale, u64 layout, u32 rows of vertices and u32 rows of triangles in this "
-         "answer. Then a row for each vertex id: f32 x 3, (position - origin) * scale, and an f32 "
-         "that is 0 for a deleted, 1 for a used and 2 for an isolated vertex. Then the rows of "
-         "triangles: u32 x 4, three vertices and the id of the face, in which bits 29 to 31 mark "
-         "the sides that are edges of the face; a row of four zeros is unused. With `since` and "
-         "`layout` from an earlier answer, only changed rows are sent, those of vertices and then "
-         "those of triangles: u32 row numbers, zeros up to a multiple of 16 bytes, and the rows. "
-         "The client first extends its arrays with zeros to the numbers of vertices and triangles "
-         "in the header. A base of 0 means that all rows are sent and replace the client's arrays: "
-         "the server may answer so at any time, and does if the layout has changed."},
+         "3 origin, f64 scale, u64 layout, u32 number of vertex rows and u32 number of triangle "
+         "rows in this answer. Then a row for each vertex id: f32 x 3, (position - origin) * "
+         "scale, and an f32 that is 0 for a deleted, 1 for a used and 2 for an isolated vertex. "
+         "Then the rows of triangles: u32 x 4, three vertices and the id of the face, in which "
+         "bits 29 to 31 mark the sides of the triangle that are edges of the face; a row of four "
+         "zeros is unused. With `since` and `layout` from an earlier answer, only changed rows are "
+         "sent. They are sent in two groups, vertices and then triangles; a group is u32 row "
+         "numbers, zeros up to a multiple of 16 bytes, and the rows. The client first extends its "
+         "arrays with zeros to the numbers of vertices and triangles in the header. A base of 0 "
+         "means that all rows are sent and replace the client's arrays: the server may answer so "
+         "at any time, and does if the layout has changed."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/progressive",
      .name = "get_progressive_mesh",
@@ -215,7 +223,8 @@ static const api_route routes[] = {
      .response = "summary",
      .summary = "Copy a mesh",
      .doc = "Makes an independent mesh with the same element ids and attributes and its own "
-            "history, from the present revision or the one in `revision`."},
+            "history. It is a copy of the present revision, or of the revision that the parameter "
+            "`revision` gives."},
 
     /* --- elements of a mesh, for each kind: the list, one element, and its neighbours --- */
     ELEMENT_ROWS,
@@ -265,8 +274,8 @@ static const api_route routes[] = {
      .response = "attribute_values",
      .summary = "Values of an attribute",
      .doc = "A page of elements in the order of ids, or the elements in `ids`. As "
-            "application/octet-stream: a value for each id ever given out, where deleted elements "
-            "have the default; a bool is one byte, the other types are 4 or 8 bytes, "
+            "application/octet-stream: a value for each id that was ever given out, where deleted "
+            "elements have the default; a bool is one byte, the other types are 4 or 8 bytes, "
             "little-endian, without gaps."},
     {.method = "PUT",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
@@ -320,7 +329,8 @@ static const api_route routes[] = {
      .statuses = {200, 204, 409, 412},
      .response = "attribute_written",
      .summary = "Delete an attribute",
-     .doc = "One revision, which can be undone."},
+     .doc =
+         "Deletes the attribute and its values. The change is one revision, which can be undone."},
 
     /* queries */
     {.method = "POST",
@@ -339,13 +349,14 @@ static const api_route routes[] = {
      .request = "query",
      .response = "query_results",
      .summary = "Ask many questions at once",
-     .doc = "Neighbours, walks, elements, half-edges between vertices, measures, rays, nearest "
-            "points and self-intersections, all of the same revision. A single question about many "
-            "elements can be answered as application/octet-stream: for a relation n + 1 offsets "
-            "and the ids as 32-bit integers, for a measure doubles with NaN for null, all "
-            "little-endian. A question that would take more than a second becomes a job, unless "
-            "the client waits: the first ray or nearest point on 580,000 quads, self-intersections "
-            "of 340,000 quads, relations and measures of all elements of several million."},
+     .doc =
+         "Neighbours, walks, elements, half-edges between vertices, measures, rays, nearest points "
+         "and self-intersections, all of the same revision. A single question about many elements "
+         "can be answered as application/octet-stream: for a relation n + 1 offsets and the ids as "
+         "32-bit integers, for a measure doubles with NaN for null, all little-endian. A question "
+         "that would take more than a second becomes a job, unless the client waits. Examples are "
+         "the first ray or nearest point on 580,000 quads, self-intersections of 340,000 quads, "
+         "and relations and measures of all elements of a mesh with several million."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_mesh",
@@ -394,7 +405,8 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410},
      .response = "components",
      .summary = "List the connected components",
-     .doc = "Isolated vertices are left out."},
+     .doc =
+         "The components are listed with their counts. Isolated vertices belong to no component."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/check",
      .name = "check_mesh",
@@ -451,9 +463,9 @@ static const api_route routes[] = {
      .response = "history",
      .summary = "History of a mesh",
      .doc = "What each revision did, newest first. `oldest` is the oldest revision that can still "
-            "be read. `dropped` entries were removed to keep within the undo budget, and the "
-            "oldest undo steps with them. What was undone can be redone until the next edit, "
-            "however full the history is."},
+            "be read. `dropped` tells how many entries were removed to keep within the undo "
+            "budget; the oldest undo steps were removed with them. An undone edit can be redone "
+            "until the next edit, however full the history is."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_edits",
@@ -471,8 +483,8 @@ static const api_route routes[] = {
      .response = "edited",
      .summary = "Undo the last edit",
      .doc = "Undoes the last edit, the last `steps` edits, or all edits since revision "
-            "`to_revision`, completely or not at all. Each makes a new revision. The answer has "
-            "the changes of all steps together."},
+            "`to_revision`, completely or not at all. Each undone edit makes a new revision. The "
+            "answer has the changes of all steps together."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/redo",
      .name = "redo_edits",
@@ -489,9 +501,9 @@ static const api_route routes[] = {
      .request = "step",
      .response = "edited",
      .summary = "Redo what was undone",
-     .doc = "Redoes the last undone edit, the last `steps` of them, or as many as lead to the "
-            "content of revision `to_revision`. Each makes a new revision, and elements get the "
-            "ids they had."},
+     .doc = "Redoes the last undone edit, the last `steps` undone edits, or as many as lead to the "
+            "content of revision `to_revision`. Each redone edit makes a new revision, and "
+            "elements get the ids they had."},
 
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/events",
@@ -504,11 +516,12 @@ static const api_route routes[] = {
      .statuses = {200},
      .item = "mesh_event",
      .summary = "Events of a mesh",
-     .doc = "Server-sent events. `edit`: a new revision as a delta, complete enough to mirror the "
-            "mesh exactly. `metadata`: the name changed. `job`: a job on this mesh started or "
-            "ended. `resync`: fetch the mesh again, because events were left out. `bye`: the "
-            "stream ends. With Last-Event-ID or `since` the stream continues where a client was "
-            "interrupted, or begins with `resync` if the history does not reach back that far."},
+     .doc =
+         "Server-sent events. `edit`: a new revision as a delta, complete enough to mirror the "
+         "mesh exactly. `metadata`: the name of the mesh changed. `job`: a job on this mesh "
+         "started or ended. `resync`: fetch the mesh again, because events were left out. `bye`: "
+         "the stream ends. With Last-Event-ID or `since` the stream continues where a client was "
+         "interrupted, or begins with `resync` if the history does not reach back that far."},
 
     /* jobs */
     {.method = "GET",
@@ -522,7 +535,8 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "job_page",
      .summary = "List the jobs",
-     .doc = "A page in the order in which they were submitted, without results and problems."},
+     .doc = "A page of jobs in the order in which they were submitted, without their results and "
+            "problems."},
     {.method = "GET",
      .path = "/v1/jobs/{job}",
      .name = "get_job",
@@ -532,12 +546,12 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "job",
      .summary = "State of a job",
-     .doc = "When the job has ended, this includes what the request would have been answered with: "
-            "a result or a problem. Results that are not JSON, or a whole mesh, are fetched by "
-            "`result_link`. A job that has ended is kept for an hour, if there is room, also "
-            "across a restart of the server, but then without an answer of more than 64 KiB. A job "
-            "that had not ended at a restart has failed with the problem `interrupted`, and has "
-            "changed nothing."},
+     .doc = "When the job has ended, the answer includes what the request would have been answered "
+            "with: a result or a problem. Results that are not JSON, or a whole mesh, are fetched "
+            "by `result_link`. A job that has ended is kept for an hour, if there is room. It is "
+            "also kept across a restart of the server, but then without an answer of more than 64 "
+            "KiB. A job that had not ended at a restart has failed with the problem `interrupted`, "
+            "and has changed nothing."},
     {.method = "GET",
      .path = "/v1/jobs/{job}/result",
      .name = "get_job_result",
@@ -549,9 +563,9 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304},
      .response = "job_result",
      .summary = "Result of a job",
-     .doc = "The body that the request would have been answered with, with its media type. "
-            "`result_link` of a job leads here. The answer is 202 with the job until it has ended, "
-            "and 404 if it failed or has no body."},
+     .doc = "The body and media type that the request would have been answered with. `result_link` "
+            "of a job leads to this path. The answer is 202 with the job until the job has ended, "
+            "and 404 if the job failed or its answer has no body."},
     {.method = "GET",
      .path = "/v1/jobs/{job}/events",
      .name = "follow_job",
@@ -561,8 +575,8 @@ static const api_route routes[] = {
      .statuses = {200},
      .item = "job_event",
      .summary = "Events of a job",
-     .doc = "Server-sent events. `job`: the job, whenever it has made progress; the last one has "
-            "its result or problem if that is small. `bye`: the stream ends."},
+     .doc = "Server-sent events. `job`: the job, whenever it has made progress; the last event "
+            "`job` has the result or problem of the job if that is small. `bye`: the stream ends."},
     {.method = "DELETE",
      .path = "/v1/jobs/{job}",
      .name = "delete_job",
@@ -572,8 +586,9 @@ static const api_route routes[] = {
      .statuses = {202, 204},
      .response = "job",
      .summary = "Cancel or forget a job",
-     .doc = "A job that waits or runs is cancelled (202): what it had changed is undone and its "
-            "memory is freed. A job that has ended is forgotten (204)."},
+     .doc = "A job that waits or runs is cancelled, and the answer is 202: what the job had "
+            "changed is undone and its memory is freed. A job that has ended is forgotten, and the "
+            "answer is 204."},
 
     /* tokens */
     {.method = "GET",
@@ -585,9 +600,9 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {200},
      .response = "token",
-     .summary = "The client's own token",
+     .summary = "Token of the request",
      .doc = "What the token of the request may do. If the server needs no tokens, the name is null "
-            "and the role admin."},
+            "and the role is admin."},
     {.method = "POST",
      .path = "/v1/tickets",
      .name = "create_ticket",
@@ -600,10 +615,11 @@ static const api_route routes[] = {
      .statuses = {200, 413, 415},
      .request = "ticket_asked",
      .response = "ticket",
-     .summary = "Ticket for one GET",
-     .doc = "For images and downloads in a page, where a browser sends no header Authorization. "
-            "`path` in the answer is the path of the request with a ticket added. It is valid for "
-            "one GET within 60 seconds, with the rights of the token that asked for it."},
+     .summary = "Make a ticket for one GET without a token",
+     .doc = "A ticket lets one GET pass without the header Authorization, which browsers do not "
+            "send for images and downloads in a page. `path` in the answer is the path of the "
+            "request with a ticket added. The ticket is valid for one GET within 60 seconds, with "
+            "the rights of the token that asked for it."},
     {.method = "POST",
      .path = "/v1/admin/reload",
      .name = "reload_tokens",
@@ -613,10 +629,10 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {200, 409},
      .response = "reloaded",
-     .summary = "Read the file of tokens again",
-     .doc = "Does what the signal SIGHUP does. Tokens that are no longer in the file are not "
-            "accepted any more, and their event streams end with `bye`. If the file is wrong, the "
-            "tokens stay as they are and the problem names the line."},
+     .summary = "Reload the token file",
+     .doc = "Reads the file of tokens again, as the signal SIGHUP also does. Tokens that are no "
+            "longer in the file are not accepted any more, and their event streams end with `bye`. "
+            "If the file is wrong, the tokens stay as they are and the problem names the line."},
 
     {.method = "POST",
      .path = "/v1/admin/backup",
@@ -629,8 +645,8 @@ static const api_route routes[] = {
      .statuses = {200, 202, 409},
      .summary = "Back up the store",
      .doc = "Makes a file for `hedged --restore`. The request becomes a job, unless the client "
-            "waits; the file is the job's result. The server keeps one backup at a time: DELETE "
-            "the job after you have fetched the file."},
+            "waits; the file is the result of the job. The server keeps one backup at a time: "
+            "DELETE the job after you have fetched the file."},
 
     /* descriptions of the API */
     {.method = "GET",
@@ -655,7 +671,7 @@ static const api_route routes[] = {
      .statuses = {200, 304},
      .response = "description",
      .summary = "This document",
-     .doc = "The API as OpenAPI 3.1."},
+     .doc = "The description of the API in the format OpenAPI 3.1."},
 
     /* paths that are not under /v1 */
     {.method = "GET",
@@ -668,7 +684,7 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "health",
      .summary = "Is the process alive?",
-     .doc = "The answer is 200 even if the store has failed."},
+     .doc = "The answer is 200 as long as the process runs, even if the store has failed."},
     {.method = "GET",
      .path = "/readyz",
      .name = "get_readiness",
@@ -718,8 +734,8 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "index",
      .summary = "Where to begin",
-     .doc = "The paths of the meshes, the jobs, the list of operations, this document and the "
-            "manual."},
+     .doc = "The paths of the list of meshes, the list of jobs, the list of operations, the "
+            "OpenAPI document and the manual."},
     {.method = "GET",
      .path = "/problems/{code}",
      .name = "get_problem",
@@ -750,7 +766,7 @@ static const api_route routes[] = {
      .produces = html,
      .statuses = {200, 304},
      .summary = "The manual of the API",
-     .doc = "This document as a page."},
+     .doc = "The OpenAPI document as a page for readers."},
     {.method = "GET",
      .path = "/assets/{asset}",
      .name = "get_asset",

@@ -51,8 +51,8 @@ const api_member api_answer_members[] = {
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
     {"mesh_page", "listeners", "count", OPTIONAL,
-     "How many clients of the whole server listen to events of meshes. This member and the next "
-     "two are missing for tokens with prefixes."},
+     "How many clients of the whole server listen to events of meshes. The members `listeners`, "
+     "`memory_bytes` and `memory_budget` are missing for tokens with prefixes."},
     {"mesh_page", "memory_bytes", "count", OPTIONAL, "Memory that the whole server uses."},
     {"mesh_page", "memory_budget", "count", OPTIONAL,
      "Memory that the server may use; 0: no limit."},
@@ -76,20 +76,20 @@ const api_member api_answer_members[] = {
      "How many vertices or faces the repair removed, how many faces it turned, or how many "
      "elements it made."},
     {"repair", "gone", "*id", OPTIONAL,
-     "The first 100 elements that were removed, numbered from 0 as in the body."},
+     "The first 100 elements that the repair removed, numbered from 0 in the order of the body."},
     {"repair", "into", "*id", OPTIONAL,
      "For each element of `gone`, the id of the element that replaces it."},
     {"repair", "lines", "*count", OPTIONAL, "For each element of `gone`, its line in the body."},
     {"repair", "bytes", "*count", OPTIONAL,
      "For each element of `gone`, its first byte in a binary body."},
     {"repair", "mended", "count", OPTIONAL,
-     "drop_degenerate: faces that lost corners or were cut into triangles."},
+     "drop_degenerate: how many faces lost corners or were cut into triangles."},
     {"repair", "faces", "*id", OPTIONAL,
      "drop_degenerate: the first 100 faces that `mended` counts, numbered as in the body. orient, "
      "fill: the first 100 faces that were turned or made."},
     {"repair", "components", "count", OPTIONAL, "orient: how many components had faces turned."},
     {"repair", "not_orientable", "count", OPTIONAL,
-     "orient: how many components cannot be oriented, so that split must cut them."},
+     "orient: how many components cannot be oriented, so that the repair split must cut them."},
     {"repair", "clashes", "*id", OPTIONAL,
      "orient: a face in each of the first 100 components that cannot be oriented."},
     {"repair", "vertices", "count", OPTIONAL,
@@ -158,7 +158,8 @@ const api_member api_answer_members[] = {
     {"attribute_info", "default", "#value", REQUIRED,
      "The value of elements for which none was written."},
     {"attribute_info", "labels", "*text", OPTIONAL,
-     "Only in the list of attributes: the texts to which the values are indices."},
+     "Only in the list of attributes: the texts of the attribute, whose values are indices into "
+     "this list."},
     {"attribute_info", "bytes", "count", REQUIRED,
      "Size of the values as application/octet-stream."},
 
@@ -166,7 +167,7 @@ const api_member api_answer_members[] = {
     {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
 
     {"material_row", "name", "#material_name", REQUIRED,
-     "The name; no two materials have the same."},
+     "The name of the material, which differs from the names of other materials."},
     {"material_row", "base_color", "#color_alpha", REQUIRED, "Colour and opacity."},
     {"material_row", "metallic", "#fraction", REQUIRED, NULL},
     {"material_row", "roughness", "#fraction", REQUIRED, NULL},
@@ -227,7 +228,8 @@ const api_member api_answer_members[] = {
     {"adjacency", "ids", "*id", REQUIRED, NULL},
 
     {"dense", "offsets", "*count", REQUIRED,
-     "n + 1 positions in ids: those of element i begin at offsets[i]."},
+     "n + 1 positions in `ids`: the ids of element i begin at position offsets[i] and end before "
+     "position offsets[i + 1]."},
     {"dense", "ids", "*id", REQUIRED, NULL},
 
     {"loop", "halfedge", "id", REQUIRED, NULL},
@@ -240,7 +242,7 @@ const api_member api_answer_members[] = {
 
     {"component", "faces", "count", REQUIRED, NULL},
     {"component", "vertices", "count", REQUIRED, NULL},
-    {"component", "face", "id", REQUIRED, "One of its faces."},
+    {"component", "face", "id", REQUIRED, "The id of a face of the component."},
 
     {"components", "revision", "count", REQUIRED, NULL},
     {"components", "by", "#connection", REQUIRED, NULL},
@@ -382,7 +384,8 @@ const api_member api_answer_members[] = {
     {"walked_path", "path", "+#step_name", REQUIRED, "The steps that the request gave."},
     {"walked_path", "repeat", "count", OPTIONAL,
      "How many times the request asked to take the steps."},
-    {"walked_path", "until", "#until_name", OPTIONAL, "Where the request asked to stop."},
+    {"walked_path", "until", "#until_name", OPTIONAL,
+     "The condition at which the request asked to stop."},
     {"walked_path", "halfedges", "*id", REQUIRED,
      "The half-edges of the path, from the first to the last."},
     {"walked_path", "end", "id", REQUIRED, "The last half-edge of the path."},
@@ -391,7 +394,8 @@ const api_member api_answer_members[] = {
     {"walked_loop", "walk", "=loop", REQUIRED, NULL},
     {"walked_loop", "from", "#of_halfedge", REQUIRED, NULL},
     {"walked_loop", "halfedges", "*id", REQUIRED,
-     "The half-edges of the loop, each the next of the one before."},
+     "The half-edges of the loop, in the order in which `next` leads from one to the following "
+     "one."},
     {"walked_loop", "vertices", "*id", REQUIRED, "The origins of the half-edges."},
     {"walked_loop", "face", "id?", REQUIRED,
      "The face that the loop bounds; null on the boundary."},
@@ -409,7 +413,8 @@ const api_member api_answer_members[] = {
      "The largest distance that the request gave."},
     {"walked_breadth_first", "limit", "count", OPTIONAL,
      "The largest number of ids that the request asked for."},
-    {"walked_breadth_first", "ids", "*id", REQUIRED, "The ids of the elements, the nearest first."},
+    {"walked_breadth_first", "ids", "*id", REQUIRED,
+     "The ids of the elements that were found, the nearest first."},
     {"walked_breadth_first", "depths", "*count", REQUIRED,
      "The distance of each element from the first, in steps."},
 
@@ -418,23 +423,26 @@ const api_member api_answer_members[] = {
     {"walked_shortest_path", "from", "#of_vertex", REQUIRED, NULL},
     {"walked_shortest_path", "to", "#of_vertex", REQUIRED, NULL},
     {"walked_shortest_path", "by", "#path_measure", REQUIRED, NULL},
-    {"walked_shortest_path", "vertices", "*id?", REQUIRED, "Null if there is no path."},
-    {"walked_shortest_path", "edges", "*id?", REQUIRED, "Null if there is no path."},
-    {"walked_shortest_path", "length", "number?", REQUIRED, "Null if there is no path."},
+    {"walked_shortest_path", "vertices", "*id?", REQUIRED,
+     "The length of the path: the sum of the lengths of its edges; null if there is no path."},
+    {"walked_shortest_path", "edges", "*id?", REQUIRED,
+     "The vertices of the path, from its first to its last; null if there is no path."},
+    {"walked_shortest_path", "length", "number?", REQUIRED,
+     "The edges of the path, from its first to its last; null if there is no path."},
 
     {"walked_edge_loop", "revision", "count", REQUIRED, NULL},
     {"walked_edge_loop", "walk", "=edge_loop", REQUIRED, NULL},
     {"walked_edge_loop", "from", "#of_edge", REQUIRED, NULL},
     {"walked_edge_loop", "edges", "*id", REQUIRED, NULL},
     {"walked_edge_loop", "closed", "flag", REQUIRED,
-     "True if the last edge leads back to the first."},
+     "True if the loop is closed: the last edge leads back to the first."},
 
     {"walked_edge_ring", "revision", "count", REQUIRED, NULL},
     {"walked_edge_ring", "walk", "=edge_ring", REQUIRED, NULL},
     {"walked_edge_ring", "from", "#of_edge", REQUIRED, NULL},
     {"walked_edge_ring", "edges", "*id", REQUIRED, NULL},
     {"walked_edge_ring", "closed", "flag", REQUIRED,
-     "True if the last edge leads back to the first."},
+     "True if the ring is closed: the last edge leads back to the first."},
 
     {"delta", "base", "count", REQUIRED, "The revision before the change."},
     {"delta", "revision", "count", REQUIRED, NULL},
@@ -447,11 +455,13 @@ const api_member api_answer_members[] = {
     {"delta", "modified", "#sets", OPTIONAL, NULL},
     {"delta", "parents", "#parents", OPTIONAL, NULL},
     {"delta", "merged", "#merged", OPTIONAL, NULL},
-    {"delta", "attributes_dropped", "*#attribute_read", OPTIONAL, "Attributes that were removed."},
+    {"delta", "attributes_dropped", "*#attribute_read", OPTIONAL,
+     "The attributes that were removed from the mesh."},
     {"delta", "attributes_added", "*#attribute_added", OPTIONAL,
-     "Attributes that were added, after those of `attributes_dropped` were removed."},
+     "The attributes that were added to the mesh, after the attributes in `attributes_dropped` "
+     "were removed."},
     {"delta", "materials", "*#material_row", OPTIONAL,
-     "All materials of the mesh, if one changed."},
+     "All materials of the mesh, present only if a material changed."},
     {"delta", "values", "#delta_values", OPTIONAL,
      "All values that were written, complete enough to mirror the mesh exactly."},
 
@@ -462,7 +472,8 @@ const api_member api_answer_members[] = {
     {"attribute_added", "rule", "#rule_name", REQUIRED, NULL},
     {"attribute_added", "default", "#value", REQUIRED,
      "The value of elements for which none was written."},
-    {"attribute_added", "labels", "*text", OPTIONAL, "The texts to which the values are indices."},
+    {"attribute_added", "labels", "*text", OPTIONAL,
+     "The texts of the attribute: its values are indices into this list."},
 
     {"delta_values", "vertices", "*#vertex_row", REQUIRED, NULL},
     {"delta_values", "halfedges", "*#halfedge_row", REQUIRED, NULL},
@@ -517,7 +528,8 @@ const api_member api_answer_members[] = {
     {"parameter", "default", "#scalar", OPTIONAL, NULL},
     {"parameter", "min", "number", OPTIONAL, NULL},
     {"parameter", "max", "number", OPTIONAL, NULL},
-    {"parameter", "exclusive", "flag", OPTIONAL, "True if min and max themselves are not allowed."},
+    {"parameter", "exclusive", "flag", OPTIONAL,
+     "True if the value must lie between min and max and may not be min or max itself."},
     {"parameter", "choices", "*text", OPTIONAL, NULL},
     {"parameter", "doc", "text", REQUIRED, NULL},
 
@@ -569,13 +581,15 @@ const api_member api_answer_members[] = {
     {"problem", "role", "#role_name", OPTIONAL, "The role that the token would need."},
     {"problem", "element", "#problem_element", OPTIONAL, NULL},
     {"problem", "elements", "*#problem_element", OPTIONAL,
-     "The elements that the problem is about, at most the first 100."},
+     "The elements that the problem is about; at most the first 100 are listed."},
     {"problem", "total", "count", OPTIONAL, "The number of elements that the problem is about."},
     {"problem", "repair", "*#repair_name", OPTIONAL,
-     "The repairs with which the server would accept the body."},
-    {"problem", "revision", "count", OPTIONAL, "With 412: the present revision."},
+     "The repairs with which the server would accept the body, as values of the parameter "
+     "`repair`."},
+    {"problem", "revision", "count", OPTIONAL,
+     "The present revision of the mesh, if the status is 412."},
     {"problem", "supported", "*text", OPTIONAL,
-     "With 406 and 415: the supported media types or codings."},
+     "The supported media types or content codings, if the status is 406 or 415."},
     {"problem", "request_id", "text", OPTIONAL, NULL},
     {NULL, NULL, NULL, OPTIONAL, NULL},
 };
@@ -590,7 +604,8 @@ const api_member api_request_members[] = {
     {"document", "materials", "*#material", OPTIONAL,
      "A face names its material in the attribute `material`."},
 
-    {"material", "name", "#material_name", REQUIRED, "The name; no two materials have the same."},
+    {"material", "name", "#material_name", REQUIRED,
+     "The name of the material, which must differ from the names of other materials."},
     {"material", "base_color", "#color_alpha", OPTIONAL, "Default: white."},
     {"material", "metallic", "#fraction", OPTIONAL, "Default: 0."},
     {"material", "roughness", "#fraction", OPTIONAL, "Default: 1."},
@@ -607,9 +622,10 @@ const api_member api_request_members[] = {
     {"document_attribute", "default", "#value", OPTIONAL, NULL},
     {"document_attribute", "labels", "+#label", OPTIONAL, NULL},
     {"document_attribute", "values", "*#value", OPTIONAL,
-     "One value for each element, or an empty list. Edges are in the order in which the sides of "
-     "the faces first use them. Half-edges are in the order of their edges; of the two half-edges "
-     "of an edge, the one of the earlier face comes first."},
+     "One value for each element, or an empty list. Edges are in the order in which they first "
+     "occur when the sides of the faces are visited in order. Half-edges are in the order of their "
+     "edges; of the two half-edges of an edge, the half-edge that belongs to the earlier face "
+     "comes first."},
 
     {"attribute", "type", "#type_name", REQUIRED, NULL},
     {"attribute", "components", "count", OPTIONAL,
@@ -619,10 +635,11 @@ const api_member api_request_members[] = {
      "for other types."},
     {"attribute", "default", "#value", OPTIONAL, "Default: 0 or false."},
     {"attribute", "labels", "+#label", OPTIONAL,
-     "Only for uint32: the texts to which the values are indices."},
+     "Only for type uint32: the texts of the attribute, whose values are indices into this list."},
     {"attribute", "values", "*#value", OPTIONAL,
      "One value for each element, in the order of ids."},
-    {"attribute", "value", "#value", OPTIONAL, "One value for all elements, instead of `values`."},
+    {"attribute", "value", "#value", OPTIONAL,
+     "One value that all elements get, instead of `values`."},
     {"attribute", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute", "dry_run", "flag", OPTIONAL, NULL},
 
@@ -630,13 +647,14 @@ const api_member api_request_members[] = {
      "A list of ids, \"all\", or {\"NAME\":true} for the elements whose attribute NAME is true."},
     {"attribute_patch", "values", "*#value", OPTIONAL, "One value for each id."},
     {"attribute_patch", "value", "#value", OPTIONAL,
-     "One value for all elements, instead of `values`."},
+     "One value that all of these elements get, instead of `values`."},
     {"attribute_patch", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
     {"mesh_patch", "name", "text?", OPTIONAL, "The new name; null removes the name."},
 
-    {"ticket_asked", "path", "text", REQUIRED, "Path and query of the GET, exactly as in its URL."},
+    {"ticket_asked", "path", "text", REQUIRED,
+     "The path and query of the GET that the ticket is for, exactly as in its URL."},
 
     {"copy", "id", "text", OPTIONAL, NULL},
     {"copy", "name", "text", OPTIONAL, NULL},
@@ -690,7 +708,7 @@ const api_member api_request_members[] = {
     {"walk_path", "repeat", "count", OPTIONAL,
      "How many times to take the steps. Default: once; without limit if `until` is given."},
     {"walk_path", "until", "#until_name", OPTIONAL,
-     "Where to stop: back at the first half-edge, or at the boundary."},
+     "Where the walk stops: back at the first half-edge, or at the boundary."},
 
     {"walk_loop", "walk", "=loop", REQUIRED, NULL},
     {"walk_loop", "from", "#of_halfedge", REQUIRED, NULL},

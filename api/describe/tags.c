@@ -13,9 +13,9 @@ static const struct {
     {"attributes", "Typed values of elements."},
     {"materials", "The table of materials of a mesh."},
     {"events", "Changes of a mesh as server-sent events."},
-    {"jobs", "Requests that continue after their connection ends."},
+    {"jobs", "Requests that run as jobs, even after the connection of their client has ended."},
     {"access", "Tokens, tickets, and tasks of an administrator."},
-    {"server", "The server itself: health, version, metrics, documentation, the page."},
+    {"server", "The server itself: health, version, metrics, documentation and the page."},
 };
 
 /* The group of a path is the `tag` of the first row with whose `begin` the path begins. */

@@ -208,7 +208,7 @@ static bool pack(api_attributes_in *in, item *out)
     for (size_t i = 0; i < in->number_count; i++) {
         if (!pack_number(column, in->numbers[i], out->values + i * size)) {
             return refuse_value(in, i / column->components, HE_BAD_VALUE,
-                                "the number is out of range for the attribute's type");
+                                "the number is out of range for the type of the attribute");
         }
     }
     if (he_attribute_check(column, out->values, in->rows, &at, &err) != HE_OK) {
@@ -238,7 +238,7 @@ static bool read_head(api_attributes_in *in, const api_in *root, item *out)
     for (size_t i = 0; i < in->count; i++) {
         const he_column *other = in->items[i].column;
         if (other->domain == (he_kind)domain && strcmp(other->name, name) == 0) {
-            return api_in_fail(&member, HE_BAD_VALUE, "\"%s\" of %s is given twice", name,
+            return api_in_fail(&member, HE_BAD_VALUE, "attribute \"%s\" of %s is given twice", name,
                                he_kind_plural(other->domain));
         }
     }
@@ -289,7 +289,7 @@ static bool expect_value(api_attributes_in *in, char c)
     bool other = c == '"' || c == '{' || c == '[';
     return is_value_byte(c) ||
            refuse_value(in, in->rows, other ? API_WRONG_TYPE : API_MALFORMED_JSON,
-                        "a number, true or false is expected here");
+                        "the value must be a number, true or false");
 }
 
 bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken, api_problem *problem)
