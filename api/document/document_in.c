@@ -197,7 +197,7 @@ static bool add_corner(api_document_in *in, double value)
                       "a corner must be the index of a vertex: a whole number, counted from 0");
     }
     if (value >= HE_DEAD) {
-        return refuse(in, HE_BAD_INDEX, "there is no vertex with this index");
+        return refuse(in, HE_BAD_INDEX, "the body has no vertex with this index");
     }
     return he_soup_add_corner(&in->soup, (uint32_t)value, &err) == HE_OK ||
            refuse_core(in, IN_ITEM, &err);
@@ -228,21 +228,21 @@ static bool expect_number(api_document_in *in, char c)
 {
     bool other = c != '\0' && strchr("\"{[tfn", c) != NULL;
     return c == '-' || (c >= '0' && c <= '9') ||
-           refuse(in, other ? API_WRONG_TYPE : API_MALFORMED_JSON, "a number is expected here");
+           refuse(in, other ? API_WRONG_TYPE : API_MALFORMED_JSON, "the value must be a number");
 }
 
 static bool expect_in_list(api_document_in *in, bool *taken)
 {
     char c = *in->lexer.at;
     if (in->lexer.depth == IN_DOCUMENT) {
-        return expect_array(in, c, "an array is expected here");
+        return expect_array(in, c, "the value must be an array");
     }
     if (in->lexer.depth == IN_ITEM) {
         return expect_number(in, c);
     }
     return expect_array(in, c,
-                        in->member == FACES ? "an array of indices is expected here"
-                                            : "an array [x,y,z] is expected here") &&
+                        in->member == FACES ? "a face must be an array of indices"
+                                            : "a vertex must be an array [x,y,z]") &&
            take_items(in, taken);
 }
 

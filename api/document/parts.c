@@ -114,7 +114,7 @@ static bool refuse(api_exchange *x, const api_parts *p)
     }
     return api_fail(
         x, API_UNCLEAR_PARTS,
-        "none of the files is %s%s, as far as their names, media types and first bytes show: %s",
+        "none of the files is %s%s, judging by their names, media types and first bytes: %s",
         p->wanted == NULL ? "in a format that the server reads" : "in the format ",
         p->wanted == NULL ? "" : p->wanted, names);
 }

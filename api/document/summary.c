@@ -44,7 +44,7 @@ static const api_field count_fields[] = {
     API_FIELD("vertices", "count", counts, vertices, .required = true,
               .doc = "How many vertices are in the mesh, without deleted ones."),
     API_FIELD("halfedges", "count", counts, halfedges, .required = true,
-              .doc = "Twice the number of edges."),
+              .doc = "The number of half-edges: twice the number of edges."),
     API_FIELD("edges", "count", counts, edges, .required = true),
     API_FIELD("faces", "count", counts, faces, .required = true),
     API_FIELD("boundary_loops", "count", counts, boundary_loops,
@@ -140,8 +140,10 @@ static const api_field summary_fields[] = {
     API_FIELD("name", "text", whole, name, .required = true),
     API_FIELD("revision", "count", whole, revision, .required = true),
     API_FIELD_MADE("counts", "#counts", write_counts, .required = true),
-    API_FIELD("euler", "integer", whole, euler, .required = true,
-              .doc = "V - E + F, where V counts only vertices that have an edge."),
+    API_FIELD(
+        "euler", "integer", whole, euler, .required = true,
+        .doc =
+            "The Euler characteristic V - E + F, where V counts only vertices that have an edge."),
     API_FIELD(
         "genus", "integer?", whole, genus, .required = true, .known = API_KNOWN(whole, has_genus),
         .doc = "The genus; null if the mesh has a bow-tie, because the genus is then not defined."),

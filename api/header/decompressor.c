@@ -44,8 +44,8 @@ static bool fail_memory(const api_decompressor *u, api_problem *problem)
 {
     return u->memory.refused
                ? api_problem_set(problem, API_TOO_MANY_CODED,
-                                 "decompressing this body together with the others that are "
-                                 "arriving would take more than %zu bytes of memory",
+                                 "the arriving compressed bodies together would need more than %zu "
+                                 "bytes of memory to be decompressed",
                                  u->memory.most)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory to decompress the body");
 }
@@ -214,8 +214,8 @@ static bool give(api_decompressor *u, size_t length, api_problem *problem)
     u->turn += length;
     if (u->beyond + beyond(u) > API_DECOMPRESS_FREE) {
         return api_problem_set(problem, API_BODY_TOO_LARGE,
-                               "byte %llu of the %s body: the decompressed data is more than %d "
-                               "times its compressed size, by more than %llu bytes",
+                               "byte %llu of the %s body: the decompressed data is larger than the "
+                               "allowed %d times its compressed size plus %llu bytes",
                                (unsigned long long)u->at, api_coding_name(u->coding),
                                API_DECOMPRESS_RATIO, (unsigned long long)API_DECOMPRESS_FREE);
     }
@@ -401,8 +401,8 @@ static bool feed_zstd(api_decompressor *u, const unsigned char *bytes, size_t le
 static bool refuse_gone(const api_decompressor *u, api_problem *problem)
 {
     return api_problem_set(problem, API_TOO_MANY_CODED,
-                           "too many compressed bodies arrive at once, and this one was the "
-                           "slowest: the memory to decompress them is limited to %zu bytes",
+                           "too many compressed bodies arrive at the same time, and this was the "
+                           "slowest one: the memory to decompress them is limited to %zu bytes",
                            u->memory.most);
 }
 

@@ -250,7 +250,7 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
             continue;
         }
         if (*seen) {
-            return "a parameter of Content-Disposition is given twice";
+            return "a parameter is given twice in the Content-Disposition of a part";
         }
         *seen = true;
         if (!is_text(next.value, next.length)) {

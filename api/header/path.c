@@ -30,14 +30,18 @@ static const char *decode(api_bytes raw, int code, bool slash, api_arena *arena,
             int high = i + 2 < raw.length ? hex(raw.at[i + 1]) : -1;
             int low = high >= 0 ? hex(raw.at[i + 2]) : -1;
             if (low < 0) {
-                api_problem_set(problem, code, "'%%' must be followed by two hexadecimal digits");
+                api_problem_set(
+                    problem, code,
+                    "a '%%' in the path or query must be followed by two hexadecimal digits");
                 return NULL;
             }
             c = (char)(high * 16 + low);
             i += 2;
             if (c == '\0' || (c == '/' && !slash)) {
-                api_problem_set(problem, code, "an escaped %s is not allowed here",
-                                c == '\0' ? "null character" : "slash");
+                api_problem_set(
+                    problem, code,
+                    "the path or query has an escaped %s, which is not allowed in this place",
+                    c == '\0' ? "null character" : "slash");
                 return NULL;
             }
         }
@@ -45,7 +49,7 @@ static const char *decode(api_bytes raw, int code, bool slash, api_arena *arena,
     }
     out[used] = '\0';
     if (!he_is_utf8(out, used)) {
-        api_problem_set(problem, code, "the text is not UTF-8");
+        api_problem_set(problem, code, "the path or query is not UTF-8");
         return NULL;
     }
     return out;

@@ -55,11 +55,12 @@ static const api_field job_fields[] = {
               .doc = "The operationId of the request."),
     API_FIELD("state", "#job_state", shown, state, .required = true),
     API_FIELD("phase", "text?", shown, job.phase, .required = true, .zero_is_none = true,
-              .doc = "What the job is doing now or, if it has ended, what it did last."),
+              .doc = "What the job is doing now or, if the job has ended, what it did last."),
     API_FIELD("progress", "number", shown, progress, .required = true,
               .doc = "How much of the work is done, from 0 to 1; it never decreases."),
     API_FIELD("mesh", "text?", shown, job.mesh, .required = true, .zero_is_none = true,
-              .doc = "The id of the mesh that the job works on; null while that mesh has no id."),
+              .doc = "The id of the mesh that the job works on; null if the job makes a mesh that "
+                     "has no id yet."),
     API_FIELD("created", "time", shown, job.created, .required = true),
     API_FIELD("started", "time?", shown, job.started, .required = true, .zero_is_none = true),
     API_FIELD("finished", "time?", shown, job.finished, .required = true, .zero_is_none = true),
@@ -68,9 +69,9 @@ static const api_field job_fields[] = {
               .doc = "The HTTP status with which the request would have been answered."),
     API_FIELD("location", "text?", shown, job.location, .required = true, .zero_is_none = true,
               .doc = "The header Location with which the request would have been answered."),
-    API_FIELD(
-        "result_link", "text?", shown, link, .required = true, .zero_is_none = true,
-        .doc = "The path from which GET fetches only the result; null while there is no result."),
+    API_FIELD("result_link", "text?", shown, link, .required = true, .zero_is_none = true,
+              .doc = "The path from which GET fetches the result without the rest of the job; null "
+                     "while there is no result."),
     API_FIELD_MADE("result", "#job_result?", write_body, .known = API_KNOWN(shown, has_result),
                    .doc =
                        "The body with which the request would have been answered; null if it has "

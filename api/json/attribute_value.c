@@ -192,7 +192,8 @@ static bool read_number(const api_in *in, const he_column *column, unsigned char
     case HE_TYPE_COUNT:
         break;
     }
-    return api_in_fail(in, API_INTERNAL, "the type of the attribute is missing");
+    return api_in_fail(in, API_INTERNAL,
+                       "the member that gives the type of the attribute is missing");
 }
 
 bool api_read_value(const api_in *in, const he_column *column, unsigned char *row)

@@ -243,7 +243,7 @@ static const char *type_name(const api_in *in)
 
 static bool wrong_type(const api_in *in, const char *wanted)
 {
-    return api_in_fail(in, API_WRONG_TYPE, "%s is given, and %s is expected", type_name(in),
+    return api_in_fail(in, API_WRONG_TYPE, "the value is %s, but must be %s", type_name(in),
                        wanted);
 }
 
@@ -258,7 +258,7 @@ static bool refuse_member(const api_in *member, const char *const *names)
     for (; *names != NULL; names++) {
         api_known_names_add(&known, *names);
     }
-    return api_in_fail(member, API_UNKNOWN_MEMBER, "there is no member \"%.60s\" here%s",
+    return api_in_fail(member, API_UNKNOWN_MEMBER, "this object cannot have a member \"%.60s\"%s",
                        api_in_name(member), api_known_names_text(&known));
 }
 

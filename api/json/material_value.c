@@ -95,7 +95,7 @@ static bool read_material(const api_in *in, he_materials *out)
         return false;
     }
     if (he_materials_find(out, text, strlen(text)) != SIZE_MAX) {
-        return api_in_fail(&name, API_DUPLICATE_MEMBER, "two materials have this name");
+        return api_in_fail(&name, API_DUPLICATE_MEMBER, "another material already has this name");
     }
     if (he_material_new(text, strlen(text), &look, &row, &err) != HE_OK ||
         he_materials_add(out, row, &err) != HE_OK) {

@@ -40,17 +40,17 @@ static const struct {
     [HE_BAD_VALUE] = {400, "A number, string or count is not allowed here; the detail gives the "
                            "value and what is allowed."},
     [HE_NOT_FINITE] = {400, "Numbers must fit a double: NaN and infinity are refused, and so is a "
-                            "number that would become one of them."},
+                            "number that would become NaN or infinity."},
     [HE_BAD_INDEX] =
         {422,
          "A face uses the index of a vertex that the body does not have. Indices count from 0."},
     [HE_UNSUPPORTED] = {422, "The file is well formed but uses a feature of its format that the "
-                             "server does not support; the detail names it."},
+                             "server does not support; the detail names the feature."},
     [HE_BEYOND_FLOAT] = {422, "The format holds positions as floats, and a coordinate of the mesh "
                               "is larger than the largest float, about 3.4e38. The formats obj, "
                               "off, ply and json, and stl with encoding=ascii, can hold it."},
-    [HE_CORRUPT] = {500, "A mesh in the server breaks its own invariants. GET .../check lists "
-                         "them."},
+    [HE_CORRUPT] = {500, "A mesh in the server breaks an invariant that must always hold. GET "
+                         "/v1/meshes/{mesh}/check lists the broken invariants."},
     [HE_NO_SUCH_ELEMENT] = {422, "No element of this mesh ever had the id. The status is 404 if "
                                  "the id is in the path, and 422 if it is in the body."},
     [HE_DELETED_ELEMENT] = {422,
@@ -78,20 +78,22 @@ static const struct {
               "the element is allowed. Set the attribute to false to unlock it."},
     [HE_ISOLATED_VERTEX] = {422, "The dual of a mesh has no face for a vertex without faces: add a "
                                  "face to the vertex, or delete it."},
-    [HE_NO_RIM] = {422, "The faces to extrude or inset need an outline, and all faces of a closed "
-                        "component together have none. Leave out a face."},
+    [HE_NO_RIM] =
+        {422, "The operations that extrude or inset faces need an outline around the given faces. "
+              "All faces of a closed component together have no outline: leave out a face."},
     [HE_RIM_MEETS_ITSELF] =
         {422,
          "The outline of the faces may pass each vertex only once. If parts of the faces touch at "
          "a vertex, add the faces between these parts, or edit one part after the other."},
-    [HE_NO_NORMAL] = {422, "Without an area a face has no normal, and the faces to move have no "
-                           "common normal if their vector areas add up to zero. Give a vector or "
-                           "a factor instead of a distance."},
+    [HE_NO_NORMAL] =
+        {422, "A face without an area has no normal, and several faces whose vector areas add up "
+              "to zero have no common normal. Give a vector or a factor instead of a distance."},
     [HE_NOT_TRIANGLE] =
         {422, "Every face must be a triangle for this operation: use `triangulate` first."},
-    [HE_ATTRIBUTE_CLASH] = {422, "Attributes with the same name on the same kind of element must "
-                                 "have the same type and number of components, and both or neither "
-                                 "must have labels. Rename or delete one of them."},
+    [HE_ATTRIBUTE_CLASH] = {422,
+                            "Attributes with the same name on the same kind of element must have "
+                            "the same type and number of components, and either both or neither "
+                            "must have labels. Rename or delete one of the two attributes."},
     [HE_LINK_CONDITION] =
         {422, "Collapsing the edge would make an edge with three faces, two edges between the same "
               "vertices or a face that uses a vertex twice: the common neighbours of the edge's "
@@ -181,9 +183,9 @@ bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool change
                                "the server stopped before the change was on the disk");
     }
     if (!changed) {
-        return api_problem_set(problem, API_STORE_LOST,
-                               "the answer would show a change that could not be saved: %s",
-                               wait->reason);
+        return api_problem_set(
+            problem, API_STORE_LOST,
+            "the answer would show an earlier change that could not be saved: %s", wait->reason);
     }
     int code = wait->status == ST_FULL ? API_STORE_FULL : API_STORE_FAILED;
     return api_problem_set(problem, code, "the change was lost: %s", wait->reason);

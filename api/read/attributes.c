@@ -38,9 +38,12 @@ const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
     const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
     if (column == NULL) {
         bool position = x->kind == HE_VERTEX && strcmp(x->attribute, API_POSITION) == 0;
-        api_fail(x, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"%s",
-                 he_kind_plural(x->kind), x->attribute,
-                 position ? ": positions are members of the vertices" : "");
+        api_fail(
+            x, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"%s", he_kind_plural(x->kind),
+            x->attribute,
+            position
+                ? ": the positions of vertices are not an attribute; read them with the vertices"
+                : "");
     }
     return column;
 }

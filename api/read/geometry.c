@@ -63,12 +63,12 @@ static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, cons
         records += delta == NULL ? 0 : delta->count + 1;
         if (delta == NULL) {
             status = he_fail_plain(err, HE_UNSUPPORTED,
-                                   "the history does not reach back to the revision of the arrays "
-                                   "that the server keeps");
+                                   "the history does not reach back to the revision for which the "
+                                   "server keeps the arrays");
         } else if (records > most) {
             status = he_fail_plain(err, HE_LIMIT,
-                                   "there are too many changes since the revision of the arrays "
-                                   "that the server keeps");
+                                   "too many changes were made since the revision for which the "
+                                   "server keeps the arrays");
         } else {
             status = he_touched_add(&touched, mesh, delta, err);
         }

@@ -60,11 +60,12 @@ static void write_modified(api_out *out, const void *value)
 static const api_field entry_fields[] = {
     API_FIELD("revision", "count", st_entry, revision, .required = true),
     API_FIELD_MADE("action", "#action", write_action, .required = true),
-    API_FIELD("inverts", "count", st_entry, inverts, .zero_is_none = true,
-              .doc = "For an undo or a redo: the revision whose change it undid or redid."),
+    API_FIELD(
+        "inverts", "count", st_entry, inverts, .zero_is_none = true,
+        .doc = "If the entry is an undo or a redo: the revision whose change it undid or redid."),
     API_FIELD_MADE("ops", "*text", write_ops, .required = true),
     API_FIELD_MADE("created", "#counted", write_created, .known = API_KNOWN(st_entry, tally.known),
-                   .doc = "How many elements were created, if that is known."),
+                   .doc = "How many elements the edit created, if that is known."),
     API_FIELD_MADE("deleted", "#counted", write_deleted, .known = API_KNOWN(st_entry, tally.known)),
     API_FIELD_MADE("modified", "#counted", write_modified,
                    .known = API_KNOWN(st_entry, tally.known)),

@@ -77,7 +77,7 @@ void api_job_result(api_exchange *x)
         api_write_job(&x->out, &job, true);
         api_answer_json(x, 202);
     } else if (path[0] == '\0') {
-        api_fail(x, API_NO_SUCH_RESULT, "the job is %s, and there is no answer to fetch",
+        api_fail(x, API_NO_SUCH_RESULT, "the job is %s, so it has no answer to fetch",
                  api_job_state_name(job.state));
     } else {
         const char *tag = kept_header(&job, "ETag");
@@ -151,8 +151,8 @@ static bool read_cursor(api_exchange *x, uint64_t *after)
     if (cursor[0] != 'j' ||
         he_u64_parse(cursor + 1, cursor + strlen(cursor), after, &used) != HE_OK ||
         used != strlen(cursor) - 1) {
-        return api_fail(x, API_BAD_CURSOR, "the cursor \"%.60s\" does not belong to this list",
-                        cursor);
+        return api_fail(x, API_BAD_CURSOR,
+                        "the cursor \"%.60s\" does not belong to the list of jobs", cursor);
     }
     return true;
 }

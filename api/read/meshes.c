@@ -20,8 +20,8 @@ static bool read_list_cursor(api_exchange *x, const char **after)
         return true;
     }
     if (cursor[0] != 'm' || !api_path_is_mesh_id(cursor + 1)) {
-        return api_fail(x, API_BAD_CURSOR, "the cursor \"%s\" does not belong to this list",
-                        cursor);
+        return api_fail(x, API_BAD_CURSOR,
+                        "the cursor \"%s\" does not belong to the list of meshes", cursor);
     }
     *after = cursor + 1;
     return true;

@@ -115,7 +115,7 @@ he_status api_progressive_write(api_progressive *p, he_progress *progress, he_er
                     ((size_t)he_mesh_edges(base) + he_mesh_faces(base)) * ROW;
     p->base = he_mem_alloc(p->base_bytes);
     if (p->base == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu bytes of the base",
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the %zu bytes of the coarsest mesh",
                              p->base_bytes);
     }
     unsigned char *at = put_header(p->base, p);

@@ -63,7 +63,8 @@ typedef struct reloaded {
 static const api_field reloaded_fields[] = {
     API_FIELD("tokens", "count?", reloaded, tokens, .required = true,
               .known = API_KNOWN(reloaded, needs_tokens),
-              .doc = "How many tokens are accepted; null if the server needs none."),
+              .doc = "How many tokens are accepted after the file was read again; null if the "
+                     "server needs no tokens."),
 };
 const api_record api_reloaded_record = {"reloaded", reloaded_fields,
                                         sizeof reloaded_fields / sizeof *reloaded_fields};
@@ -98,17 +99,18 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
     }
     for (const char *c = target; *c != '\0'; c++) {
         if (*c <= ' ' || *c > '~' || *c == '#') {
-            return api_in_fail(in, API_BAD_PATH,
-                               "byte %zu of the path is a character that a path cannot contain",
-                               (size_t)(c - target));
+            return api_in_fail(
+                in, API_BAD_PATH,
+                "byte %zu of the path for the ticket is a character that a path cannot contain",
+                (size_t)(c - target));
         }
     }
     if (raw[0] != '/') {
-        return api_in_fail(in, API_BAD_PATH, "the path of a ticket must begin with \"/\"");
+        return api_in_fail(in, API_BAD_PATH, "the path for the ticket must begin with \"/\"");
     }
     if (strlen(target) > most) {
         return api_in_fail(in, API_BAD_PATH,
-                           "the path has %zu characters; a ticket is made for at most %zu",
+                           "the path for the ticket has %zu characters; at most %zu are allowed",
                            strlen(target), most);
     }
     if (api_gate_ticket(query) != NULL) {

@@ -79,7 +79,7 @@ static bool refuse_unknown(api_exchange *x, const char *name)
     for (size_t i = 0; x->route->parameters[i] != NULL; i++) {
         api_known_names_add(&known, x->route->parameters[i]->name);
     }
-    return api_fail(x, API_UNKNOWN_PARAMETER, "there is no parameter \"%.60s\" here%s", name,
+    return api_fail(x, API_UNKNOWN_PARAMETER, "this path has no query parameter \"%.60s\"%s", name,
                     api_known_names_text(&known));
 }
 
@@ -304,7 +304,9 @@ uint64_t api_body_cap(const api_exchange *x)
 bool api_refuse_size(api_exchange *x)
 {
     if (x->route->body_kind == API_BODY_NONE) {
-        return api_fail(x, API_UNEXPECTED_BODY, "%s must not have a body here", x->request.method);
+        return api_fail(x, API_UNEXPECTED_BODY,
+                        "a request with the method %s must not have a body on this path",
+                        x->request.method);
     }
     return api_fail(x, API_BODY_TOO_LARGE,
                     x->decompressor == NULL ? "the body exceeds %llu bytes"
@@ -360,7 +362,7 @@ static bool check_content_type(api_exchange *x)
     }
     char text[160] = "the body has no Content-Type";
     if (type != NULL) {
-        snprintf(text, sizeof text, "the Content-Type \"%.100s\" is not accepted here", type);
+        snprintf(text, sizeof text, "this path does not accept the Content-Type \"%.100s\"", type);
     }
     if (x->route->body_kind == API_BODY_UPLOAD) {
         if (is_generic(type) && api_param_text(x, "format") != NULL) {

@@ -40,7 +40,7 @@ uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallbac
     uint64_t number = fallback;
     size_t used;
     if (value != NULL && he_u64_parse(value, value + strlen(value), &number, &used) != HE_OK) {
-        assert(!"the checks of the route let an invalid parameter pass");
+        assert(!"an invalid parameter has passed the checks of the route");
     }
     return number;
 }
@@ -52,7 +52,7 @@ double api_param_number(const api_exchange *x, const char *name, double fallback
     size_t used;
     if (value != NULL &&
         he_double_parse(value, value + strlen(value), HE_JSON_NUMBER, &number, &used) != HE_OK) {
-        assert(!"the checks of the route let an invalid parameter pass");
+        assert(!"an invalid parameter has passed the checks of the route");
     }
     return number;
 }
@@ -85,7 +85,7 @@ unsigned api_param_choices(const api_exchange *x, const char *name)
     const api_parameter *parameter = find_parameter(x, name);
     unsigned out = 0;
     if (value != NULL && !api_choices_parse(parameter->choices, value, &out)) {
-        assert(!"the checks of the route let an invalid parameter pass");
+        assert(!"an invalid parameter has passed the checks of the route");
     }
     return out;
 }
@@ -220,7 +220,7 @@ bool api_fail_accept(api_exchange *x)
 
 static bool refuse_stale(api_exchange *x, const char *what)
 {
-    api_fail(x, API_STALE, "%s, it is at revision %llu", what,
+    api_fail(x, API_STALE, "%s; the present revision of the mesh is %llu", what,
              (unsigned long long)x->info.revision);
     x->problem.has_revision = true;
     x->problem.revision = x->info.revision;
@@ -236,7 +236,7 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
     }
     if (none != NULL && api_etag_is_present(none, &x->info)) {
         return api_fail(x, API_PRECONDITION,
-                        "the mesh exists, in a state that If-None-Match excludes");
+                        "the mesh exists in a state in which If-None-Match forbids the request");
     }
     if (expected != NULL && *expected != x->info.revision) {
         char what[64];

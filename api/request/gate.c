@@ -29,8 +29,9 @@ static bool refuse_unknown(api_exchange *x, bool has_token)
         return false;
     }
     x->has_bad_token = has_token;
-    return has_token ? api_fail(x, API_UNAUTHORIZED, "the token is unknown, expired or revoked")
-                     : api_fail(x, API_UNAUTHORIZED, "the header Authorization: Bearer is missing");
+    return has_token
+               ? api_fail(x, API_UNAUTHORIZED, "the token is unknown, expired or revoked")
+               : api_fail(x, API_UNAUTHORIZED, "the header Authorization: Bearer TOKEN is missing");
 }
 
 static bool refuse_role(api_exchange *x, api_role needed)

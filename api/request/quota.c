@@ -34,7 +34,7 @@ static bool refuse_bytes(api_exchange *x, const st_usage *usage)
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESH_BYTES);
     return api_fail(
         x, API_QUOTA,
-        "the meshes of this token may take %llu bytes of memory in all, and now take %llu",
+        "the meshes of this token may take %llu bytes of memory together, and now take %llu",
         (unsigned long long)usage->most_bytes, (unsigned long long)usage->bytes);
 }
 
@@ -46,7 +46,7 @@ bool api_quota_fail_new(api_exchange *x)
         return refuse_bytes(x, &usage);
     }
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESHES);
-    return api_fail(x, API_QUOTA, "this token may have %llu meshes, and now has %llu",
+    return api_fail(x, API_QUOTA, "this token may have %llu meshes, and has %llu already",
                     (unsigned long long)usage.most_meshes, (unsigned long long)usage.meshes);
 }
 

@@ -25,7 +25,7 @@ static bool refuse_connection(api_exchange *x)
 {
     api_limited_count(&x->service->limited, API_CLIENT_ADDRESS, API_LIMIT_CONNECTIONS);
     return api_fail(
-        x, API_TOO_MANY_CONNECTIONS, "the address is limited to %llu connections at once",
+        x, API_TOO_MANY_CONNECTIONS, "the address is limited to %llu open connections",
         (unsigned long long)x->service->options.address_limits.most[API_LIMIT_CONNECTIONS]);
 }
 

@@ -438,8 +438,7 @@ api_exchange *api_detach(api_exchange *x)
     } else if (status == ST_QUOTA) {
         api_limited_count(&answer->service->limited, API_CLIENT_TOKEN, API_LIMIT_JOBS);
         api_fail(answer, API_TOO_MANY_JOBS_OF_TOKEN,
-                 "the token is limited to %llu jobs that wait or run at once",
-                 (unsigned long long)most);
+                 "the token may have at most %llu jobs that wait or run", (unsigned long long)most);
     } else if (status != ST_OK) {
         api_fail_store(answer, status);
     }

@@ -359,10 +359,10 @@ static bool add_token(reader *r, const char *at, size_t length, gathered *to)
     const api_token *other =
         met_find(&to->names, list, offsetof(api_token, name), sizeof token->name);
     if (other != NULL) {
-        return fail(r, "the token in line %zu has the same name", other->line);
+        return fail(r, "the token in line %zu already has this name", other->line);
     }
     other = met_find(&to->hashes, list, offsetof(api_token, hash), sizeof token->hash);
-    return other == NULL || fail(r, "the token in line %zu has the same hash", other->line);
+    return other == NULL || fail(r, "the token in line %zu already has this hash", other->line);
 }
 
 static bool read_lines(reader *r, const char *at, const char *end, gathered *to)

@@ -256,10 +256,10 @@ void api_attribute_put_body(api_exchange *x, const char *bytes, size_t length)
     writing *w = x->state;
     if (length > w->body.maximum - w->body.length) {
         if (w->octets && w->body.maximum <= API_MAX_ATTRIBUTE_BYTES) {
-            api_fail(x, HE_BAD_VALUE,
-                     "the body is longer than %zu bytes, which is the size of one value for each "
-                     "of all %s",
-                     w->body.maximum - 1, he_kind_plural(x->kind));
+            api_fail(
+                x, HE_BAD_VALUE,
+                "the body is longer than the %zu bytes that one value for each of all %s needs",
+                w->body.maximum - 1, he_kind_plural(x->kind));
             x->problem.status = 422;
         } else {
             refuse_body(x, w);
@@ -291,8 +291,10 @@ static bool decode_octets(api_exchange *x, writing *w)
     size_t row = w->column->row_bytes, at = 0;
     he_error err = {0};
     if (w->body.length % row != 0) {
-        return api_fail(x, HE_BAD_VALUE, "%zu bytes are not a whole number of values of %zu bytes",
-                        w->body.length, row);
+        return api_fail(
+            x, HE_BAD_VALUE,
+            "the body has %zu bytes, which is not a whole number of values of %zu bytes each",
+            w->body.length, row);
     }
     w->count = w->body.length / row;
     if (he_attribute_check(w->column, w->body.bytes, w->count, &at, &err) != HE_OK) {
@@ -314,9 +316,10 @@ static bool fill(api_exchange *x, writing *w, const he_mesh *mesh)
                         (unsigned long long)API_MAX_ATTRIBUTE_BYTES);
     }
     if (w->octets && w->count != issued) {
-        he_fail_plain(&err, HE_BAD_VALUE,
-                      "the body has %zu values, and must have one for each of the %u ids of %s",
-                      w->count, issued, he_kind_plural(x->kind));
+        he_fail_plain(
+            &err, HE_BAD_VALUE,
+            "the body has %zu values, but must have one value for each of the %u ids of %s",
+            w->count, issued, he_kind_plural(x->kind));
         return refuse_values(x, w, &err);
     }
     if (w->has_at) {
@@ -463,7 +466,7 @@ static bool patch(api_exchange *x, writing *w, he_mesh *mesh)
     }
     if (count > API_MAX_EDITS_ROWS / (column->row_bytes / 4 + 1)) {
         return api_in_fail(&ids_in, HE_LIMIT,
-                           "%zu values are too many to record one by one: PUT the whole attribute",
+                           "%zu values are too many to be written by ids: PUT the whole attribute",
                            count);
     }
     if (he_attribute_write(mesh, column, ids, count, w->values, w->same, &err) != HE_OK) {

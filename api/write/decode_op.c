@@ -95,7 +95,7 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
     }
     if (count < min) {
         return api_in_fail(in, HE_NO_SUCH_ELEMENT,
-                           "the list is empty, because its references stand for empty lists");
+                           "the list is empty, because all references in it stand for empty lists");
     }
     arg->ids = ids;
     arg->count = count;
@@ -238,7 +238,7 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_MESH:
         return decode_mesh(d, in, arg);
     }
-    return api_in_fail(in, API_INTERNAL, "a parameter has no type");
+    return api_in_fail(in, API_INTERNAL, "the table of operations has a parameter without a type");
 }
 
 /* Returns the index of the parameter that the member `name` gives, or -1. `*plural` says whether
@@ -269,9 +269,9 @@ static bool decode_as(const decoder *d, const api_in *in)
         }
     }
     if (as[0] == '\0') {
-        return api_in_fail(
-            in, HE_BAD_VALUE,
-            "a name must consist of letters, digits and '_', and not begin with a digit");
+        return api_in_fail(in, HE_BAD_VALUE,
+                           "the name in \"as\" must consist of letters, digits and '_', and not "
+                           "begin with a digit");
     }
     d->call->as = as;
     return true;

@@ -191,21 +191,22 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
 {
     if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
         return api_in_fail(in, HE_LIMIT,
-                           "the list is too long: the operations before this one visit %llu "
-                           "elements, and at most %d are allowed",
+                           "the list of operations is too long: the operations before this one "
+                           "visit %llu elements, and at most %d are allowed",
                            (unsigned long long)e->looked_at, (int)API_MAX_EDITS_ELEMENTS);
     }
     if (e->steps > API_MAX_EDITS_STEPS) {
         return api_in_fail(in, HE_LIMIT,
-                           "the list is too long: the operations before this one take %llu "
-                           "computing steps, and at most %llu are allowed",
+                           "the list of operations is too long: the operations before this one "
+                           "take %llu computing steps, and at most %llu are allowed",
                            (unsigned long long)e->steps, (unsigned long long)API_MAX_EDITS_STEPS);
     }
     if (delta->count > API_MAX_EDITS_ROWS) {
-        return api_in_fail(in, HE_LIMIT,
-                           "the list is too long: the operations before this one change %zu rows "
-                           "of elements and attributes, and at most %d are allowed",
-                           delta->count, (int)API_MAX_EDITS_ROWS);
+        return api_in_fail(
+            in, HE_LIMIT,
+            "the list of operations is too long: the operations before this one make %zu changes "
+            "to elements and attribute values, and at most %d are allowed",
+            delta->count, (int)API_MAX_EDITS_ROWS);
     }
     return true;
 }

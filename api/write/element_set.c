@@ -45,9 +45,10 @@ bool api_find_set(const api_in *in, const he_mesh *mesh, he_kind kind, api_arena
         return false;
     }
     if (column->type != HE_BOOL || column->components != 1) {
-        return api_in_fail(
-            in, API_WRONG_TYPE,
-            "a set needs an attribute of type bool with one component, and \"%s\" is none", name);
+        return api_in_fail(in, API_WRONG_TYPE,
+                           "a set needs an attribute of type bool with one component, but \"%s\" "
+                           "has another type or several components",
+                           name);
     }
     size_t found = 0;
     for (size_t i = 0; i < column->rows; i++) {

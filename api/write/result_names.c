@@ -82,7 +82,7 @@ static bool find_value(const api_in *at, const char *text, const value *wanted, 
     out->ids = list ? &ids->ids[index] : &results->id[row];
     if (!results->present[row] || *out->ids == HE_NONE) {
         return api_in_fail(at, HE_NO_SUCH_ELEMENT,
-                           "\"%.100s\" stands for a result that the operation did not produce",
+                           "\"%.100s\" stands for a result that its operation did not produce",
                            text);
     }
     return true;

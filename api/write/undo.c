@@ -51,11 +51,12 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     unsigned long long to = s->revision, present = x->info.revision;
     uint32_t left = s->which == ST_UNDO ? x->info.undo : x->info.redo;
     if (status == ST_NOTHING) {
-        api_fail(x, s->which == ST_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
-                 left == 0
-                     ? "no edit is left to %s at revision %llu"
-                     : "fewer edits are left to %s at revision %llu than the request asks for",
-                 name_of(s), present);
+        api_fail(
+            x, s->which == ST_UNDO ? API_NOTHING_TO_UNDO : API_NOTHING_TO_REDO,
+            left == 0
+                ? "no edit is left to %s at revision %llu of the mesh"
+                : "the request asks to %s more edits than are left at revision %llu of the mesh",
+            name_of(s), present);
     } else if (status == ST_AHEAD) {
         api_in_fail(&s->to, API_NO_SUCH_REVISION,
                     "the mesh is at revision %llu and has no revision %llu yet", present, to);

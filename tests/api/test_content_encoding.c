@@ -389,7 +389,7 @@ static void what_unfolds_counts_against_the_limits(void **state)
         text[8 << 20] = '\0';
         refused(413, "body_too_large", "is more than 100 times its compressed size",
                 send_json(b, "POST", "/v1/meshes", both[c], text));
-        refused(400, "unexpected_body", "GET must not have a body here",
+        refused(400, "unexpected_body", "a request with the method GET must not have a body",
                 bench_send(b, "GET", "/livez", HEADERS("Content-Encoding", both[c]), "x"));
         free(text);
         text = long_text(9 << 20);

@@ -257,7 +257,7 @@ static void a_connection_beyond_its_address_s_is_told_so(void **state)
     bench_use_address(b, 1, true);
     bench_reply r = bench_expect(429, bench_get(b, "/v1/meshes"));
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
-    expect_code(r, 429, "too_many_connections", "is limited to 3 connections at once");
+    expect_code(r, 429, "too_many_connections", "is limited to 3 open connections");
     expect(b, 200, "/livez");
     bench_use_address(b, 1, false);
     expect(b, 200, "/v1/meshes");
@@ -280,7 +280,7 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     bench_reply r = bench_expect(429, bench_send(b, "GET", check, async, NULL));
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     expect_code(r, 429, "too_many_jobs_of_token",
-                "the token is limited to 2 jobs that wait or run");
+                "the token may have at most 2 jobs that wait or run");
     /* the limit applies only to requests that become jobs */
     bench_done(bench_expect(200, bench_get(b, check)));
     bench_use_token(b, "prueba");
@@ -305,7 +305,7 @@ static void a_mesh_counts_for_the_token_that_made_it(void **state)
     bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, cube)));
     bench_done(bench_expect(201, bench_post(b, "/v1/meshes", cube)));
     expect_code(bench_post(b, "/v1/meshes", cube), 507, "quota",
-                "this token may have 2 meshes, and now has 2");
+                "this token may have 2 meshes, and has 2 already");
     expect_code(bench_post(b, "/v1/meshes/m/copy", NULL), 507, "quota", "2 meshes");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
                 "the meshes of this token may take 20000 bytes");

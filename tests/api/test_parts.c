@@ -213,12 +213,12 @@ static void one_file_is_the_mesh(void **state)
     bench_reply_free(&r);
     bench_done(expect_triangle("obj", send_files(b, "/v1/meshes?format=obj", two)));
     expect_refused(422, "unclear_parts",
-                   "in the format ply, as far as their names, media types and first bytes show: "
+                   "in the format ply, judging by their names, media types and first bytes: "
                    "a.obj, a.gltf, a.bin",
                    send_files(b, "/v1/meshes?format=ply", two));
     expect_refused(422, "unclear_parts",
-                   "in a format that the server reads, as far as their names, media types and "
-                   "first bytes show: "
+                   "in a format that the server reads, judging by their names, media types and "
+                   "first bytes: "
                    "a.bin, a.mtl",
                    send_files(b, "/v1/meshes", none));
     expect_refused(422, "unclear_parts", "names, media types and first bytes show: ",

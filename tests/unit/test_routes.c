@@ -342,11 +342,11 @@ static void unknown_names_are_answered_with_those_that_exist(void **state)
         const char *detail;
     } cases[] = {
         {{"GET /v1/meshes?limt=1", NULL, NULL},
-         "there is no parameter \\\"limt\\\" here; did you mean \\\"limit\\\"?"},
+         "this path has no query parameter \\\"limt\\\"; did you mean \\\"limit\\\"?"},
         {{"POST /v1/meshes", JSON, "{\"shape\":\"cub\"}"}, "did you mean \\\"cube\\\"?"},
         {{"POST /v1/meshes", JSON, "{\"shape\":\"ring\"}"}, "; there are tetrahedron, cube,"},
         {{"POST /v1/meshes", JSON, "{\"shape\":\"cube\",\"sise\":1}"},
-         "there is no member \\\"sise\\\" here; did you mean \\\"size\\\"?"},
+         "this object cannot have a member \\\"sise\\\"; did you mean \\\"size\\\"?"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         header_list headers;

@@ -105,8 +105,9 @@ static void each_refusal_names_the_line_and_repeats_nothing(void **state)
         {"a read " HASH " expires=2027-02-29", "line 1: expires= needs"},
         {"a read " HASH " expires=2027-01-01T24:00:00Z", "line 1: expires= needs"},
         {"a read " HASH " expires=2027-01-01T00:00:00", "line 1: expires= needs"},
-        {"a read " HASH "\nb read " HASH "\n", "line 2: the token in line 1 has the same hash"},
-        {"a read " HASH "\n\na write " OTHER "\n", "line 3: the token in line 1 has the same name"},
+        {"a read " HASH "\nb read " HASH "\n", "line 2: the token in line 1 already has this hash"},
+        {"a read " HASH "\n\na write " OTHER "\n",
+         "line 3: the token in line 1 already has this name"},
         {"a read " HASH "\r\n", "line 1: byte 79 is a control character"},
         {"# \x01", "line 1: byte 3 is a control character"},
     };
