@@ -195,8 +195,8 @@ static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned step
         s = after(s, scheme, cuts_in_three(scheme, i));
         if (rows_of(&s) > HE_SUBDIVIDE_ROWS) {
             return he_fail_plain(err, HE_LIMIT,
-                                 "after step %u the mesh would have %llu vertices, edges and "
-                                 "faces; at most %llu are allowed",
+                                 "after step %u of the subdivision the mesh would have %llu "
+                                 "vertices, edges and faces; at most %llu are allowed",
                                  i + 1, (unsigned long long)rows_of(&s),
                                  (unsigned long long)HE_SUBDIVIDE_ROWS);
         }

@@ -121,7 +121,8 @@ static he_status smooth_column(const he_subdivide_step *s, const he_column *from
     he_vec3 *after = he_mem_array(NULL, fine, sizeof *after);
     he_status status = HE_OK;
     if (before == NULL || after == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", from->name);
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the values of attribute %s",
+                               from->name);
     }
     for (uint32_t k = 0; k < from->components && status == HE_OK; k += 3) {
         uint32_t left = from->components - k;

@@ -146,8 +146,8 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     }
     if (he_subdivide_is_doubled(from, h[0] ^ 1, h[1])) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h[0] >> 1,
-                       "the midpoints of edges %u and %u would be joined by two edges", h[0] >> 1,
-                       h[1] >> 1);
+                       "the subdivision would join the midpoints of edges %u and %u by two edges",
+                       h[0] >> 1, h[1] >> 1);
     }
     cut_triangle(s, f, h, at);
     return HE_OK;

@@ -289,7 +289,8 @@ he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err)
     s->spoke = he_mem_array(NULL, from->faces.issued, sizeof *s->spoke);
     s->third = he_mem_array(NULL, from->edges.issued, sizeof *s->third);
     if (s->centre == NULL || s->spoke == NULL || s->third == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to number the parts of %u faces",
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory to number the parts into which %u faces are cut",
                              from->faces.live);
     }
     he_status status = find_places(s, err);

@@ -53,7 +53,7 @@
     X(NOT_NEIGHBOUR, "not_neighbour", "The vertices are not joined by an edge")                  \
     X(NO_SECTOR, "no_sector", "No face would move to the new vertex")                            \
     X(NOT_A_CORNER, "not_a_corner", "The element is not a corner of the face")                   \
-    X(SAME_CORNER, "same_corner", "Both corners are the same")                                   \
+    X(SAME_CORNER, "same_corner", "The two corners are the same corner")                         \
     X(DIFFERENT_ORIGINS, "different_origins", "The half-edges leave different vertices")         \
     X(NO_FACE, "no_face", "The new edge would have no face")                                     \
     X(ADJACENT_CORNERS, "adjacent_corners", "The corners are already neighbours on the face")    \
@@ -64,12 +64,12 @@
     X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")                  \
     X(LINK_CONDITION, "link_condition", "The link condition does not hold")                      \
     X(BRANCHING_CHAIN, "branching_chain", "The edges branch at a vertex")                        \
-    X(SAME_LOOP, "same_loop", "Both half-edges lie on one loop")                                 \
+    X(SAME_LOOP, "same_loop", "The two half-edges lie on the same loop")                         \
     X(SHARED_VERTEX, "shared_vertex", "The loops have a vertex in common")                       \
     X(LOOP_LENGTH, "loop_length", "The loops have different lengths")                            \
-    X(OPEN_LOOP, "open_loop", "The cut does not close within the plane")                         \
+    X(OPEN_LOOP, "open_loop", "The loop of the cut leaves the plane")                            \
     X(NOT_A_CYCLE, "not_a_cycle", "The edges do not form a cycle")                               \
-    X(SHARED_FACE, "shared_face", "A face touches more than one of the edges")                   \
+    X(SHARED_FACE, "shared_face", "A face has more than one of the given edges")                 \
     X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                              \
     X(NO_RIM, "no_rim", "The faces are a whole closed component and have no outline")            \
     X(RIM_MEETS_ITSELF, "rim_meets_itself", "The outline of the faces passes a vertex twice")    \

@@ -274,7 +274,7 @@ he_status he_draw_slots_changed(const he_draw_slots *s, uint64_t since, uint64_t
 {
     if (since < s->known) {
         return he_fail_plain(err, HE_UNSUPPORTED,
-                             "the changes since that revision are no longer recorded");
+                             "the changes since the client's revision are no longer recorded");
     }
     size_t step = s->step_count;
     while (step > 0 && s->steps[step - 1].revision > since) {
@@ -287,9 +287,10 @@ he_status he_draw_slots_changed(const he_draw_slots *s, uint64_t since, uint64_t
     size_t t = step == 0 ? 0 : s->steps[step - 1].slots;
     size_t v_count = s->changed_vertices.count - v, t_count = s->changed_slots.count - t;
     if (v_count + t_count > most) {
-        return he_fail_plain(err, HE_LIMIT,
-                             "%zu vertices and triangles changed, more than may be listed",
-                             v_count + t_count);
+        return he_fail_plain(
+            err, HE_LIMIT,
+            "%zu vertices and triangles changed, which are too many to list one by one",
+            v_count + t_count);
     }
     he_status status = he_ids_reserve(vertices, v_count, err);
     if (status == HE_OK) {
@@ -388,7 +389,8 @@ typedef struct budget {
 static he_status spend(budget *b, uint64_t steps, he_error *err)
 {
     if (steps > b->left) {
-        return he_fail_plain(err, HE_LIMIT, "updating the triangles takes too many steps");
+        return he_fail_plain(err, HE_LIMIT,
+                             "updating the arrays of triangles would take too many steps");
     }
     b->left -= steps;
     return HE_OK;

@@ -14,7 +14,8 @@
 static const he_format formats[] = {
     {
         .name = "glb",
-        .doc = "glTF 2.0 in its binary container, its buffers inside or in files that come with it",
+        .doc = "glTF 2.0 in its binary container; its buffers are inside the file or in files that "
+               "come with it",
         .media_types = LIST("model/gltf-binary"),
         .extensions = LIST("glb"),
         .encodings = LIST("binary", "meshopt"),
@@ -28,7 +29,7 @@ static const he_format formats[] = {
     },
     {
         .name = "gltf",
-        .doc = "glTF 2.0 as JSON, its buffers in data: URIs or in files that come with it",
+        .doc = "glTF 2.0 as JSON; its buffers are in data: URIs or in files that come with it",
         .media_types = LIST("model/gltf+json"),
         .extensions = LIST("gltf"),
         .encodings = LIST("ascii"),
@@ -38,7 +39,8 @@ static const he_format formats[] = {
     },
     {
         .name = "off",
-        .doc = "Object File Format: OFF with any of the prefixes ST, C and N, and BINARY (read)",
+        .doc = "Object File Format (OFF) with any of the prefixes ST, C and N; the form BINARY is "
+               "only read",
         .media_types = LIST("model/x-off", "text/x-off", "application/x-off"),
         .extensions = LIST("off"),
         .encodings = LIST("ascii"),
@@ -50,7 +52,8 @@ static const he_format formats[] = {
     },
     {
         .name = "ply",
-        .doc = "Polygon File Format (Stanford), binary little-endian unless asked otherwise",
+        .doc = "Polygon File Format (Stanford); written as binary little-endian unless the request "
+               "asks for another encoding",
         .media_types = LIST("model/ply", "application/ply"),
         .extensions = LIST("ply"),
         .encodings = LIST("binary", "ascii", "binary_big_endian"),
@@ -64,7 +67,7 @@ static const he_format formats[] = {
     },
     {
         .name = "stl",
-        .doc = "Stereolithography triangles; corners at equal positions become one vertex",
+        .doc = "Triangles for stereolithography; corners at equal positions become one vertex",
         .media_types = LIST("model/stl", "application/sla", "application/vnd.ms-pki.stl"),
         .extensions = LIST("stl"),
         .encodings = LIST("binary", "ascii"),
@@ -75,7 +78,8 @@ static const he_format formats[] = {
     },
     {
         .name = "obj",
-        .doc = "Wavefront OBJ, polygons only; its materials are in a separate file, mtl",
+        .doc =
+            "Wavefront OBJ, polygons only; the materials are in a separate file of the format mtl",
         .media_types = LIST("model/obj", "text/x-obj"),
         .extensions = LIST("obj"),
         .encodings = LIST("ascii"),
@@ -88,7 +92,7 @@ static const he_format formats[] = {
     },
     {
         .name = "mtl",
-        .doc = "Material library of Wavefront OBJ; read only together with its OBJ file",
+        .doc = "Material library of Wavefront OBJ; it is read only together with its OBJ file",
         .media_types = LIST("model/mtl"),
         .extensions = LIST("mtl"),
         .encodings = LIST("ascii"),

@@ -55,7 +55,8 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
     do {
         if (h >= end || f->count >= end) {
             return he_fail(err, HE_CORRUPT, HE_HALFEDGE, first,
-                           "the half-edges around the origin of half-edge %u do not form a loop",
+                           "the mesh is damaged: the half-edges around the origin of half-edge %u "
+                           "do not form a loop",
                            first);
         }
         if (f->count == f->capacity) {

@@ -142,6 +142,6 @@ he_vec3 he_ring_centroid(const he_mesh *m, uint32_t first, const he_ring *found,
 
 he_status he_ring_corrupt(uint32_t face, he_error *err)
 {
-    return he_fail(err, HE_CORRUPT, HE_FACE, face, "the half-edges of face %u do not form a loop",
-                   face);
+    return he_fail(err, HE_CORRUPT, HE_FACE, face,
+                   "the mesh is damaged: the half-edges of face %u do not form a loop", face);
 }

@@ -58,10 +58,10 @@ void he_triangulation_work_clear(he_triangulation_work *work)
 he_status he_diagonals_refuse(const he_mesh *m, const he_planar_loop *flat, he_error *err)
 {
     uint32_t v = m->c.origin[flat->halfedge[0]];
-    return he_fail(
-        err, HE_DOUBLED_EDGE, HE_VERTEX, v,
-        "a diagonal of the loop at vertex %u would join two vertices that an edge already joins",
-        v);
+    return he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, v,
+                   "a diagonal of the loop through vertex %u would join two vertices that an edge "
+                   "already joins",
+                   v);
 }
 
 /* --- exact triangulation by dynamic programming: sub-loops of corners i..k, smallest first --- */

@@ -185,7 +185,7 @@ static void base64_that_ends_too_early(void **state)
         he_error err = {0};
         assert_int_equal(read_pieces(&(format_file){"gltf", text, length}, 0, NULL, &import, &err),
                          HE_SYNTAX);
-        assert_non_null(strstr(err.text, "buffers/0/uri: the data: URI is not base64"));
+        assert_non_null(strstr(err.text, "buffers/0/uri: the data: URI of a buffer is not base64"));
         free(text);
     }
 }
@@ -244,7 +244,7 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE, "accessors/0: positions must be VEC3"},
         {WITH_ACCESSOR("{'bufferView':7,'componentType':5126,'count':4,'type':'VEC3'}"),
          HE_BAD_INDEX, "accessors/0/bufferView: there is no buffer view 7; the file has 5"},
-        {WITH_ACCESSOR("3"), HE_BAD_VALUE, "accessors/0: this is not an object"},
+        {WITH_ACCESSOR("3"), HE_BAD_VALUE, "accessors/0: the value is not an object"},
         /* mistakes in buffer views and buffers */
         {WITH_VIEW("{'byteLength':48}"), HE_BAD_VALUE, "bufferViews/0: 'buffer' is missing"},
         {WITH_VIEW("{'buffer':1,'byteLength':48}"), HE_BAD_INDEX,
@@ -274,12 +274,12 @@ static void references_and_numbers(void **state)
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'http://169.254.169.254/'}]}",
          HE_UNSUPPORTED, "buffers/0/uri: the buffer is in another file, 'http://169.254.169.254/'"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:,abc'}]}", HE_UNSUPPORTED,
-         "buffers/0/uri: the data: URI is not base64"},
+         "buffers/0/uri: the data: URI of a buffer is not base64"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:;base64,A-=='}]}", HE_SYNTAX,
-         "buffers/0/uri: the data: URI is not base64"},
+         "buffers/0/uri: the data: URI of a buffer is not base64"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:;base64,AAAA'}]}", HE_BAD_VALUE,
          "buffers/0: the buffer should have 96 bytes, and only 3"},
-        {"{" ASSET ",'buffers':3}", HE_BAD_VALUE, "buffers: this is not an array"},
+        {"{" ASSET ",'buffers':3}", HE_BAD_VALUE, "buffers: the value is not an array"},
         {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
          "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
          HE_BAD_VALUE,
@@ -315,7 +315,7 @@ static void references_and_numbers(void **state)
          "attributes/_A: 6 values are given for 4 vertices"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':1,'material':0}"), HE_BAD_INDEX,
          "there is no material 0; the file has 0"},
-        {"{" DATA ",'meshes':[{'primitives':[1]}]}", HE_BAD_VALUE, "this is not an object"},
+        {"{" DATA ",'meshes':[{'primitives':[1]}]}", HE_BAD_VALUE, "the value is not an object"},
         {"{" DATA ",'meshes':[{}]}", HE_BAD_VALUE, "meshes/0: 'primitives' is missing"},
         /* mistakes in nodes */
         {WITH_NODES("{'mesh':1}"), HE_BAD_INDEX,
@@ -337,15 +337,17 @@ static void references_and_numbers(void **state)
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0},{'children':'x'}]}", HE_BAD_VALUE,
-         "nodes/1/children: this is not an array"},
+         "nodes/1/children: the value is not an array"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0}],'scenes':-1}", HE_BAD_VALUE,
-         "scenes: this is not an array"},
+         "scenes: the value is not an array"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0}],'scenes':[{'nodes':null}]}", HE_BAD_VALUE,
-         "scenes/0/nodes: this is not an array"},
-        {WITH_NODES("{'matrix':[1,2,3]}"), HE_BAD_VALUE, "nodes/0/matrix: 16 numbers are needed"},
+         "scenes/0/nodes: the value is not an array"},
+        {WITH_NODES("{'matrix':[1,2,3]}"), HE_BAD_VALUE,
+         "nodes/0/matrix: the value must be an array of 16 numbers"},
         {WITH_NODES("{'matrix':[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}"), HE_BAD_VALUE, "last row"},
         {WITH_NODES("{'scale':[1,2,3,4]}"), HE_BAD_VALUE, "nodes/0/scale: 3 numbers"},
-        {WITH_NODES("{'scale':[1,2,null]}"), HE_BAD_VALUE, "nodes/0/scale/2: this is not a number"},
+        {WITH_NODES("{'scale':[1,2,null]}"), HE_BAD_VALUE,
+         "nodes/0/scale/2: the value is not a number"},
         {WITH_NODES("{'rotation':5}"), HE_BAD_VALUE, "nodes/0/rotation: 4 numbers"},
         {WITH_NODES("{'rotation':[0,-0,0,0]}"), HE_BAD_VALUE,
          "nodes/0/rotation: a rotation cannot be a quaternion of length 0"},

@@ -317,7 +317,8 @@ static he_status choose_rungs(plan *p, he_error *err)
     double *twists = he_mem_array(NULL, m, sizeof *twists);
     uint64_t *passed = he_bits_new(m);
     if (twists == NULL || passed == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu pairings", m);
+        status = he_fail_plain(err, HE_NO_MEMORY,
+                               "no memory to compare %zu ways to join the two loops", m);
     }
     for (uint32_t s = 0; status == HE_OK && s < m; s++) {
         twists[s] = twist(p, s);

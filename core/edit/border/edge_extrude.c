@@ -77,8 +77,8 @@ static he_status plan_chain(const he_mesh *m, const uint32_t *edges, plan *p, he
 static he_status refuse_branch(const plan *p, uint32_t v, uint32_t i, uint32_t k, he_error *err)
 {
     return he_fail(err, HE_BRANCHING_CHAIN, HE_VERTEX, v,
-                   "edges %u and %u both leave or both reach vertex %u along the boundary: extrude "
-                   "them one after the other",
+                   "the boundary half-edges of edges %u and %u both begin or both end at vertex "
+                   "%u: extrude the two edges one after the other",
                    he_edge_of(at(p, i)).i, he_edge_of(at(p, k)).i, v);
 }
 
@@ -110,10 +110,10 @@ static he_status plan_joints(const he_mesh *m, plan *p, he_error *err)
         he_halfedge in = at(p, p->joints[i].in), out = at(p, p->joints[i].out);
         if (he_next(m, in).i != out.i && he_ring_fan_end(m, in).i == out.i) {
             uint32_t v = p->ends.ids[i];
-            return he_fail(
-                err, HE_CLOSED_FAN, HE_VERTEX, v,
-                "the faces around vertex %u would close while %u other fans of faces touch it", v,
-                he_vertex_fans(m, (he_vertex){v}) - 1);
+            return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, v,
+                           "a closed fan of faces would form around vertex %u, which also belongs "
+                           "to %u other fans of faces",
+                           v, he_vertex_fans(m, (he_vertex){v}) - 1);
         }
     }
     return HE_OK;

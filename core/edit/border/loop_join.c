@@ -76,9 +76,10 @@ static he_status find_loops(plan *p, he_halfedge a, he_halfedge b, he_error *err
         h = he_prev(p->m, h);
     } while (status == HE_OK && h.i != b.i);
     if (status == HE_OK && p->a.count != p->b.count) {
-        return he_fail(err, HE_LOOP_LENGTH, HE_HALFEDGE, b.i,
-                       "the loop of half-edge %u has %zu edges, that of half-edge %u has %zu", a.i,
-                       p->a.count, b.i, p->b.count);
+        return he_fail(
+            err, HE_LOOP_LENGTH, HE_HALFEDGE, b.i,
+            "the loop of half-edge %u has %zu edges, but the loop of half-edge %u has %zu", a.i,
+            p->a.count, b.i, p->b.count);
     }
     p->n = (uint32_t)p->a.count;
     return status;
@@ -94,10 +95,11 @@ static he_status find_vertices(plan *p, he_error *err)
             i < p->n ? he_target(p->m, side_of_b(p, i)) : he_origin(p->m, side_of_a(p, i - p->n));
         status = he_idmap_add(&p->vertices, v.i, &index, &added, err);
         if (status == HE_OK && !added) {
-            return i >= p->n && index < p->n ? he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v.i,
-                                                       "vertex %u lies on both loops", v.i)
-                                             : he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, v.i,
-                                                       "a loop passes vertex %u twice", v.i);
+            return i >= p->n && index < p->n
+                       ? he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v.i,
+                                 "vertex %u lies on both loops", v.i)
+                       : he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, v.i,
+                                 "one of the two loops passes vertex %u twice", v.i);
         }
     }
     return status;
@@ -110,7 +112,7 @@ static he_status check_sides(const plan *p, he_error *err)
         if (he_is_boundary_halfedge(p->m, he_twin(side_of_a(p, i))) &&
             he_is_boundary_halfedge(p->m, he_twin(side_of_b(p, i)))) {
             return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e,
-                           "edges %u and %u would merge into an edge without a face", e, f);
+                           "edges %u and %u would merge into an edge that has no face", e, f);
         }
     }
     return HE_OK;

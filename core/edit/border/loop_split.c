@@ -41,7 +41,7 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
         for (unsigned k = 0; k < i; k++) {
             if (faces[k] == faces[i]) {
                 return he_fail(err, HE_SHARED_FACE, HE_FACE, faces[i],
-                               "face %u touches two of the edges", faces[i]);
+                               "face %u has two of the given edges", faces[i]);
             }
         }
     }

@@ -121,8 +121,8 @@ static he_status plan_fan(const he_mesh *m, plan *p, he_halfedge first, he_error
         if (he_bits_get(p->once, i)) {
             uint32_t e = he_edge_of(first).i;
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, e,
-                           "both copies of edge %u would still join vertices %u and %u: cut more "
-                           "edges with it",
+                           "after the cut both copies of edge %u would join vertices %u and %u: "
+                           "cut further edges in the same operation",
                            e, he_origin(m, first).i, he_target(m, first).i);
         }
         he_bits_set(p->once, i);

@@ -43,8 +43,8 @@ static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_ed
         if (f.i != HE_NONE && he_face_corner(m, f, v).i != HE_NONE) {
             return he_fail(
                 err, HE_REPEATED_CORNER, HE_FACE, f.i,
-                "face %u has both vertex %u and vertex %u as corners, and they would become one",
-                f.i, v.i, w.i);
+                "face %u has vertices %u and %u as corners, which would become one vertex", f.i,
+                v.i, w.i);
         }
         he_halfedge other = he_find_halfedge(m, v, he_target(m, h));
         if (other.i != HE_NONE && !(he_edge_of(other).i == a.i && he_edge_of(h).i == b.i)) {
@@ -63,10 +63,10 @@ static he_status check_end(const he_mesh *m, const pair *end, he_edge a, he_edge
         return check_merge(m, end, a, b, err);
     }
     if (he_next(m, end->in).i != end->out.i && he_ring_fan_end(m, end->in).i == end->out.i) {
-        return he_fail(
-            err, HE_CLOSED_FAN, HE_VERTEX, end->stays.i,
-            "the faces around vertex %u would close while %u other fans of faces touch it",
-            end->stays.i, he_vertex_fans(m, end->stays) - 1);
+        return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, end->stays.i,
+                       "a closed fan of faces would form around vertex %u, which also belongs to "
+                       "%u other fans of faces",
+                       end->stays.i, he_vertex_fans(m, end->stays) - 1);
     }
     return HE_OK;
 }
@@ -104,8 +104,8 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
         return status;
     }
     if (a.i == b.i) {
-        return he_fail(err, HE_REPEATED_ELEMENT, HE_EDGE, a.i, "a and b are the same edge, %u",
-                       a.i);
+        return he_fail(err, HE_REPEATED_ELEMENT, HE_EDGE, a.i,
+                       "\"a\" and \"b\" are the same edge, %u", a.i);
     }
     he_halfedge h = outer(m, a), k = outer(m, b);
     ends[0] = (pair){he_target(m, h), he_origin(m, k), h, k};
@@ -113,11 +113,11 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     if (ends[0].stays.i == ends[1].goes.i || ends[1].stays.i == ends[0].goes.i) {
         he_face f = he_face_of(m, he_twin(h));
         bool begin = ends[1].stays.i == ends[0].goes.i;
-        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i,
-                       "the boundary %s vertex %u on both edges %u and %u: welding them would join "
-                       "the two ends of edge %u, and face %u would visit one vertex twice",
-                       begin ? "leaves" : "reaches", (begin ? ends[1] : ends[0]).stays.i, a.i, b.i,
-                       a.i, f.i);
+        return he_fail(
+            err, HE_REPEATED_CORNER, HE_FACE, f.i,
+            "the boundary half-edges of edges %u and %u both %s at vertex %u: welding the edges "
+            "would join the two ends of edge %u, and face %u would use one vertex twice",
+            a.i, b.i, begin ? "begin" : "end", (begin ? ends[1] : ends[0]).stays.i, a.i, f.i);
     }
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
         status = check_end(m, &ends[i], a, b, err);

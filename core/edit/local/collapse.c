@@ -164,7 +164,7 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 {
     if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
         he_is_boundary_halfedge(m, he_twin(he_prev(m, h)))) {
-        return refuse(err, h, "a triangle beside the edge has both other sides on the boundary",
+        return refuse(err, h, "a triangle beside the edge has both its other edges on the boundary",
                       "face", he_face_of(m, h).i);
     }
     return HE_OK;
@@ -255,13 +255,13 @@ static he_status check_features(const he_mesh *m, const he_marks *marks, he_half
     }
     if (along && count != 2) {
         return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i,
-                       "vertex %u would be removed, but %u feature edges meet there", u.i, count);
+                       "vertex %u would be removed, but %u feature edges meet at it", u.i, count);
     }
     he_edge left = he_edge_of(he_prev(m, h)), right = he_edge_of(he_next(m, back));
     if ((he_is_triangle(m, h) && he_is_feature(marks, left)) ||
         (he_is_triangle(m, back) && he_is_feature(marks, right))) {
         return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
-                       "feature edge %u would merge into another", other.i);
+                       "feature edge %u would merge into another edge", other.i);
     }
     count = moves ? count_features(m, marks, back, &other) : 0;
     if (count > 0 && !(along && count == 2)) {

@@ -58,7 +58,7 @@ static he_status check_corner(const he_mesh *m, he_face f, he_halfedge h, he_err
     he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
     if (status == HE_OK && he_face_of(m, h).i != f.i) {
         return he_fail(err, HE_NOT_A_CORNER, HE_HALFEDGE, h.i,
-                       "half-edge %u does not belong to face %u", h.i, f.i);
+                       "half-edge %u is not a half-edge of face %u", h.i, f.i);
     }
     return status;
 }

@@ -31,7 +31,8 @@ static he_status check_corner(const he_mesh *m, uint32_t in, uint32_t out, he_er
     }
     uint32_t v = m->c.origin[out];
     return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, v,
-                   "the faces around vertex %u would close while %u other fans of faces touch it",
+                   "a closed fan of faces would form around vertex %u, which also belongs to %u "
+                   "other fans of faces",
                    v, he_vertex_fans(m, (he_vertex){v}) - 1);
 }
 

@@ -40,8 +40,8 @@ static he_status check_work(const he_mesh *m, he_face f, uint32_t n, he_error *e
     } while (steps <= most && h.i != first.i);
     if (steps > most) {
         return he_fail(err, HE_LIMIT, HE_FACE, f.i,
-                       "the faces around face %u, which has %u corners, are too large for a "
-                       "collapse to be checked",
+                       "the collapse of face %u, which has %u corners, cannot be checked, because "
+                       "the faces around it have too many corners",
                        f.i, n);
     }
     return HE_OK;

@@ -14,7 +14,7 @@ static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
         return HE_OK;
     }
     return he_fail(err, HE_LOW_DEGREE, HE_VERTEX, v.i,
-                   "vertex %u has degree %u and cannot lose edge %u", v.i,
+                   "vertex %u has degree %u, which is too low for it to lose edge %u", v.i,
                    second.i == h.i ? 2u : 3u, he_edge_of(h).i);
 }
 

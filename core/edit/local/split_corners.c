@@ -12,8 +12,8 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
         return status;
     }
     if (a.i == b.i) {
-        return he_fail(err, HE_SAME_CORNER, HE_HALFEDGE, a.i, "a and b are the same half-edge, %u",
-                       a.i);
+        return he_fail(err, HE_SAME_CORNER, HE_HALFEDGE, a.i,
+                       "\"a\" and \"b\" are the same half-edge, %u", a.i);
     }
     if (he_origin(m, a).i != he_origin(m, b).i) {
         return he_fail(err, HE_DIFFERENT_ORIGINS, HE_HALFEDGE, b.i,

@@ -18,8 +18,8 @@ static he_status find_side(const he_mesh *m, he_vertex v, he_vertex to, he_halfe
     if (to.i == HE_NONE) {
         if (!he_is_boundary_vertex(m, v)) {
             return he_fail(err, HE_NOT_BOUNDARY, HE_VERTEX, v.i,
-                           "left or right is null, which means the boundary, but vertex %u is not "
-                           "on the boundary",
+                           "\"left\" or \"right\" is null, which stands for the boundary, but "
+                           "vertex %u is not on the boundary",
                            v.i);
         }
         *out = (he_halfedge){HE_NONE};
@@ -46,14 +46,15 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
         return status;
     }
     if (left.i == HE_NONE && right.i == HE_NONE) {
-        return he_fail(err, HE_BAD_VALUE, HE_VERTEX, v.i, "left and right cannot both be null");
+        return he_fail(err, HE_BAD_VALUE, HE_VERTEX, v.i,
+                       "\"left\" and \"right\" cannot both be null");
     }
     if (!he_point_is_finite(to)) {
         return he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i, "the position must be finite");
     }
     if (left.i == right.i) {
         return he_fail(err, HE_REPEATED_ELEMENT, HE_VERTEX, left.i,
-                       "left and right are both vertex %u", left.i);
+                       "\"left\" and \"right\" are both vertex %u", left.i);
     }
     if (he_vertex_fans(m, v) > 1) {
         return he_fail(err, HE_BOWTIE, HE_VERTEX, v.i,
@@ -82,7 +83,8 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
     }
     if (!sector) {
         return he_fail(err, HE_NO_SECTOR, HE_VERTEX, v.i,
-                       "no face around vertex %u lies between left and right, counter-clockwise",
+                       "no face around vertex %u lies between \"left\" and \"right\", counted "
+                       "counter-clockwise",
                        v.i);
     }
     *out = c;

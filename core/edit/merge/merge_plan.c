@@ -414,9 +414,10 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         p->stored[i] = old.i < HE_DEAD && he_merge_stays(p, old) ? old.i : first.i;
     }
     if (status == HE_OK && seen != ring->count) {
-        return he_fail(
-            err, HE_CLOSED_FAN, HE_VERTEX, v.i,
-            "the faces around vertex %u would close while another fan of faces touches it", v.i);
+        return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, v.i,
+                       "a closed fan of faces would form around vertex %u, which also belongs to "
+                       "another fan of faces",
+                       v.i);
     }
     return status;
 }

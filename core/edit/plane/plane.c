@@ -25,7 +25,7 @@ static he_status check(const he_plane *plane, he_error *err)
         return he_fail_plain(err, HE_NOT_FINITE, "the tolerance must be finite");
     }
     if (tolerance != NULL && *tolerance < 0) {
-        return he_fail_plain(err, HE_BAD_VALUE, "the tolerance must not be negative, and is %g",
+        return he_fail_plain(err, HE_BAD_VALUE, "the tolerance must not be negative, but is %g",
                              *tolerance);
     }
     return HE_OK;

@@ -103,9 +103,10 @@ static he_status check_loop(const cutter *c, he_halfedge h, he_error *err)
     do {
         he_vertex v = he_origin(c->m, k);
         if (he_side_of(&c->sides, v) != 0) {
-            return he_fail(
-                err, HE_OPEN_LOOP, HE_VERTEX, v.i,
-                "the cut cannot be closed by a flat face: it leaves the plane at vertex %u", v.i);
+            return he_fail(err, HE_OPEN_LOOP, HE_VERTEX, v.i,
+                           "no flat face can close the cut, because the loop of the cut leaves the "
+                           "plane at vertex %u",
+                           v.i);
         }
         k = he_next(c->m, k);
     } while (k.i != h.i);

@@ -45,7 +45,9 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
         uint32_t f = r->faces.ids.ids[0];
         if (!find_direction(m, r, shift)) {
             return he_fail(err, HE_NO_NORMAL, HE_FACE, f,
-                           "face %u and those extruded with it have no normal: give a vector", f);
+                           "face %u and the faces extruded with it have no common normal: give a "
+                           "vector instead of a distance",
+                           f);
         }
         *shift = he_vec3_scale(*shift, motion->distance);
     }

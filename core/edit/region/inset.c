@@ -105,7 +105,8 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
         uint32_t index = index_of(m, r, r->rim.ids[i]);
         if (he_vec3_extent(p->of[index]) <= 0) {
             return he_fail(err, HE_NO_NORMAL, HE_FACE, r->faces.ids.ids[index],
-                           "face %u has no area, so a distance means nothing: give a factor",
+                           "face %u has no area, so its border cannot have a width given as a "
+                           "distance: give a factor instead",
                            r->faces.ids.ids[index]);
         }
     }
@@ -226,7 +227,8 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
         if (p->budget < n) {
             return he_fail(
                 err, HE_LIMIT, HE_FACE, f.i,
-                "face %u has too many reflex corners and sides for an inset to be checked", f.i);
+                "face %u has too many corners, many of them reflex, for an inset to be checked",
+                f.i);
         }
         p->budget -= n;
         for (size_t k = i + 2; k < i + n; k++) {

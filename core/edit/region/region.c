@@ -81,10 +81,10 @@ static he_status find_rim(const he_mesh *m, he_region *r, he_error *err)
     }
     if (r->rim.count == 0) {
         uint32_t f = r->faces.ids.ids[0];
-        return he_fail(
-            err, HE_NO_RIM, HE_FACE, f,
-            "face %u and the others listed are a whole closed component, so they have no outline",
-            f);
+        return he_fail(err, HE_NO_RIM, HE_FACE, f,
+                       "face %u and the other listed faces are a whole closed component, so they "
+                       "have no outline",
+                       f);
     }
     return HE_OK;
 }

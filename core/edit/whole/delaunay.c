@@ -165,7 +165,8 @@ static he_status empty_queue(flipper *q, he_error *err)
         }
         if (++q->steps > q->limit) {
             return he_fail_plain(err, HE_LIMIT,
-                                 "the flips take more than %llu steps; %zu flips were made",
+                                 "the flips take more than %llu steps; %zu flips were made before "
+                                 "the limit was reached",
                                  (unsigned long long)q->limit, q->flips.count);
         }
         he_prefetch_coming(q->m, waiting_at(q, 2), waiting_at(q, 4));

@@ -13,8 +13,8 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
         return HE_OK;
     }
     return he_fail_plain(err, HE_ATTRIBUTE_CLASH,
-                         "the attribute material of faces has values of %u %s%s, but must have "
-                         "values of 1 uint32 with labels",
+                         "the face attribute \"material\" has %u components of type %s%s, but must "
+                         "have one component of type uint32 with labels",
                          (*out)->components, he_type_name((*out)->type),
                          (*out)->labels != NULL ? " with labels" : "");
 }
@@ -149,7 +149,9 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     }
     bool named = has_label(column, name, &index);
     if (!named && !has_row) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\" to rename", name);
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "the material \"%.80s\" cannot be renamed, because it does not exist",
+                             name);
     }
     return named ? put_labels(m, column, name, to, NULL, err) : HE_OK;
 }
@@ -263,10 +265,14 @@ static he_status delete_in_bracket(he_mesh *m, const char *name, const char *to,
         return status;
     }
     if (!has_material(m, column, name)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\"", name);
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "the material \"%.80s\" cannot be deleted, because it does not exist",
+                             name);
     }
     if (to != NULL && !has_material(m, column, to)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\" to replace it", to);
+        return he_fail_plain(
+            err, HE_BAD_VALUE,
+            "the material \"%.80s\" cannot replace the deleted one, because it does not exist", to);
     }
     if (to != NULL && strcmp(name, to) == 0) {
         return he_fail_plain(err, HE_BAD_VALUE, "the material \"%.80s\" cannot replace itself", to);

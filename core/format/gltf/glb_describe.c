@@ -523,7 +523,8 @@ he_status he_glb_describe(he_glb_parts *g, he_error *err)
     }
     if (t.failed) {
         he_mem_free(t.bytes);
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the JSON of %zu parts", g->count);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the JSON that describes %zu parts",
+                             g->count);
     }
     g->json = t.bytes;
     g->json_length = t.length;

@@ -102,7 +102,7 @@ he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name,
 {
     *out = he_json_find(&asset->json, object, name);
     if (*out != HE_NONE && he_json_type(&asset->json, *out) != '[') {
-        return he_json_fail(&asset->json, *out, err, HE_BAD_VALUE, "this is not an array");
+        return he_json_fail(&asset->json, *out, err, HE_BAD_VALUE, "the value is not an array");
     }
     return HE_OK;
 }
@@ -120,7 +120,7 @@ he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error 
     for (uint32_t i = he_json_first(json, array); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, array, i)) {
         if (he_json_type(json, i) != '{') {
-            return he_json_fail(json, i, err, HE_BAD_VALUE, "this is not an object");
+            return he_json_fail(json, i, err, HE_BAD_VALUE, "the value is not an object");
         }
         status = he_ids_add(list, i, err);
     }

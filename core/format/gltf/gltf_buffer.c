@@ -18,7 +18,8 @@ static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t l
         n = length - at < PIECE ? length - at : PIECE;
         if (!he_base64_decode(text + at, n, to->own + to->length, &decoded) ||
             (at + n < length && decoded != PIECE / 4 * 3)) {
-            return he_json_fail(&asset->json, uri, err, HE_SYNTAX, "the data: URI is not base64");
+            return he_json_fail(&asset->json, uri, err, HE_SYNTAX,
+                                "the data: URI of a buffer is not base64");
         }
         to->length += decoded;
         asset->steps += n;
@@ -79,7 +80,8 @@ static he_status decode_data(he_gltf *asset, he_gltf_buffer *buffer, uint32_t ur
     static const char coding[] = ";base64";
     size_t head = comma == NULL ? 0 : (size_t)(comma - text), size = sizeof coding - 1;
     if (head < size || memcmp(comma - size, coding, size) != 0) {
-        return he_json_fail(json, uri, err, HE_UNSUPPORTED, "the data: URI is not base64");
+        return he_json_fail(json, uri, err, HE_UNSUPPORTED,
+                            "the data: URI of a buffer is not base64");
     }
     length -= head + 1;
     *buffer =
@@ -97,7 +99,8 @@ static he_status read_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, 
     const char *text;
     char *own = NULL;
     if (he_json_type(&asset->json, uri) != '"') {
-        return he_json_fail(&asset->json, uri, err, HE_BAD_VALUE, "this is not a string");
+        return he_json_fail(&asset->json, uri, err, HE_BAD_VALUE,
+                            "the URI of a buffer is not a string");
     }
     he_status status = plain_text(&asset->json, uri, &text, &length, &own, err);
     if (status == HE_OK) {

@@ -170,7 +170,8 @@ he_status he_gltf_read_materials(he_gltf *asset, he_labels **out, he_error *err)
 {
     he_labels *names = he_labels_new();
     he_status status =
-        names == NULL ? he_fail_plain(err, HE_NO_MEMORY, "no memory for names") : HE_OK;
+        names == NULL ? he_fail_plain(err, HE_NO_MEMORY, "no memory for the names of materials")
+                      : HE_OK;
     for (size_t i = 0; i < asset->materials.count && status == HE_OK; i++) {
         char name[HE_GLTF_NAME];
         uint32_t value = asset->materials.ids[i];

@@ -135,7 +135,7 @@ static he_status take_chunk(glb *g, he_error *err)
     size_t number = g->chunks++;
     if (g->left > g->length - g->offset) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at,
-                          "a chunk declares %llu bytes, but the file has only %llu more",
+                          "a chunk declares %llu bytes, but only %llu bytes of the file follow",
                           (unsigned long long)g->left, (unsigned long long)(g->length - g->offset));
     }
     if (g->left % 4 != 0) {
@@ -234,7 +234,7 @@ static he_status glb_finish(void *state, he_error *err)
     }
     if (g->head_length > 0 && g->head_length != g->padding) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, g->offset,
-                          "%zu bytes follow the last chunk and are too few for another",
+                          "%zu bytes follow the last chunk, which are too few for another chunk",
                           g->head_length);
     }
     he_status status = read_asset(g->into, &g->json, &g->bin, g->has_bin, err);

@@ -60,7 +60,8 @@ static he_status get_numbers(const he_json *json, uint32_t node, numbers *n, he_
         status = he_json_number(json, item, &n->values[i], err);
     }
     if (status == HE_OK && (i < n->count || item != HE_NONE || he_json_type(json, list) != '[')) {
-        return he_json_fail(json, list, err, HE_BAD_VALUE, "%zu numbers are needed", n->count);
+        return he_json_fail(json, list, err, HE_BAD_VALUE,
+                            "the value must be an array of %zu numbers", n->count);
     }
     return status;
 }
@@ -273,7 +274,7 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
          i != HE_NONE && status == HE_OK; i = he_json_after(json, list, i)) {
         status = he_json_type(json, i) == '{'
                      ? he_ids_add(&scenes, i, err)
-                     : he_json_fail(json, i, err, HE_BAD_VALUE, "this is not an object");
+                     : he_json_fail(json, i, err, HE_BAD_VALUE, "a scene must be an object");
     }
     if (status == HE_OK && chosen != HE_NONE) {
         status = he_gltf_item(asset, &scenes, chosen, "scene", out, err);

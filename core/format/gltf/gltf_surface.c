@@ -380,7 +380,7 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
          i = he_json_after(json, primitives, i)) {
         status = he_json_type(json, i) == '{'
                      ? he_gltf_add_primitive(surface, i, name, frame, err)
-                     : he_json_fail(json, i, err, HE_BAD_VALUE, "this is not an object");
+                     : he_json_fail(json, i, err, HE_BAD_VALUE, "the value is not an object");
     }
     return status;
 }

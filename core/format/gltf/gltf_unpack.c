@@ -82,8 +82,8 @@ static he_status find_word(const he_gltf *asset, uint32_t object, const choice *
     }
     return value == HE_NONE
                ? he_json_fail(json, object, err, HE_BAD_VALUE, "'%s' is missing", c->name)
-               : he_json_fail(json, value, err, HE_UNSUPPORTED, "this %s is not supported",
-                              c->name);
+               : he_json_fail(json, value, err, HE_UNSUPPORTED,
+                              "this value of \"%s\" is not supported", c->name);
 }
 
 static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_stream *out,

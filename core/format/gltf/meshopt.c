@@ -25,7 +25,7 @@ const char *he_meshopt_fits(const he_meshopt_stream *s)
                    : s->stride != 2 && s->stride != 4) {
         return attributes
                    ? "byteStride must be a multiple of 4, from 4 to 256, in the mode ATTRIBUTES"
-                   : "byteStride must be 2 or 4 in this mode";
+                   : "byteStride must be 2 or 4 in the modes TRIANGLES and INDICES";
     }
     if (s->mode == HE_MESHOPT_TRIANGLES && s->count % 3 != 0) {
         return "count must be a multiple of 3 in the mode TRIANGLES";
@@ -35,7 +35,8 @@ const char *he_meshopt_fits(const he_meshopt_stream *s)
     }
     if ((s->filter == HE_MESHOPT_OCTAHEDRAL && s->stride != 4 && s->stride != 8) ||
         (s->filter == HE_MESHOPT_QUATERNION && s->stride != 8)) {
-        return "the filter needs another byteStride: 4 or 8 for OCTAHEDRAL, 8 for QUATERNION";
+        return "byteStride must be 4 or 8 for the filter OCTAHEDRAL, and 8 for the filter "
+               "QUATERNION";
     }
     return NULL;
 }

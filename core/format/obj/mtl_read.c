@@ -313,7 +313,7 @@ he_status he_mtl_read(const char *bytes, size_t n, he_import *into, he_error *er
     }
     if (status == HE_OK && l.understood == 0 && l.first != 0) {
         status = he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, l.first,
-                            "this is not a line of a material library");
+                            "this line cannot be part of a material library");
     }
     if (status == HE_OK) {
         status = end_material(&l, err);

@@ -157,7 +157,7 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
     char text[40];
     he_quote(begin, *p, text, sizeof text);
     return he_line_fail(err, HE_BAD_INDEX, line, begin,
-                        "there is no %s %s: there were %zu before this line", what, text, count);
+                        "there is no %s %s: the file had %zu before this line", what, text, count);
 }
 
 /* Warns about the index of a texture coordinate or normal that does not exist. The corner then has
@@ -461,8 +461,8 @@ static he_status check_indices(obj *o, he_error *err)
             c++;
         }
         return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line_of(o, c),
-                          "there is no vertex %u: the file has %zu", soup->corners[c] + 1,
-                          soup->vertex_count);
+                          "a face uses vertex %u, but the file has only %zu vertices",
+                          soup->corners[c] + 1, soup->vertex_count);
     }
     check_values(o, &o->uv);
     check_values(o, &o->normal);
@@ -587,7 +587,7 @@ static he_status obj_finish(void *state, he_error *err)
     if (nothing && (o->unknown != 0 || o->last_line == 0)) {
         uint64_t line = o->unknown != 0 ? o->unknown : 1;
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, line,
-                          "not an OBJ file: it has no vertices");
+                          "not an OBJ file: no line of it is a vertex");
     }
     note_partial(o, o->uv.named, soup->corner_count, "corners_without_uv",
                  "set to 0: corners without a texture coordinate");

@@ -306,7 +306,7 @@ he_status he_off_binary_finish(he_off_binary *binary, he_error *err)
     switch (binary->part) {
     case HE_OFF_COUNTS:
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, binary->offset,
-                          "the file ends before its counts");
+                          "the file ends before its counts of vertices, faces and edges");
     case HE_OFF_VERTEX:
         return too_short(binary, "vertices", soup->vertex_count, binary->vertices, err);
     case HE_OFF_DEGREE:

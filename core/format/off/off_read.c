@@ -92,7 +92,8 @@ static he_status end_binary_header(const he_line *line, const char **p, he_error
     *p = he_skip_blanks(he_token_end(*p, line->end), line->end);
     return he_at_end(*p, line->end)
                ? HE_OK
-               : he_token_fail(err, HE_SYNTAX, line, *p, "is not allowed after BINARY on its line");
+               : he_token_fail(err, HE_SYNTAX, line, *p,
+                               "is not allowed on the line of the word BINARY");
 }
 
 static he_status read_header(off *o, const he_line *line, const char **p, he_error *err)
@@ -110,7 +111,7 @@ static he_status read_header(off *o, const he_line *line, const char **p, he_err
     if (flags == -2) {
         return he_token_fail(
             err, HE_UNSUPPORTED, line, *p,
-            "is not supported: this header says that the points do not have three dimensions");
+            "is not supported: this header declares points that do not have three dimensions");
     }
     o->has = (unsigned)flags;
     o->is_binary = he_token_end(rest, line->end) - rest == 6 && memcmp(rest, "BINARY", 6) == 0;
@@ -495,7 +496,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
             break;
         case DONE:
             return he_token_fail(err, HE_SYNTAX, line, p,
-                                 "comes after the last face that the header declares");
+                                 "comes after the last face: the header declares no more faces");
         }
         p = he_skip_blanks(p, line->end);
     }
@@ -601,7 +602,7 @@ static he_status finish(off *o, he_error *err)
     case VERTEX_COUNT:
     case FACE_COUNT:
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, last_line,
-                          "the file ends before its counts");
+                          "the file ends before its counts of vertices, faces and edges");
     case EDGE_COUNT:
         begin_vertices(o);
         break;

@@ -77,9 +77,10 @@ static he_status refuse(he_error *err, he_status status, const he_line *line, wo
 static he_status require_end(const he_line *line, const char *p, he_error *err)
 {
     word w = next_word(line, &p);
-    return w.begin == w.end ? HE_OK
-                            : refuse(err, HE_SYNTAX, line, w,
-                                     "is an extra word that this line of the header must not have");
+    return w.begin == w.end
+               ? HE_OK
+               : refuse(err, HE_SYNTAX, line, w,
+                        "is an extra word, which this line of the header must not have");
 }
 
 static he_status read_format(he_ply_header *h, const he_line *line, const char *p, he_error *err)
@@ -102,7 +103,7 @@ static he_status read_format(he_ply_header *h, const he_line *line, const char *
     }
     if (!is(version, "1.0")) {
         return refuse(err, HE_UNSUPPORTED, line, version,
-                      "is not version 1.0, the only one supported");
+                      "is not version 1.0, which is the only supported version");
     }
     h->encoding = encoding;
     return require_end(line, p, err);
@@ -120,7 +121,7 @@ static he_status read_element(he_ply_header *h, const he_line *line, const char 
     bool held = is(name, "vertex") || is(name, "face");
     if (status != HE_OK || count > (held ? HE_MAX_ROWS : MOST_ROWS)) {
         return refuse(err, HE_BAD_VALUE, line, rows,
-                      "is a number of rows that is more than a mesh can have");
+                      "is a number of rows larger than a mesh can have");
     }
     if (h->count == HE_PLY_ELEMENTS) {
         return he_line_fail(err, HE_LIMIT, line, line->begin,
@@ -170,7 +171,7 @@ static he_status read_types(he_ply_property *property, const he_line *line, cons
     he_status status = read_type(line, w, &property->count, err);
     if (status == HE_OK && property->count >= HE_PLY_FLOAT) {
         return refuse(err, HE_SYNTAX, line, w,
-                      "is not an integer type, which the count of a list needs");
+                      "is not an integer type, but the count of a list needs one");
     }
     return status == HE_OK ? read_type(line, next_word(line, p), &property->type, err) : status;
 }

@@ -81,7 +81,7 @@ static he_status read_list(ply *o, const he_line *line, const char **p, size_t k
     bool ignored = he_ply_rows_role(&o->rows, k) == HE_PLY_IGNORED;
     int64_t count = 0, value = 0;
     he_status status = read_whole(
-        line, p, "is not a whole number, which the count of a list must be", &count, err);
+        line, p, "is not a whole number, but the count of a list must be one", &count, err);
     if (status == HE_OK) {
         status = he_ply_rows_list(&o->rows, k, count, err);
     }

@@ -224,8 +224,8 @@ static he_status take_header(stl *o, const unsigned char *bytes, he_error *err)
     o->count = o->left = word_at(bytes + COUNT_AT);
     if (o->count > HE_MAX_ROWS) {
         return he_fail_at(err, HE_BAD_VALUE, HE_PLACE_BYTE, COUNT_AT,
-                          "not an STL file: it does not begin with \"solid\", and read as binary "
-                          "it would have %llu facets",
+                          "not an STL file: the body does not begin with \"solid\", and as a "
+                          "binary file it would have %llu facets",
                           (unsigned long long)o->count);
     }
     if (limit != 0 && o->count > limit) {
@@ -330,7 +330,8 @@ static he_status finish_binary(const stl *o, he_error *err)
 {
     if (!o->has_header) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, o->offset,
-                          "not an STL file: no \"solid\", and no binary header of %d bytes",
+                          "not an STL file: the body does not begin with \"solid\", and has no "
+                          "binary header of %d bytes",
                           HEADER);
     }
     if (o->left > 0) {

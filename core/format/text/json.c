@@ -135,7 +135,7 @@ static double number_at(const he_json *json, uint32_t value)
 he_status he_json_number(const he_json *json, uint32_t value, double *out, he_error *err)
 {
     if (he_json_type(json, value) != '0') {
-        return he_json_fail(json, value, err, HE_BAD_VALUE, "this is not a number");
+        return he_json_fail(json, value, err, HE_BAD_VALUE, "the value is not a number");
     }
     *out = number_at(json, value);
     return HE_OK;

@@ -60,19 +60,19 @@ const char *he_lexer_fault_text(const he_lexer *x)
     case HE_FAULT_MEMBER:
         return "',' or '}' is expected here";
     case HE_FAULT_FOLLOWS:
-        return "there is more text after the value";
+        return "more text follows the JSON value";
     case HE_FAULT_DEPTH:
-        return "the nesting is too deep";
+        return "the JSON is nested too deeply";
     case HE_FAULT_STRING:
         return x->wrong;
     case HE_FAULT_NUMBER:
-        return "this is not a JSON number";
+        return "the text at this place is not a JSON number";
     case HE_FAULT_NOT_FINITE:
         return "the number does not fit a double";
     case HE_FAULT_LONG_NUMBER:
-        return "the number is too long";
+        return "the number has too many characters";
     case HE_FAULT_LONG_NAME:
-        return "the name is too long";
+        return "the name of the member is too long";
     case HE_FAULT_NONE:
         break;
     }

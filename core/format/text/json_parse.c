@@ -33,7 +33,7 @@ static he_status refuse(const scan *s)
                           he_lexer_fault_text(x));
     }
     return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, x->fault_place, "JSON: %s",
-                      fault == HE_FAULT_NUMBER ? "this is not a number"
+                      fault == HE_FAULT_NUMBER ? "the text at this place is not a number"
                       : fault == HE_FAULT_ITEM || fault == HE_FAULT_MEMBER
                           ? "',' or the closing bracket is expected here"
                           : he_lexer_fault_text(x));

@@ -42,7 +42,7 @@ static size_t pass_escape(const char *at, const char *end, const char **wrong, b
         return 0;
     }
     if (at[1] != 'u') {
-        *wrong = "this escape does not exist in JSON";
+        *wrong = "JSON has no such escape sequence";
         return at[1] != '\0' && strchr("\"\\/bfnrt", at[1]) != NULL ? 2 : 0;
     }
     int unit = hex(at + 2, there < 6 ? there - 2 : 4);

@@ -218,7 +218,7 @@ static he_status refuse_nul(const he_lines *lines, he_error *err)
     if (first && lines->length < 2) {
         return he_fail_at(
             err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
-            "one of the first two bytes is zero, as in UTF-16; the text must be UTF-8");
+            "one of the first two bytes is zero, as in UTF-16 text; the text must be UTF-8");
     }
     return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, lines->number + lines->joined,
                       "the text contains a NUL byte");
