@@ -132,13 +132,14 @@ static bool add_file(srv_assets *assets, const file *from, char *message, size_t
     char *bytes = NULL;
     size_t length = (size_t)facts.st_size;
     if (snprintf(path, sizeof path, "%s%s", from->prefix, name) >= (int)sizeof path) {
-        snprintf(message, size, "the page's file name %.60s... is too long", name);
+        snprintf(message, size,
+                 "the name of the file %.60s... in the folder of the web page is too long", name);
     } else if (assets->count == SRV_ASSET_COUNT ||
                length > (size_t)SRV_ASSET_BYTES - assets->bytes) {
-        snprintf(message, size, "the page has more than %d files or %d bytes", SRV_ASSET_COUNT,
-                 SRV_ASSET_BYTES);
+        snprintf(message, size, "the folder of the web page has more than %d files or %d bytes",
+                 SRV_ASSET_COUNT, SRV_ASSET_BYTES);
     } else if ((bytes = read_all(fd, length)) == NULL || !add(assets, path, name, bytes, length)) {
-        snprintf(message, size, "the page's file %s cannot be read into memory", name);
+        snprintf(message, size, "the file %s of the web page cannot be read into memory", name);
     } else {
         ok = true;
     }
@@ -164,7 +165,7 @@ static bool load(srv_assets *assets, const char *folder, char *message, size_t s
 {
     int root = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (root < 0) {
-        snprintf(message, size, "%.200s is not a folder with the page", folder);
+        snprintf(message, size, "%.200s is not a folder with the web page", folder);
         return false;
     }
     bool ok = add_page(assets, root, "index.html", message, size);

@@ -19,20 +19,20 @@ const srv_option srv_options[] = {
     {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
      "configuration file with one option on each line, in the format of --print-config"},
     {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT|unix:PATH", 0, 0,
-     "address to listen on; port 0: any free port. unix:PATH: a Unix socket with the permissions "
-     "0660, which the daemon creates and removes"},
+     "address to listen on. With port 0 the system chooses a free port. unix:PATH: a Unix socket "
+     "with the permissions 0660, which the daemon creates and removes"},
     {"insecure", SRV_FLAG, MEMBER(insecure), "0", NULL, 0, 0,
-     "allow --listen with an address that other machines can reach, although requests need no "
+     "allow --listen to use an address that other machines can reach, although requests need no "
      "token"},
     {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
      "file of tokens and their roles, one on each line, as --new-token prints them. Without this "
      "file every client may do everything. SIGHUP and POST /v1/admin/reload read it again"},
     {"token-requests", SRV_COUNT, LIMIT(token_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
-     "requests per second for each token; 0: no limit. Further requests are answered 429. The line "
-     "of a token in the file can set another limit (here requests=N)"},
+     "requests per second for each token; 0: no limit. Further requests are answered 429. The "
+     "setting requests=N in a token's line of the file of tokens overrides this"},
     {"token-bytes", SRV_BYTES, LIMIT(token_limits, BYTES), "0", "BYTES", 0, API_LIMIT_MOST_BYTES,
-     "bytes per second for each token, of request bodies and answers together; 0: no limit. When "
-     "they are used up, requests are answered 429"},
+     "bytes per second for each token, of request bodies and answers together; 0: no limit. "
+     "Requests that come when the bytes are used up are answered 429"},
     {"token-jobs", SRV_COUNT, LIMIT(token_limits, JOBS), "0", "N", 0, API_LIMIT_MOST,
      "waiting and running jobs of each token; 0: no limit. Further jobs are answered 429"},
     {"token-meshes", SRV_COUNT, LIMIT(token_limits, MESHES), "0", "N", 0, API_LIMIT_MOST,
@@ -42,19 +42,19 @@ const srv_option srv_options[] = {
      "memory that the meshes created by each token may take together; 0: no limit. Changes that "
      "need more are answered 507"},
     {"address-requests", SRV_COUNT, LIMIT(address_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
-     "requests per second from each IP address (IPv6: each /64 network), except requests with a "
-     "valid token; 0: no limit. Further requests are answered 429"},
+     "requests per second from each IP address (IPv6: each /64 network); 0: no limit. Further "
+     "requests are answered 429. Requests with a valid token do not count"},
     {"address-bytes", SRV_BYTES, LIMIT(address_limits, BYTES), "0", "BYTES", 0,
      API_LIMIT_MOST_BYTES,
      "bytes per second for each IP address (IPv6: each /64 network), of request bodies and answers "
-     "together, except for requests with a valid token; 0: no limit. When they are used up, "
-     "requests are answered 429"},
+     "together; 0: no limit. Requests that come when the bytes are used up are answered 429. "
+     "Requests with a valid token do not count"},
     {"address-connections", SRV_COUNT, LIMIT(address_limits, CONNECTIONS), "0", "N", 0, 1000000,
      "open connections from each IP address (IPv6: each /64 network); 0: no limit. Further "
      "connections are answered 429 and closed"},
     {"limit-burst", SRV_COUNT, MEMBER(limit_burst), "10", "SECONDS", 1, API_BURST_MOST,
-     "burst of the limits per second: after a pause, a client may at once use as many requests and "
-     "bytes as its limits allow in this many seconds"},
+     "size of a burst: after a pause, a client may immediately use as many requests and bytes as "
+     "its limits per second allow in this many seconds"},
     {"tls-cert", SRV_TEXT, MEMBER(tls_cert), "", "FILE", 0, 0,
      "accept only HTTPS, with the certificate in this PEM file, followed by its chain. SIGHUP and "
      "POST /v1/admin/reload read it again"},
@@ -79,21 +79,21 @@ const srv_option srv_options[] = {
     {"samples", SRV_FLAG, MEMBER(samples), "0", NULL, 0, 0,
      "create a few sample meshes if the store is new"},
     {"log", SRV_CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
-     "access: log a line for each request on stderr; off: do not; auto: only if stderr is not a "
-     "terminal"},
+     "access: log a line for each request on stderr; off: log no requests; auto: log requests only "
+     "if stderr is not a terminal"},
     {"log-format", SRV_CHOICE, MEMBER(log_format), "auto", "auto|text|json", 0, 0,
      "format of the log on stderr. auto: text on a terminal, else json. The line that says where "
      "hedged listens is always plain text"},
     {"log-level", SRV_CHOICE, MEMBER(log_level), "info", "error|warning|info|debug", 0, 0,
-     "least severe messages that are logged; the lines of --log do not depend on it"},
+     "log only messages that are at least this severe; the lines of --log do not depend on it"},
     {"slow", SRV_COUNT, MEMBER(slow), "0", "MS", 0, 86400000,
      "log each request that takes longer than this many milliseconds, with the parts of its time; "
      "0: never"},
     {"max-upload", SRV_BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
      "largest mesh document or file that can be uploaded, compressed or decompressed"},
     {"memory-budget", SRV_BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
-     "memory that the daemon may use; 0: three quarters of the machine's memory, or of the lowest "
-     "limit of its control groups"},
+     "memory that the daemon may use; 0: three quarters of the machine's memory or, if a control "
+     "group of the daemon has a lower limit, of that limit"},
     {"undo-budget", SRV_BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
      "memory for the undo history of each mesh; when it is used up, the oldest edits are dropped; "
      "0: no edit can be undone"},
@@ -103,15 +103,15 @@ const srv_option srv_options[] = {
     {"workers", SRV_COUNT, MEMBER(workers), "0", "N", 0, 64,
      "threads that serve connections; 0: one for each core"},
     {"jobs", SRV_COUNT, MEMBER(jobs), "0", "N", 0, 64,
-     "at most N jobs and at most N long reads (checks, queries, exports) run at the same time, and "
-     "N + 1 of both together; 0: N is the number of cores, but at least 2. Another thread is "
-     "reserved for imports and edits. A single job can use all cores"},
+     "at most N jobs and at most N long reads (checks, queries, exports) run at the same time, but "
+     "together at most N + 1 of them; 0: N is the number of cores, but at least 2. Another thread "
+     "is reserved for imports and edits. A single job can use all cores"},
     {"job-queue", SRV_COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
      "at most N jobs, at most N long reads, and at most N imports and edits wait for a thread; "
      "further requests are answered 503"},
     {"read-seconds", SRV_COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
      "longest time that a check, a query, a traversal or an export may compute while its client "
-     "waits; after this time it is answered 503. Jobs have no such limit"},
+     "waits; after this time the request is answered 503. Jobs have no such limit"},
     {"max-connections", SRV_COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
      "open connections of all clients; further connections are answered 503"},
     {"max-listeners", SRV_COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,
@@ -125,7 +125,8 @@ const srv_option srv_options[] = {
     {"header-timeout", SRV_COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
      "time in which the headers of a request, or a TLS handshake, must be complete"},
     {"body-grace", SRV_COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
-     "time after which --min-rate applies to a body, and over which it is measured for an answer"},
+     "time after which --min-rate applies to the body of a request; for an answer, the time over "
+     "which its rate is measured"},
     {"min-rate", SRV_BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
      "bytes per second that a client must send or receive on average, else its connection is "
      "closed; 0: no minimum"},
@@ -136,17 +137,17 @@ const srv_option srv_options[] = {
     {"restore", SRV_COMMAND, MEMBER(restore), "", "FILE", 0, 0,
      "replace the store by the backup FILE and exit; no daemon may be using the store"},
     {"verify", SRV_ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
-     "read every mesh of the store, or of the backup FILE, print what is damaged, and exit: status "
-     "0 if nothing is"},
+     "read every mesh of the store, or of the backup FILE, print what is damaged, and exit with "
+     "status 0 if nothing is damaged"},
     {"dump", SRV_COMMAND, MEMBER(dump), "", "DIR", 0, 0,
      "write every mesh of the store to a GLB file in DIR, a damaged mesh at its last undamaged "
      "revision, and exit"},
     {"new-token", SRV_ACTION, MEMBER(new_token), "0", "[NAME [ROLE]]", 0, 0,
-     "print a new token, which is stored nowhere, and its line for the file of --tokens, and exit. "
-     "ROLE is read (if not given), write, admin or metrics"},
+     "print a new token, which is stored nowhere else, and its line for the file of --tokens, and "
+     "exit. ROLE is read (if not given), write, admin or metrics"},
     {"healthcheck", SRV_ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
-     "request /livez from a running daemon, at URL or at the address of --listen, and exit: status "
-     "0 if it answers"},
+     "request /livez from a running daemon, at URL or at the address of --listen, and exit with "
+     "status 0 if the daemon answers"},
     {"print-config", SRV_ACTION, MEMBER(print_config), "0", NULL, 0, 0,
      "print the options in effect and exit"},
     {"version", SRV_ACTION, MEMBER(version), "0", NULL, 0, 0,

@@ -191,7 +191,7 @@ static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *co
 {
     (void)context;
     printf("%s: %s, revision %" PRIu64 ", %u vertices, %u faces\n", info->id,
-           whole ? "whole" : "only an earlier state is undamaged", info->revision,
+           whole ? "whole" : "only an earlier state of the mesh is undamaged", info->revision,
            (unsigned)he_mesh_vertices(content), (unsigned)he_mesh_faces(content));
     return true;
 }

@@ -241,8 +241,8 @@ static void check_vertices(checker *c)
 static void check_count(checker *c, const char *what, uint32_t stored, uint32_t counted)
 {
     if (stored != counted) {
-        broken(c, 12, (he_element){HE_MESH_KIND, 0}, "the mesh counts %u %s, but has %u", stored,
-               what, counted);
+        broken(c, 12, (he_element){HE_MESH_KIND, 0},
+               "the counter of the mesh says %u %s, but the mesh has %u", stored, what, counted);
     }
 }
 

@@ -41,7 +41,7 @@ he_status he_column_new(const he_column_schema *schema, he_column **out, he_erro
     uint32_t components = schema->components;
     if (length == 0 || length >= HE_COLUMN_NAME) {
         return he_fail_plain(err, HE_BAD_VALUE,
-                             "an attribute's name must have 1 to %d bytes, and this one has %zu",
+                             "an attribute's name must have 1 to %d bytes, but this name has %zu",
                              HE_COLUMN_NAME - 1, length);
     }
     if (components == 0 || components > HE_COLUMN_COMPONENTS) {

@@ -58,7 +58,7 @@ static he_status check_name(const char *name, size_t length, he_error *err)
 {
     if (length == 0 || length > HE_MATERIAL_NAME) {
         return he_fail_plain(err, HE_BAD_VALUE,
-                             "a material's name must have 1 to %d bytes, and this one has %zu",
+                             "a material's name must have 1 to %d bytes, but this name has %zu",
                              HE_MATERIAL_NAME, length);
     }
     for (size_t i = 0; i < length; i++) {

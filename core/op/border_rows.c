@@ -70,8 +70,8 @@ static const char *const keeps[] = {"mean", "a", "b", NULL};
 const he_op he_border_rows[] = {
     {
         .name = "edge_delete",
-        .doc = "Delete edges and the faces beside them, and then the edges and vertices that have "
-               "no face left.",
+        .doc = "Delete edges and the faces beside them, and then the other edges and the vertices "
+               "that have no face left.",
         .params = {[EDGE_DELETE_EDGES] = {.name = "edge",
                                           .plural = "edges",
                                           .type = HE_PARAM_ELEMENTS,
@@ -90,20 +90,18 @@ const he_op he_border_rows[] = {
     },
     {
         .name = "edge_cut",
-        .doc = "Cut the mesh open along edges. Each becomes two boundary edges.",
-        .params =
-            {[EDGE_CUT_EDGES] =
-                 {.name = "edge",
-                  .plural = "edges",
-                  .type = HE_PARAM_ELEMENTS,
-                  .kind = HE_EDGE,
-                  .flags = HE_REQUIRED | HE_WALKS,
-                  .doc =
-                      "The edges to cut. Each keeps its id on the side of its first half-edge."}},
+        .doc = "Cut the mesh open along edges. Each cut edge becomes two boundary edges.",
+        .params = {[EDGE_CUT_EDGES] = {.name = "edge",
+                                       .plural = "edges",
+                                       .type = HE_PARAM_ELEMENTS,
+                                       .kind = HE_EDGE,
+                                       .flags = HE_REQUIRED | HE_WALKS,
+                                       .doc = "The edges to cut. Each edge keeps its id on the "
+                                              "side of its first half-edge."}},
         .results =
-            {[EDGE_CUT_OUT_VERTICES] =
-                 {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                  "The new vertices, in the same places as those that they were split from."},
+            {[EDGE_CUT_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                        "The new vertices; each is in the same place as the vertex "
+                                        "that it was split from."},
              [EDGE_CUT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
                                      "The new edges, on the other side of the cut, in ascending "
                                      "order of the cut edges."}},
@@ -115,28 +113,30 @@ const he_op he_border_rows[] = {
     },
     {
         .name = "edge_weld",
-        .doc = "Merge two boundary edges. The inverse of edge_cut.",
-        .params = {[EDGE_WELD_A] = {.name = "a",
-                                    .type = HE_PARAM_ELEMENT,
-                                    .kind = HE_EDGE,
-                                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                                    .doc = "The edge that stays, with its two vertices."},
-                   [EDGE_WELD_B] = {.name = "b",
-                                    .type = HE_PARAM_ELEMENT,
-                                    .kind = HE_EDGE,
-                                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                                    .doc =
-                                        "The edge that is merged into `a`, with its two vertices."},
-                   [EDGE_WELD_KEEP] = {.name = "keep",
-                                       .type = HE_PARAM_CHOICE,
-                                       .choices = keeps,
-                                       .doc = "Where the merged vertices are placed: midway, or "
-                                              "where the vertices of a or b were."}},
+        .doc = "Merge two boundary edges. This is the inverse of edge_cut.",
+        .params =
+            {[EDGE_WELD_A] = {.name = "a",
+                              .type = HE_PARAM_ELEMENT,
+                              .kind = HE_EDGE,
+                              .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                              .doc = "The edge that stays, with its two vertices."},
+             [EDGE_WELD_B] = {.name = "b",
+                              .type = HE_PARAM_ELEMENT,
+                              .kind = HE_EDGE,
+                              .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                              .doc = "The edge that is merged into `a`, with its two vertices."},
+             [EDGE_WELD_KEEP] = {.name = "keep",
+                                 .type = HE_PARAM_CHOICE,
+                                 .choices = keeps,
+                                 .doc =
+                                     "Where the merged vertices are placed: midway between the old "
+                                     "vertices, or where the vertices of `a` or of `b` were."}},
         .results = {[EDGE_WELD_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
                                             "The edge that stays."},
-                    [EDGE_WELD_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
-                                             "How many vertex values became corner values, because "
-                                             "the merged vertices had different values."}},
+                    [EDGE_WELD_OUT_MOVED] =
+                        {"moved", HE_RESULT_NUMBER, 0,
+                         "How many attribute values of vertices became values of corners, because "
+                         "the merged vertices had different values."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
                      HE_REPEATED_CORNER, HE_DOUBLED_EDGE, HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, -1, 0},
@@ -150,8 +150,9 @@ const he_op he_border_rows[] = {
                                            .type = HE_PARAM_ELEMENTS,
                                            .kind = HE_EDGE,
                                            .flags = HE_REQUIRED,
-                                           .doc = "The edges to extrude. The quads of edges that "
-                                                  "follow each other share a side."},
+                                           .doc =
+                                               "The edges to extrude. If one edge follows another "
+                                               "along the boundary, their quads share a side."},
                    [EDGE_EXTRUDE_BY] = {.name = "by",
                                         .type = HE_PARAM_POINT,
                                         .flags = HE_REQUIRED,

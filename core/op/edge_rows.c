@@ -117,21 +117,20 @@ const he_op he_edge_rows[] = {
     {
         .name = "edge_bisect",
         .doc = "Insert a vertex into an edge.",
-        .params = {[EDGE_BISECT_EDGE] =
-                       {.name = "edge",
-                        .type = HE_PARAM_ELEMENT,
-                        .kind = HE_EDGE,
-                        .flags = HE_REQUIRED,
-                        .doc = "The edge to divide. The part at the origin of its first half-edge "
-                               "keeps the id."},
+        .params = {[EDGE_BISECT_EDGE] = {.name = "edge",
+                                         .type = HE_PARAM_ELEMENT,
+                                         .kind = HE_EDGE,
+                                         .flags = HE_REQUIRED,
+                                         .doc = "The edge to divide. The part at the origin of its "
+                                                "first half-edge keeps the id of the edge."},
                    [EDGE_BISECT_T] = {.name = "t",
                                       .type = HE_PARAM_NUMBER,
                                       .flags = HE_RANGE | HE_EXCLUSIVE,
                                       .min = 0,
                                       .max = 1,
                                       .fallback = 0.5,
-                                      .doc = "Where on the edge: 0 = the origin of its first "
-                                             "half-edge, 1 = the other end."}},
+                                      .doc = "Where on the edge the new vertex is placed: 0 = the "
+                                             "origin of its first half-edge, 1 = the other end."}},
         .results = {[EDGE_BISECT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                                 "The new vertex."},
                     [EDGE_BISECT_OUT_EDGE] =
@@ -143,14 +142,16 @@ const he_op he_edge_rows[] = {
     },
     {
         .name = "edge_join",
-        .doc = "Remove a vertex of degree two and join its two edges. The inverse of edge_bisect.",
+        .doc = "Why the operation stopped: the target was reached, max_error allows no more "
+               "collapses, or no edge can be collapsed any more.",
         .params = {[EDGE_JOIN_VERTEX] = {.name = "vertex",
                                          .type = HE_PARAM_ELEMENT,
                                          .kind = HE_VERTEX,
                                          .flags = HE_REQUIRED | HE_WALKS,
                                          .doc = "The vertex to remove."}},
-        .results = {[EDGE_JOIN_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
-                                            "The edge that stays."}},
+        .results =
+            {[EDGE_JOIN_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
+                                     "The edge that stays; the other edge is merged into it."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_WRONG_DEGREE, HE_TRIANGLE_SIDE,
                      HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
         .change = {-1, -1, 0},
@@ -158,27 +159,29 @@ const he_op he_edge_rows[] = {
     },
     {
         .name = "edge_split",
-        .doc = "Insert a vertex into an edge and connect it to a corner of each face beside it.",
+        .doc =
+            "Insert a vertex into an edge and connect it to a corner of each face beside the edge.",
         .params = {[EDGE_SPLIT_EDGE] = {.name = "edge",
                                         .type = HE_PARAM_ELEMENT,
                                         .kind = HE_EDGE,
                                         .flags = HE_REQUIRED,
                                         .doc = "The edge to split. The part at the origin of its "
-                                               "first half-edge keeps the id."},
+                                               "first half-edge keeps the id of the edge."},
                    [EDGE_SPLIT_T] = {.name = "t",
                                      .type = HE_PARAM_NUMBER,
                                      .flags = HE_RANGE | HE_EXCLUSIVE,
                                      .min = 0,
                                      .max = 1,
                                      .fallback = 0.5,
-                                     .doc = "Where on the edge: 0 = the origin of its first "
-                                            "half-edge, 1 = the other end."}},
-        .results = {[EDGE_SPLIT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
-                                               "The new vertex."},
-                    [EDGE_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                              "The new part of the edge, then the diagonals."},
-                    [EDGE_SPLIT_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                              "The new faces, the left one first."}},
+                                     .doc = "Where on the edge the new vertex is placed: 0 = the "
+                                            "origin of its first half-edge, 1 = the other end."}},
+        .results =
+            {[EDGE_SPLIT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
+             [EDGE_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                       "First the new part of the edge, then the new diagonals."},
+             [EDGE_SPLIT_OUT_FACES] =
+                 {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                  "The new faces, first the one to the left of the edge's first half-edge."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {1, HE_VARIES, HE_VARIES},
         .run = run_edge_split,
@@ -186,12 +189,12 @@ const he_op he_edge_rows[] = {
     {
         .name = "edge_flip",
         .doc = "Flip an edge: turn it counter-clockwise inside its two faces.",
-        .params = {[EDGE_FLIP_EDGE] =
-                       {.name = "edge",
-                        .type = HE_PARAM_ELEMENT,
-                        .kind = HE_EDGE,
-                        .flags = HE_REQUIRED,
-                        .doc = "The edge to flip. Each end moves to the next corner of its face."}},
+        .params = {[EDGE_FLIP_EDGE] = {.name = "edge",
+                                       .type = HE_PARAM_ELEMENT,
+                                       .kind = HE_EDGE,
+                                       .flags = HE_REQUIRED,
+                                       .doc = "The edge to flip. Each of its ends moves to the "
+                                              "next corner, counter-clockwise."}},
         .results = {[EDGE_FLIP_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
                                             "The edge, which keeps its id."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_SAME_ENDS,
@@ -211,14 +214,13 @@ const he_op he_edge_rows[] = {
                         .group = 'e',
                         .doc =
                             "The half-edge to collapse. Its origin is removed, its target stays."},
-                   [EDGE_COLLAPSE_EDGE] =
-                       {.name = "edge",
-                        .type = HE_PARAM_ELEMENT,
-                        .kind = HE_EDGE,
-                        .flags =
-                            HE_REQUIRED | HE_REACHES | HE_WALKS,
-                        .group = 'e',
-                        .doc = "The edge to collapse, which means its first half-edge."},
+                   [EDGE_COLLAPSE_EDGE] = {.name = "edge",
+                                           .type = HE_PARAM_ELEMENT,
+                                           .kind = HE_EDGE,
+                                           .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                                           .group = 'e',
+                                           .doc = "The edge to collapse, given instead of "
+                                                  "`halfedge`; it stands for its first half-edge."},
                    [EDGE_COLLAPSE_T] =
                        {.name = "t",
                         .type = HE_PARAM_NUMBER,
@@ -229,10 +231,11 @@ const he_op he_edge_rows[] = {
                         .fallback = 0.5,
                         .doc = "Where the vertex is placed: 0 = origin, 1 = target. Default: the "
                                "midpoint, unless `to` is given."},
-                   [EDGE_COLLAPSE_TO] = {.name = "to",
-                                         .type = HE_PARAM_POINT,
-                                         .group = 'p',
-                                         .doc = "The point where the vertex is placed instead."}},
+                   [EDGE_COLLAPSE_TO] =
+                       {.name = "to",
+                        .type = HE_PARAM_POINT,
+                        .group = 'p',
+                        .doc = "The point where the vertex is placed, given instead of `t`."}},
         .results = {[EDGE_COLLAPSE_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                                   "The vertex that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_LINK_CONDITION, HE_FEATURE_EDGE,
@@ -259,7 +262,7 @@ const he_op he_edge_rows[] = {
              [EDGE_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                           "The new vertices, in the order of the new face."},
              [EDGE_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                       "The sides of the new face, in the order of its corners."}},
+                                       "The edges of the new face, in the order of its corners."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_BAD_VALUE,
                      HE_LOW_DEGREE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 1},

@@ -149,12 +149,13 @@ static const char *const fill_methods[] = {"polygon", "fan", "triangulate", NULL
 const he_op he_face_rows[] = {
     {
         .name = "face_add",
-        .doc = "Add a face between existing vertices, and the edges that are missing.",
-        .params = {[FACE_ADD_VERTICES] = {.name = "vertices",
-                                          .type = HE_PARAM_CYCLE,
-                                          .kind = HE_VERTEX,
-                                          .flags = HE_REQUIRED | HE_WALKS,
-                                          .doc = "The corners, counter-clockwise."}},
+        .doc = "Add a face between existing vertices. Missing edges between them are made.",
+        .params = {[FACE_ADD_VERTICES] =
+                       {.name = "vertices",
+                        .type = HE_PARAM_CYCLE,
+                        .kind = HE_VERTEX,
+                        .flags = HE_REQUIRED | HE_WALKS,
+                        .doc = "The vertices at the corners of the face, counter-clockwise."}},
         .results =
             {[FACE_ADD_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
              [FACE_ADD_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
@@ -192,7 +193,7 @@ const he_op he_face_rows[] = {
                   .type = HE_PARAM_ELEMENT,
                   .kind = HE_FACE,
                   .flags = HE_REQUIRED | HE_WALKS,
-                  .doc = "The face to cut. The part left of the diagonal keeps the id."},
+                  .doc = "The face to cut. The part to the left of the diagonal keeps the id."},
              [FACE_SPLIT_FROM] = {.name = "from",
                                   .type = HE_PARAM_ELEMENT,
                                   .kind = HE_VERTEX,
@@ -221,7 +222,7 @@ const he_op he_face_rows[] = {
                                                 "half-edge of the face that leaves it."}},
         .results = {[FACE_SPLIT_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE, "The diagonal."},
                     [FACE_SPLIT_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE,
-                                             "The new face, right of the diagonal."}},
+                                             "The new face, to the right of the diagonal."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_A_CORNER, HE_SAME_CORNER,
                      HE_ADJACENT_CORNERS, HE_DOUBLED_EDGE},
         .change = {0, 1, 1},
@@ -229,7 +230,7 @@ const he_op he_face_rows[] = {
     },
     {
         .name = "face_join",
-        .doc = "Delete an edge and merge its two faces. The inverse of face_split.",
+        .doc = "Delete an edge and merge its two faces. This is the inverse of face_split.",
         .params = {[FACE_JOIN_EDGE] =
                        {.name = "edge",
                         .type = HE_PARAM_ELEMENT,
@@ -263,9 +264,9 @@ const he_op he_face_rows[] = {
              [FACE_POKE_OUT_EDGES] =
                  {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
                   "The new edges, beginning at the corner of the stored half-edge."},
-             [FACE_POKE_OUT_FACES] =
-                 {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                  "The new faces, counter-clockwise after the triangle that keeps the id."}},
+             [FACE_POKE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                      "The new faces, counter-clockwise, beginning after the "
+                                      "triangle that keeps the id."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
         .change = {1, HE_VARIES, HE_VARIES},
         .run = run_face_poke,
@@ -278,17 +279,17 @@ const he_op he_face_rows[] = {
                                                .type = HE_PARAM_ELEMENTS,
                                                .kind = HE_FACE,
                                                .flags = HE_REQUIRED,
-                                               .doc = "The faces to cut. In each, the triangle at "
-                                                      "its stored half-edge keeps the id."}},
-        .results =
-            {[FACE_TRIANGULATE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                             "The diagonals."},
-             [FACE_TRIANGULATE_OUT_FACES] = {"faces",
-                                             HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
-             [FACE_TRIANGULATE_OUT_DEGENERATE] =
-                 {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
-                  "Faces in which a triangle has no area or is turned over, as seen in the "
-                  "plane of the face."}},
+                                               .doc =
+                                                   "The faces to cut. In each face, the triangle "
+                                                   "at its stored half-edge keeps the id."}},
+        .results = {[FACE_TRIANGULATE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                                    "The diagonals."},
+                    [FACE_TRIANGULATE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                                    "The new faces."},
+                    [FACE_TRIANGULATE_OUT_DEGENERATE] =
+                        {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
+                         "The faces in which a triangle has no area or is turned over, as seen in "
+                         "the plane of the face."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .pace = 40,
@@ -306,8 +307,8 @@ const he_op he_face_rows[] = {
                        {.name = "method",
                         .type = HE_PARAM_CHOICE,
                         .choices = fill_methods,
-                        .doc = "Fill it with one face, with triangles around a new vertex, or with "
-                               "triangles between its corners."}},
+                        .doc = "How the hole is filled: with one face, with triangles around a new "
+                               "vertex, or with triangles between its corners."}},
         .results = {[HOLE_FILL_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                               "The new vertex, or null if there is none."},
                     [HOLE_FILL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,

@@ -63,8 +63,8 @@ static he_status run_loop_split(he_mesh *m, const he_arg *args, he_results *out,
 const he_op he_loop_rows[] = {
     {
         .name = "loop_bridge",
-        .doc = "Join two holes by a strip of faces: quads if both have the same number of edges, "
-               "otherwise triangles.",
+        .doc = "Join two holes by a strip of faces, which are quads if both holes have the same "
+               "number of edges, otherwise triangles.",
         .params = {[LOOP_BRIDGE_A] = {.name = "a",
                                       .type = HE_PARAM_ELEMENT,
                                       .kind = HE_HALFEDGE,
@@ -77,12 +77,12 @@ const he_op he_loop_rows[] = {
                         .flags = HE_REQUIRED | HE_WALKS,
                         .doc = "A boundary half-edge of the other hole. The positions decide which "
                                "corners are joined."}},
-        .results =
-            {[LOOP_BRIDGE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                        "The new edges, beginning at the origin of `a`."},
-             [LOOP_BRIDGE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                        "The new faces: each lies between the entry of `edges` "
-                                        "with the index of the face and the next entry."}},
+        .results = {[LOOP_BRIDGE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                               "The new edges, beginning at the origin of `a`."},
+                    [LOOP_BRIDGE_OUT_FACES] =
+                        {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                         "The new faces: face i lies between entries i and i + 1 of `edges`, and "
+                         "the last face between the last entry and the first."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_SAME_LOOP,
                      HE_SHARED_VERTEX, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
@@ -90,25 +90,24 @@ const he_op he_loop_rows[] = {
     },
     {
         .name = "loop_join",
-        .doc = "Sew two loops with the same number of edges together. Each is the outline of a "
-               "face, which is removed, or of a hole.",
+        .doc = "Sew together two loops with the same number of edges. Each loop is the outline of "
+               "a hole, or of a face, which is removed.",
         .params = {[LOOP_JOIN_A] = {.name = "a",
                                     .type = HE_PARAM_ELEMENT,
                                     .kind = HE_HALFEDGE,
                                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
                                     .doc =
                                         "A half-edge of the loop whose vertices and edges stay."},
-                   [LOOP_JOIN_B] =
-                       {.name = "b",
-                        .type = HE_PARAM_ELEMENT,
-                        .kind = HE_HALFEDGE,
-                        .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                        .doc =
-                            "The half-edge of the other loop that is merged with `a`: its target "
-                            "becomes the origin of `a`."}},
-        .results = {[LOOP_JOIN_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
-                                             "How many vertex values became corner values, because "
-                                             "the merged vertices had different values."}},
+                   [LOOP_JOIN_B] = {.name = "b",
+                                    .type = HE_PARAM_ELEMENT,
+                                    .kind = HE_HALFEDGE,
+                                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                                    .doc = "The half-edge of the other loop that is merged with "
+                                           "`a`; its target is merged into the origin of `a`."}},
+        .results = {[LOOP_JOIN_OUT_MOVED] =
+                        {"moved", HE_RESULT_NUMBER, 0,
+                         "How many attribute values of vertices became values of corners, because "
+                         "the merged vertices had different values."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_LOOP, HE_LOOP_LENGTH,
                      HE_REPEATED_CORNER, HE_SHARED_VERTEX, HE_BOUNDARY_EDGE, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},
@@ -117,14 +116,14 @@ const he_op he_loop_rows[] = {
     },
     {
         .name = "loop_split",
-        .doc = "Cut the mesh around three edges and cap both sides with triangles; the inverse of "
-               "loop_join.",
+        .doc = "Cut the mesh around three edges and cap both sides of the cut with triangles. This "
+               "is the inverse of loop_join.",
         .params = {[LOOP_SPLIT_A] = {.name = "a",
                                      .type = HE_PARAM_ELEMENT,
                                      .kind = HE_EDGE,
                                      .flags = HE_REQUIRED | HE_WALKS,
-                                     .doc = "An edge of the cycle. The side left of its first "
-                                            "half-edge keeps the vertices."},
+                                     .doc = "An edge of the cycle. The side of the cut to the left "
+                                            "of its first half-edge keeps the vertices."},
                    [LOOP_SPLIT_B] = {.name = "b",
                                      .type = HE_PARAM_ELEMENT,
                                      .kind = HE_EDGE,
@@ -139,12 +138,12 @@ const he_op he_loop_rows[] = {
             {[LOOP_SPLIT_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                           "The new vertices, beginning with the copy of the origin "
                                           "of the first half-edge of `a`."},
-             [LOOP_SPLIT_OUT_EDGES] =
-                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                  "The new edges: between the first and second new vertex, and so on around."},
+             [LOOP_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                       "The new edges in the order of the new vertices: the first "
+                                       "joins the first and second new vertex, and so on."},
              [LOOP_SPLIT_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                       "The two caps: first the one at the old vertices, then the "
-                                       "one at the new ones."}},
+                                       "The two triangles that cap the cut: first the one at the "
+                                       "old vertices, then the one at the new vertices."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_A_CYCLE, HE_BOUNDARY_VERTEX,
                      HE_SHARED_FACE, HE_LOCKED_ELEMENT},
         .change = {3, 3, 2},

@@ -50,12 +50,12 @@ const he_op he_material_rows[] = {
         .doc = "Create a material, or change the one with this name, and assign it to faces.",
         .size = HE_OP_LOCAL,
         .params =
-            {[MATERIAL_SET_NAME] =
-                 {.name = "name",
-                  .type = HE_PARAM_TEXT,
-                  .flags = HE_REQUIRED,
-                  .doc = "The name of the material, which is created if it does not exist. With "
-                         "\"\" the faces lose their material, and only `faces` may be given."},
+            {[MATERIAL_SET_NAME] = {.name = "name",
+                                    .type = HE_PARAM_TEXT,
+                                    .flags = HE_REQUIRED,
+                                    .doc = "The name of the material, which is created if it does "
+                                           "not exist. If the name is \"\", the faces lose their "
+                                           "material, and only `faces` may be given."},
              [MATERIAL_SET_RENAME] = {.name = "rename",
                                       .type = HE_PARAM_TEXT,
                                       .flags = HE_COSTS_MESH,
@@ -68,8 +68,8 @@ const he_op he_material_rows[] = {
                  {.name = "base_color",
                   .type = HE_PARAM_COLOR,
                   .flags = HE_OPACITY,
-                  .doc = "Linear red, green and blue from 0 to 1, and opacity, which "
-                         "may be left out to keep it."},
+                  .doc = "Linear red, green and blue from 0 to 1, and opacity from 0 to 1. If "
+                         "opacity is left out, it does not change."},
              [MATERIAL_SET_METALLIC] = {.name = "metallic",
                                         .type = HE_PARAM_NUMBER,
                                         .flags = HE_RANGE | HE_DERIVED,
@@ -88,15 +88,14 @@ const he_op he_material_rows[] = {
                                          .type = HE_PARAM_FLAG,
                                          .flags = HE_DERIVED,
                                          .doc = "Whether faces of the material are visible from "
-                                                "behind. Those of a new material are not."},
-             [MATERIAL_SET_FACES] =
-                 {.name = "face",
-                  .plural = "faces",
-                  .type = HE_PARAM_ELEMENTS,
-                  .kind = HE_FACE,
-                  .flags = HE_COSTS_MESH,
-                  .doc = "The faces that get the material, in the attribute `material`. "
-                         "Default: none."}},
+                                                "behind. Default for a new material: false."},
+             [MATERIAL_SET_FACES] = {.name = "face",
+                                     .plural = "faces",
+                                     .type = HE_PARAM_ELEMENTS,
+                                     .kind = HE_FACE,
+                                     .flags = HE_COSTS_MESH,
+                                     .doc = "The faces that get the material. Their attribute "
+                                            "`material` names it. Default: none."}},
         .refusals = {HE_BAD_VALUE, HE_LIMIT, HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT,
                      HE_REPEATED_ELEMENT, HE_ATTRIBUTE_CLASH},
         .change = {0, 0, 0},
@@ -104,16 +103,16 @@ const he_op he_material_rows[] = {
     },
     {
         .name = "material_delete",
-        .doc = "Delete a material. Faces that had it have no material, or another one.",
+        .doc = "Delete a material. Its faces lose it, or get the material `to` instead.",
         .size = HE_OP_LOCAL,
         .params = {[MATERIAL_DELETE_NAME] = {.name = "name",
                                              .type = HE_PARAM_TEXT,
                                              .flags = HE_REQUIRED | HE_COSTS_MESH,
                                              .doc = "The name of the material."},
-                   [MATERIAL_DELETE_TO] =
-                       {.name = "to",
-                        .type = HE_PARAM_TEXT,
-                        .doc = "The material that these faces get instead. Default: none."}},
+                   [MATERIAL_DELETE_TO] = {.name = "to",
+                                           .type = HE_PARAM_TEXT,
+                                           .doc = "The material that the faces of the deleted "
+                                                  "material get instead. Default: none."}},
         .refusals = {HE_BAD_VALUE, HE_ATTRIBUTE_CLASH},
         .change = {0, 0, 0},
         .run = run_material_delete,

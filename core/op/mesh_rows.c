@@ -141,12 +141,13 @@ static const char *const cut_sides[] = {"above", "below", NULL};
 const he_op he_mesh_rows[] = {
     {
         .name = "transform",
-        .doc = "Apply an affine transformation to vertices and to attributes named `normal`.",
+        .doc = "Apply an affine transformation to vertices and to the attributes named `normal`.",
         .size = HE_OP_WHOLE,
         .params = {[TRANSFORM_MATRIX] = {.name = "matrix",
                                          .type = HE_PARAM_MATRIX,
                                          .flags = HE_REQUIRED,
-                                         .doc = "16 numbers, row-major, the last row 0 0 0 1."},
+                                         .doc = "The matrix of the transformation: 16 numbers, row "
+                                                "by row; the last row is 0 0 0 1."},
                    [TRANSFORM_VERTICES] = {.name = "vertex",
                                            .plural = "vertices",
                                            .type = HE_PARAM_ELEMENTS,
@@ -189,27 +190,26 @@ const he_op he_mesh_rows[] = {
         .name = "plane_cut",
         .doc = "Split the mesh along a plane and delete what is on one side.",
         .size = HE_OP_WHOLE,
-        .params =
-            {[PLANE_CUT_POINT] = PLANE_POINT,
-             [PLANE_CUT_NORMAL] = PLANE_NORMAL,
-             [PLANE_CUT_KEEP] =
-                 {.name = "keep",
-                  .type = HE_PARAM_CHOICE,
-                  .choices = cut_sides,
-                  .doc = "The side that is kept; above is where the normal points. A face in the "
-                         "plane counts as below if its own normal points up."},
-             [PLANE_CUT_CAP] = {.name = "cap",
-                                .type = HE_PARAM_FLAG,
-                                .doc = "Close each loop of the cut with a polygon."},
-             [PLANE_CUT_TOLERANCE] = PLANE_TOLERANCE},
-        .results =
-            {[PLANE_CUT_OUT_EDGES_SPLIT] = EDGES_SPLIT,
-             [PLANE_CUT_OUT_FACES_SPLIT] = FACES_SPLIT,
-             [PLANE_CUT_OUT_FACES_DELETED] =
-                 {"faces_deleted", HE_RESULT_NUMBER, HE_FACE,
-                  "How many faces were deleted, including the parts of faces that were cut."},
-             [PLANE_CUT_OUT_CAPS] = {"caps", HE_RESULT_ELEMENTS, HE_FACE,
-                                     "The polygons that close the cut."}},
+        .params = {[PLANE_CUT_POINT] = PLANE_POINT,
+                   [PLANE_CUT_NORMAL] = PLANE_NORMAL,
+                   [PLANE_CUT_KEEP] =
+                       {.name = "keep",
+                        .type = HE_PARAM_CHOICE,
+                        .choices = cut_sides,
+                        .doc = "The side of the plane that is kept; above is the side to which the "
+                               "normal points. A face that lies in the plane counts as below if "
+                               "its own normal points to the side above."},
+                   [PLANE_CUT_CAP] = {.name = "cap",
+                                      .type = HE_PARAM_FLAG,
+                                      .doc = "Close each loop of the cut with a polygon."},
+                   [PLANE_CUT_TOLERANCE] = PLANE_TOLERANCE},
+        .results = {[PLANE_CUT_OUT_EDGES_SPLIT] = EDGES_SPLIT,
+                    [PLANE_CUT_OUT_FACES_SPLIT] = FACES_SPLIT,
+                    [PLANE_CUT_OUT_FACES_DELETED] =
+                        {"faces_deleted", HE_RESULT_NUMBER, HE_FACE,
+                         "How many faces were deleted. Parts of faces that were cut count, too."},
+                    [PLANE_CUT_OUT_CAPS] = {"caps", HE_RESULT_ELEMENTS, HE_FACE,
+                                            "The polygons that close the cut."}},
         .refusals = {HE_BAD_VALUE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT, HE_OPEN_LOOP,
                      HE_REPEATED_CORNER},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -227,16 +227,14 @@ const he_op he_mesh_rows[] = {
                         .plural = "edges",
                         .type = HE_PARAM_ELEMENTS,
                         .kind = HE_EDGE,
-                        .doc =
-                            "The edges to begin with; flips spread from there. Default: all. Edges "
-                            "whose bool attribute `feature` or `locked` is true, and edges of "
-                            "locked faces, are not flipped."}},
-        .results =
-            {[DELAUNAY_OUT_FLIPS] = {"flips", HE_RESULT_NUMBER, HE_EDGE,
-                                     "How many flips were made."},
-             [DELAUNAY_OUT_EDGES] =
-                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                  "The flipped edges, in order. An edge that was flipped twice is listed twice."}},
+                        .doc = "The edges to begin with; flips spread from these edges. Default: "
+                               "all. Edges whose bool attribute `feature` or `locked` is true, and "
+                               "edges of locked faces, are not flipped."}},
+        .results = {[DELAUNAY_OUT_FLIPS] = {"flips", HE_RESULT_NUMBER, HE_EDGE,
+                                            "How many flips were made."},
+                    [DELAUNAY_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                            "The flipped edges, in the order of the flips. An edge "
+                                            "that was flipped twice is listed twice."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_LIMIT},
         .change = {0, 0, 0},
         .pace = 2,
@@ -246,15 +244,16 @@ const he_op he_mesh_rows[] = {
         .name = "compact",
         .doc = "Renumber all elements without gaps. All ids change, and the history is cleared.",
         .size = HE_OP_WHOLE,
-        .results = {[COMPACT_OUT_VERTICES] =
-                        {"vertices", HE_RESULT_MAP, HE_VERTEX,
-                         "For each old id the new id, or null if the element was deleted."},
-                    [COMPACT_OUT_EDGES] =
-                        {"edges", HE_RESULT_MAP, HE_EDGE,
-                         "For each old id the new id, or null if the element was deleted."},
-                    [COMPACT_OUT_FACES] =
-                        {"faces", HE_RESULT_MAP, HE_FACE,
-                         "For each old id the new id, or null if the element was deleted."}},
+        .results =
+            {[COMPACT_OUT_VERTICES] =
+                 {"vertices", HE_RESULT_MAP, HE_VERTEX,
+                  "For each old id of a vertex the new id, or null if the vertex was deleted."},
+             [COMPACT_OUT_EDGES] =
+                 {"edges", HE_RESULT_MAP, HE_EDGE,
+                  "For each old id of an edge the new id, or null if the edge was deleted."},
+             [COMPACT_OUT_FACES] =
+                 {"faces", HE_RESULT_MAP, HE_FACE,
+                  "For each old id of a face the new id, or null if the face was deleted."}},
         .change = {0, 0, 0},
         .pace = 2,
         .run = run_compact,

@@ -71,7 +71,7 @@ const he_op he_region_rows[] = {
                                   .type = HE_PARAM_POINT,
                                   .flags = HE_REQUIRED,
                                   .group = 'b',
-                                  .doc = "The vector to move by."},
+                                  .doc = "The faces to move. Each face keeps its id."},
              [FACE_EXTRUDE_DISTANCE] =
                  {.name = "distance",
                   .type = HE_PARAM_NUMBER,
@@ -100,36 +100,34 @@ const he_op he_region_rows[] = {
     },
     {
         .name = "face_inset",
-        .doc = "Shrink faces within their outline, with a border of new faces around them.",
-        .params = {[FACE_INSET_FACES] = {.name = "face",
-                                         .plural = "faces",
-                                         .type = HE_PARAM_ELEMENTS,
-                                         .kind = HE_FACE,
-                                         .flags = HE_REQUIRED | HE_REACHES,
-                                         .doc =
-                                             "The faces to shrink. The inner parts keep the ids."},
-                   [FACE_INSET_FACTOR] =
-                       {.name = "factor",
-                        .type = HE_PARAM_NUMBER,
-                        .flags = HE_REQUIRED | HE_RANGE | HE_EXCLUSIVE,
-                        .group = 'b',
-                        .min = 0,
-                        .max = 1,
-                        .fallback = 0.5,
-                        .doc =
-                            "How far the corners move towards the centres of their faces: from 0 "
-                            "(not at all) to 1 (all the way)."},
-                   [FACE_INSET_DISTANCE] =
-                       {.name = "distance",
-                        .type = HE_PARAM_NUMBER,
-                        .flags = HE_REQUIRED,
-                        .group = 'b',
-                        .doc = "The width of the border, above 0. It is narrower where it would "
-                               "intersect itself."},
-                   [FACE_INSET_REGION] =
-                       {.name = "region",
-                        .type = HE_PARAM_FLAG,
-                        .doc = "Faces that share an edge shrink together, with one border."}},
+        .doc = "Shrink faces within their outline. New faces form a border around them.",
+        .params =
+            {[FACE_INSET_FACES] = {.name = "face",
+                                   .plural = "faces",
+                                   .type = HE_PARAM_ELEMENTS,
+                                   .kind = HE_FACE,
+                                   .flags = HE_REQUIRED | HE_REACHES,
+                                   .doc = "The faces to shrink. The shrunk faces keep their ids."},
+             [FACE_INSET_FACTOR] =
+                 {.name = "factor",
+                  .type = HE_PARAM_NUMBER,
+                  .flags = HE_REQUIRED | HE_RANGE | HE_EXCLUSIVE,
+                  .group = 'b',
+                  .min = 0,
+                  .max = 1,
+                  .fallback = 0.5,
+                  .doc = "How far the corners move towards the centres of their faces: from 0 "
+                         "(not at all) to 1 (all the way)."},
+             [FACE_INSET_DISTANCE] = {.name = "distance",
+                                      .type = HE_PARAM_NUMBER,
+                                      .flags = HE_REQUIRED,
+                                      .group = 'b',
+                                      .doc = "The width of the border of new faces, above 0. The "
+                                             "border is narrower where it would intersect itself."},
+             [FACE_INSET_REGION] =
+                 {.name = "region",
+                  .type = HE_PARAM_FLAG,
+                  .doc = "Faces that share an edge shrink together, with one border."}},
         .results =
             {[FACE_INSET_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                           "The new vertices, one for each corner of the outline."},
@@ -137,7 +135,7 @@ const he_op he_region_rows[] = {
                                        "Two edges for each new vertex: an edge of the inner part, "
                                        "and the edge across the border."},
              [FACE_INSET_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                       "The faces of the border."}},
+                                       "The new faces of the border."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_NO_NORMAL, HE_LIMIT, HE_NOT_FINITE,
                      HE_LOCKED_ELEMENT},

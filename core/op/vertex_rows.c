@@ -141,18 +141,18 @@ const he_op he_vertex_rows[] = {
                                              .kind = HE_VERTEX,
                                              .flags = HE_REQUIRED,
                                              .doc = "The vertices to move."},
-                   [VERTEX_MOVE_TO] =
-                       {.name = "to",
-                        .type = HE_PARAM_POINTS,
-                        .flags = HE_REQUIRED,
-                        .group = 'p',
-                        .doc = "The new position: one point for all, or a list with one for each."},
-                   [VERTEX_MOVE_BY] =
-                       {.name = "by",
-                        .type = HE_PARAM_POINTS,
-                        .flags = HE_REQUIRED,
-                        .group = 'p',
-                        .doc = "The vector to move by: one for all, or a list with one for each."}},
+                   [VERTEX_MOVE_TO] = {.name = "to",
+                                       .type = HE_PARAM_POINTS,
+                                       .flags = HE_REQUIRED,
+                                       .group = 'p',
+                                       .doc = "The new position: one point for all vertices, or a "
+                                              "list with one point for each vertex."},
+                   [VERTEX_MOVE_BY] = {.name = "by",
+                                       .type = HE_PARAM_POINTS,
+                                       .flags = HE_REQUIRED,
+                                       .group = 'p',
+                                       .doc = "The vector to move by: one vector for all vertices, "
+                                              "or a list with one vector for each vertex."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_NOT_FINITE, HE_LOCKED_ELEMENT},
         .change = {0, 0, 0},
@@ -169,46 +169,50 @@ const he_op he_vertex_rows[] = {
                    [VERTEX_DELETE_KEEP_ISOLATED] =
                        {.name = "keep_isolated",
                         .type = HE_PARAM_FLAG,
-                        .doc = "Keep neighbouring vertices that have no face left."}},
+                        .doc =
+                            "Keep the neighbours of the deleted vertex that have no face left."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .run = run_vertex_delete,
     },
     {
         .name = "vertex_split",
-        .doc = "Split a vertex into an edge with a triangle on each side. The inverse of "
+        .doc = "Split a vertex into an edge with a triangle on each side. This is the inverse of "
                "edge_collapse.",
-        .params =
-            {[VERTEX_SPLIT_VERTEX] = {.name = "vertex",
-                                      .type = HE_PARAM_ELEMENT,
-                                      .kind = HE_VERTEX,
-                                      .flags = HE_REQUIRED | HE_WALKS,
-                                      .doc = "The vertex to split. It does not move."},
-             [VERTEX_SPLIT_LEFT] =
-                 {.name = "left",
-                  .type = HE_PARAM_ELEMENT,
-                  .kind = HE_VERTEX,
-                  .flags = HE_REQUIRED | HE_NULLABLE,
-                  .doc = "The faces counter-clockwise from this neighbour to `right` move to the "
-                         "new vertex; null is the boundary."},
-             [VERTEX_SPLIT_RIGHT] = {.name = "right",
-                                     .type = HE_PARAM_ELEMENT,
-                                     .kind = HE_VERTEX,
-                                     .flags = HE_REQUIRED | HE_NULLABLE,
-                                     .doc =
-                                         "The faces counter-clockwise from `left` to this "
-                                         "neighbour move to the new vertex; null is the boundary."},
-             [VERTEX_SPLIT_TO] = {.name = "to",
-                                  .type = HE_PARAM_POINT,
-                                  .flags = HE_REQUIRED,
-                                  .doc = "Where the new vertex is placed."}},
-        .results = {[VERTEX_SPLIT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
-                                                 "The new vertex."},
-                    [VERTEX_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                                "The edge between the two vertices, then those to "
-                                                "the left and right neighbours."},
-                    [VERTEX_SPLIT_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                                "The new triangles, left and right."}},
+        .params = {[VERTEX_SPLIT_VERTEX] = {.name = "vertex",
+                                            .type = HE_PARAM_ELEMENT,
+                                            .kind = HE_VERTEX,
+                                            .flags = HE_REQUIRED | HE_WALKS,
+                                            .doc = "The vertex to split. It does not move."},
+                   [VERTEX_SPLIT_LEFT] = {.name = "left",
+                                          .type = HE_PARAM_ELEMENT,
+                                          .kind = HE_VERTEX,
+                                          .flags = HE_REQUIRED | HE_NULLABLE,
+                                          .doc =
+                                              "A neighbour of the vertex, or null, which stands "
+                                              "for the boundary. The faces counter-clockwise from "
+                                              "this neighbour to `right` move to the new vertex."},
+                   [VERTEX_SPLIT_RIGHT] = {.name = "right",
+                                           .type = HE_PARAM_ELEMENT,
+                                           .kind = HE_VERTEX,
+                                           .flags = HE_REQUIRED | HE_NULLABLE,
+                                           .doc =
+                                               "A neighbour of the vertex, or null, which stands "
+                                               "for the boundary. The faces counter-clockwise from "
+                                               "`left` to this neighbour move to the new vertex."},
+                   [VERTEX_SPLIT_TO] = {.name = "to",
+                                        .type = HE_PARAM_POINT,
+                                        .flags = HE_REQUIRED,
+                                        .doc = "Where the new vertex is placed."}},
+        .results =
+            {[VERTEX_SPLIT_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
+                                          "The new vertex."},
+             [VERTEX_SPLIT_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                         "The edge between the old and the new vertex, then the "
+                                         "new vertex's edges to the left and the right neighbour."},
+             [VERTEX_SPLIT_OUT_FACES] =
+                 {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                  "The new triangles, first the left one, then the right one."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_BOWTIE, HE_NOT_BOUNDARY, HE_NOT_NEIGHBOUR, HE_NO_SECTOR},
         .change = {1, HE_VARIES, HE_VARIES},
@@ -216,7 +220,8 @@ const he_op he_vertex_rows[] = {
     },
     {
         .name = "vertex_dissolve",
-        .doc = "Remove a vertex and merge the faces around it into one. The inverse of face_poke.",
+        .doc = "Remove a vertex and merge the faces around it into one. This is the inverse of "
+               "face_poke.",
         .params = {[VERTEX_DISSOLVE_VERTEX] = {.name = "vertex",
                                                .type = HE_PARAM_ELEMENT,
                                                .kind = HE_VERTEX,
@@ -240,18 +245,20 @@ const he_op he_vertex_rows[] = {
                         .flags = HE_REQUIRED | HE_WALKS,
                         .doc =
                             "The first half-edge, counter-clockwise, that moves to the new vertex. "
-                            "The new edge lies in the corner clockwise of it."},
+                            "The new edge lies in the corner that is clockwise of this half-edge."},
                    [VERTEX_SPLIT_CORNERS_B] =
                        {.name = "b",
                         .type = HE_PARAM_ELEMENT,
                         .kind = HE_HALFEDGE,
                         .flags = HE_REQUIRED,
-                        .doc = "The first half-edge that stays, with the same origin. The new edge "
-                               "lies in the corner clockwise of it."}},
-        .results = {[VERTEX_SPLIT_CORNERS_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
-                                                         "The new vertex."},
-                    [VERTEX_SPLIT_CORNERS_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
-                                                       "The edge between the two vertices."}},
+                        .doc = "The first half-edge, counter-clockwise, that stays; it has the "
+                               "same origin as `a`. The new edge lies in the corner that is "
+                               "clockwise of this half-edge."}},
+        .results =
+            {[VERTEX_SPLIT_CORNERS_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
+                                                  "The new vertex."},
+             [VERTEX_SPLIT_CORNERS_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
+                                                "The edge between the old and the new vertex."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_CORNER, HE_DIFFERENT_ORIGINS,
                      HE_NO_FACE},
         .change = {1, 1, 0},
@@ -260,18 +267,21 @@ const he_op he_vertex_rows[] = {
     {
         .name = "vertex_bevel",
         .doc = "Bevel a vertex: replace it by a face across its edges.",
-        .params = {[VERTEX_BEVEL_VERTEX] =
-                       {.name = "vertex",
-                        .type = HE_PARAM_ELEMENT,
-                        .kind = HE_VERTEX,
-                        .flags = HE_REQUIRED,
-                        .doc = "The vertex to bevel. It becomes the first corner of the new face."},
-                   [VERTEX_BEVEL_WIDTH] =
-                       {.name = "width",
-                        .type = HE_PARAM_NUMBER,
-                        .flags = HE_REQUIRED,
-                        .doc = "The distance from the vertex at which each edge is cut, above 0; "
-                               "an edge that is not longer is cut at 99 % of its length."}},
+        .params =
+            {[VERTEX_BEVEL_VERTEX] =
+                 {.name = "vertex",
+                  .type = HE_PARAM_ELEMENT,
+                  .kind = HE_VERTEX,
+                  .flags =
+                      HE_REQUIRED,
+                  .doc = "The vertex to bevel. It becomes the first corner of the new face."},
+             [VERTEX_BEVEL_WIDTH] =
+                 {.name = "width",
+                  .type = HE_PARAM_NUMBER,
+                  .flags =
+                      HE_REQUIRED,
+                  .doc = "The distance from the vertex at which each edge is cut, above 0; an edge "
+                         "that is not longer than this distance is cut at 99 % of its length."}},
         .results = {[VERTEX_BEVEL_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
                                                    "The new vertices, counter-clockwise."},
                     [VERTEX_BEVEL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,

@@ -83,34 +83,36 @@ static he_status run_delete_isolated(he_mesh *m, const he_arg *args, he_results 
 const he_op he_weld_rows[] = {
     {
         .name = "vertex_weld",
-        .doc = "Merge vertices, and the boundary edges that then coincide. Faces left with fewer "
-               "than three corners are deleted, and all but the first of faces that become equal.",
-        .params = {[VERTEX_WELD_VERTICES] = {.name = "vertex",
-                                             .plural = "vertices",
-                                             .type = HE_PARAM_ELEMENTS,
-                                             .kind = HE_VERTEX,
-                                             .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                                             .group = 'w',
-                                             .doc = "The vertices to merge. The lowest id stays."},
+        .doc = "Merge vertices, and the boundary edges that then coincide. Faces that have fewer "
+               "than three corners left are deleted. If several faces become equal, only the first "
+               "is kept.",
+        .params = {[VERTEX_WELD_VERTICES] =
+                       {.name = "vertex",
+                        .plural = "vertices",
+                        .type = HE_PARAM_ELEMENTS,
+                        .kind = HE_VERTEX,
+                        .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                        .group = 'w',
+                        .doc = "The vertices to merge. The vertex with the lowest id stays."},
                    [VERTEX_WELD_TOLERANCE] =
                        {.name = "tolerance",
                         .type = HE_PARAM_NUMBER,
                         .flags = HE_REQUIRED | HE_COSTS_MESH,
                         .group = 'w',
-                        .doc = "Each vertex is merged into the vertex with the lowest id within "
-                               "this distance that was not itself merged."},
+                        .doc = "The tolerance. Each vertex is merged into a vertex within this "
+                               "distance: the one with the lowest id that was not itself merged."},
                    [VERTEX_WELD_POSITION] =
                        {.name = "position",
                         .type = HE_PARAM_CHOICE,
                         .choices = positions,
                         .doc = "Where the merged vertex is placed: at the mean position, or where "
                                "the vertex with the lowest id was."}},
-        .results =
-            {[VERTEX_WELD_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                                           "The vertices that others were merged into."},
-             [VERTEX_WELD_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
-                                        "How many vertex values became corner values, because the "
-                                        "merged vertices had different values."}},
+        .results = {[VERTEX_WELD_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                                  "The vertices that others were merged into."},
+                    [VERTEX_WELD_OUT_MOVED] =
+                        {"moved", HE_RESULT_NUMBER, 0,
+                         "How many attribute values of vertices became values of corners, because "
+                         "the merged vertices had different values."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN,
                      HE_LOCKED_ELEMENT},
@@ -143,18 +145,19 @@ const he_op he_weld_rows[] = {
         .doc = "Merge vertices that are close together, and the edges and faces that then "
                "coincide: vertex_weld for the whole mesh.",
         .size = HE_OP_WHOLE,
-        .params = {[WELD_TOLERANCE] =
-                       {.name = "tolerance",
-                        .type = HE_PARAM_NUMBER,
-                        .flags = HE_REQUIRED,
-                        .doc =
-                            "Each vertex is merged into the vertex with the lowest id within this "
-                            "distance that was not itself merged; 0 merges equal positions."}},
-        .results = {[WELD_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                                           "The vertices that others were merged into."},
-                    [WELD_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
-                                        "How many vertex values became corner values, because the "
-                                        "merged vertices had different values."}},
+        .params =
+            {[WELD_TOLERANCE] = {.name = "tolerance",
+                                 .type = HE_PARAM_NUMBER,
+                                 .flags = HE_REQUIRED,
+                                 .doc = "The tolerance. Each vertex is merged into a vertex within "
+                                        "this distance: the one with the lowest id that was not "
+                                        "itself merged. 0 merges vertices at equal positions."}},
+        .results =
+            {[WELD_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                    "The vertices that others were merged into."},
+             [WELD_OUT_MOVED] = {"moved", HE_RESULT_NUMBER, 0,
+                                 "How many attribute values of vertices became values of corners, "
+                                 "because the merged vertices had different values."}},
         .refusals = {HE_BAD_VALUE, HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION,
                      HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},

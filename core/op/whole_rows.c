@@ -57,7 +57,7 @@ const he_op he_whole_rows[] = {
                                                "The new triangles."},
                     [TRIANGULATE_OUT_DEGENERATE] =
                         {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
-                         "Faces in which a triangle has no area or is turned over."}},
+                         "The faces in which a triangle has no area or is turned over."}},
         .refusals = {HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .pace = 5,
@@ -65,7 +65,8 @@ const he_op he_whole_rows[] = {
     },
     {
         .name = "reverse",
-        .doc = "Reverse the orientation of faces, and their attributes named `normal`.",
+        .doc =
+            "Reverse the orientation of faces, and the direction of the attributes named `normal`.",
         .size = HE_OP_WHOLE,
         .params = {[REVERSE_FACES] =
                        {.name = "face",

@@ -32,7 +32,7 @@ static he_status exhausted(const he_gather *g, he_kind kind, uint32_t id, he_err
     if (g->capped) {
         return corrupt(kind, id, err);
     }
-    return he_fail(err, HE_LIMIT, kind, id, "the answer becomes too long at %s %u",
+    return he_fail(err, HE_LIMIT, kind, id, "the answer is too long: its limit is reached at %s %u",
                    he_kind_name(kind), id);
 }
 

@@ -17,7 +17,7 @@ static he_status count_triangles(const he_mesh *m, uint32_t *out, he_error *err)
     uint64_t count = corners - 2 * (uint64_t)m->c.faces.live;
     if (count > (uint64_t)1 << 31) {
         return he_fail_plain(err, HE_IDS_EXHAUSTED,
-                             "the mesh has %llu triangles, too many to search",
+                             "the mesh has %llu triangles, which are too many for a search tree",
                              (unsigned long long)count);
     }
     *out = (uint32_t)count;

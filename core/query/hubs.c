@@ -183,7 +183,7 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
     }
     if (total > UINT32_MAX) {
         return he_fail_plain(err, HE_IDS_EXHAUSTED,
-                             "too many triangles meet at vertices in the same place");
+                             "too many triangles meet at vertices that are in the same place");
     }
     hubs->spokes = he_mem_array(NULL, (size_t)total, sizeof *hubs->spokes);
     if (hubs->spokes == NULL) {

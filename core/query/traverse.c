@@ -61,7 +61,8 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_path_ste
                 return status;
             }
             if (taken++ == steps->limit && steps->limit != 0) {
-                return he_fail_plain(err, HE_LIMIT, "the path is longer than %llu steps",
+                return he_fail_plain(err, HE_LIMIT,
+                                     "the path of the walk is longer than %llu steps",
                                      (unsigned long long)steps->limit);
             }
             h = take(m, h, steps->list[i]);

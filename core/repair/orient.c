@@ -202,8 +202,8 @@ static he_status refuse(const he_mend *m, he_error *err)
     const he_repair_clash *c = &m->out->clashes[0];
     uint32_t f = he_mend_input(m->out->face_from, c->face);
     return he_fail(err, HE_NOT_ORIENTABLE, HE_FACE, f,
-                   "face %u at the edge from vertex %u to %u: the faces here cannot be oriented "
-                   "consistently, as on a Moebius strip",
+                   "face %u at the edge from vertex %u to %u: the faces around this place cannot "
+                   "be oriented consistently, as on a Moebius strip",
                    f, he_mend_input(m->out->vertex_from, c->vertex),
                    he_mend_input(m->out->vertex_from, c->other));
 }

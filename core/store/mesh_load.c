@@ -61,7 +61,7 @@ static st_status status_of(load *l, he_status status, uint64_t number, const he_
         return no_memory();
     }
     if (err->place == HE_PLACE_BYTE) {
-        (void)damaged(l, "record %llu, byte %llu: %s", (unsigned long long)number,
+        (void)damaged(l, "record %llu, at its byte %llu: %s", (unsigned long long)number,
                       (unsigned long long)err->at, err->text);
     } else {
         (void)damaged(l, "record %llu: %s", (unsigned long long)number, err->text);
@@ -274,7 +274,7 @@ static st_status take_edit_part(load *l, const st_piece *piece)
 static st_status take_part(load *l, const st_piece *piece)
 {
     if (l->missing == 0) {
-        return damaged(l, "a part belongs to no record");
+        return damaged(l, "the store has a part of content that belongs to no record");
     }
     return l->edit != NULL ? take_edit_part(l, piece) : take_content_part(l, piece);
 }

@@ -68,7 +68,8 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     }
     if (version != HE_STORED_VERSION) {
         return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
-                          HE_PLACE_BYTE, 4, "the mesh has version %u, this release reads %u",
+                          HE_PLACE_BYTE, 4,
+                          "the stored mesh has version %u, but this release reads version %u",
                           version, (unsigned)HE_STORED_VERSION);
     }
     if (bytes < HE_CONTENT_HEADER || bytes % 8 != 0 || bytes > r->most) {
@@ -366,8 +367,9 @@ he_status he_stored_reader_part(he_stored_reader *r, unsigned coding, const unsi
 {
     if (coding > HE_CODING_LINKS) {
         return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, r->at,
-                          "a part has coding %u, this release reads up to %u", coding,
-                          (unsigned)HE_CODING_LINKS);
+                          "a part of the stored mesh has the coding %u, but this release reads "
+                          "only codings up to %u",
+                          coding, (unsigned)HE_CODING_LINKS);
     }
     he_cursor c = he_cursor_over(bytes, size);
     uint64_t from = r->at;

@@ -42,7 +42,8 @@ static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, 
     }
     if (version != HE_STORED_VERSION) {
         return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
-                          HE_PLACE_BYTE, 0, "the edit has version %u, this release reads %u",
+                          HE_PLACE_BYTE, 0,
+                          "the stored edit has version %u, but this release reads version %u",
                           version, (unsigned)HE_STORED_VERSION);
     }
     if (!he_take_varint(&r->c, he_left(&r->c) / HE_CHANGE_LEAST, &r->changes)) {

@@ -63,7 +63,7 @@ static bool stop(srv_parts *parts, const siginfo_t *reason)
         return true;
     }
     srv_log_tell(parts->log, SRV_LEVEL_ERROR,
-                 "requests and jobs that did not end within %d s were abandoned%s",
+                 "requests and jobs that did not end within %d s of the stop were abandoned%s",
                  STOP_MILLIS / 1000,
                  srv_config_folder(parts->config) == NULL
                      ? ""

@@ -26,7 +26,7 @@ static bool load_page(srv_parts *parts)
     bool found = srv_assets_folder(parts->config->web, folder, sizeof folder);
     parts->assets = srv_assets_load(found ? folder : NULL, message, sizeof message);
     if (parts->assets == NULL) {
-        return srv_open_failed(parts, "no memory for the page");
+        return srv_open_failed(parts, "no memory for the web page");
     }
     /* If the user configured a folder for the page, it must be usable; otherwise the daemon serves
      * requests without a page. */

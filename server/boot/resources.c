@@ -74,7 +74,8 @@ void srv_tell_budget(srv_log *log, const srv_config *config, const st_memory_lim
     const uint64_t mib = UINT64_C(1) << 20, budget = st_memory_budget();
     if (budget == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
-                     "no memory budget: the system does not say how much memory the machine has");
+                     "the memory budget has no limit, because the system does not say how much "
+                     "memory the machine has");
     } else if (config->memory_budget == 0) {
         srv_log_tell(log, SRV_LEVEL_INFO,
                      "memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64

@@ -36,8 +36,8 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     if (now->damaged_keys > 0 && before->damaged_keys == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
                      "the store in %s has %llu damaged records of requests with an "
-                     "Idempotency-Key: if such a request is sent again, it is refused or, if its "
-                     "key cannot be read, done a second time",
+                     "Idempotency-Key: if such a request is sent again, the server refuses it or, "
+                     "if the record's key cannot be read, does it a second time",
                      folder, (unsigned long long)now->damaged_keys);
     }
     if (now->status == ST_FAILED && before->status != ST_FAILED) {

@@ -67,9 +67,9 @@ bool srv_policy_host(const srv_policy *policy, const char *host, size_t length,
             }
         }
     }
-    return api_problem_set(
-        problem, API_WRONG_HOST,
-        "the server does not accept this Host; its option --allow-host adds a name");
+    return api_problem_set(problem, API_WRONG_HOST,
+                           "the server does not accept the header Host of this request; the "
+                           "server's option --allow-host adds a name");
 }
 
 bool srv_policy_is_name(const srv_policy *policy, const char *host)

@@ -44,7 +44,7 @@ static const char *make_room(const srv_address *address, const char *path)
         return errno == ENOENT ? NULL : strerror(errno);
     }
     if (!S_ISSOCK(found.st_mode)) {
-        return "there is a file with this name that is not a socket";
+        return "a file with this name exists and is not a socket";
     }
     int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0) {

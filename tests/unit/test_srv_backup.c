@@ -402,7 +402,7 @@ static void a_file_with_a_log_beside_it_is_not_restored(void **state)
     assert_true(fputs("a log", file) >= 0);
     assert_int_equal(fclose(file), 0);
     assert_false(st_sqlite_restore(folder, backup, before, message));
-    assert_non_null(strstr(message, "has a log beside it (-wal)"));
+    assert_non_null(strstr(message, "SQLite left a log beside it (-wal)"));
     assert_int_equal(unlink(log), 0);
     uint64_t incarnation;
     expect_records(5, &incarnation);

@@ -485,16 +485,20 @@ static void a_newer_version_is_refused_and_both_versions_are_named(void **state)
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),
         HE_UNSUPPORTED);
-    expect_text(&err, HE_UNSUPPORTED, 0, "the edit has version 2, this release reads 1");
+    expect_text(&err, HE_UNSUPPORTED, 0,
+                "the stored edit has version 2, but this release reads version 1");
     run.content.bytes[5 + 4] = 7; /* the version, which follows the part's coding and length */
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_UNSUPPORTED);
-    expect_text(&err, HE_UNSUPPORTED, 4, "the mesh has version 7, this release reads 1");
+    expect_text(&err, HE_UNSUPPORTED, 4,
+                "the stored mesh has version 7, but this release reads version 1");
     run.content.bytes[5 + 4] = 1;
     run.content.bytes[0] |= HE_CODING_PACKED;
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_UNSUPPORTED);
-    expect_text(&err, HE_UNSUPPORTED, 0, "a part has coding 3, this release reads up to 1");
+    expect_text(
+        &err, HE_UNSUPPORTED, 0,
+        "a part of the stored mesh has the coding 3, but this release reads only codings up to 1");
     run_clear(&run);
 }
 

@@ -123,7 +123,9 @@ bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_
             return st_refuse(message, "the path of the file is too long");
         }
         if (stat(log, &status) == 0 && status.st_size > 0) {
-            return st_refuse(message, "%.300s has a log beside it (%s): %s", file, ends[i], advice);
+            return st_refuse(message,
+                             "%.300s cannot be used, because SQLite left a log beside it (%s): %s",
+                             file, ends[i], advice);
         }
     }
     return true;
@@ -160,14 +162,15 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
     for (size_t i = 0; i < OWN_NAMES; i++) {
         if ((in_store && strcmp(name, own_names[i]) == 0) ||
             (there && names_file_of(store, own_names[i], &status))) {
-            return st_refuse(message, "%.300s is %s of a store: give the backup another name", file,
+            return st_refuse(message,
+                             "%.300s is the file %s of a store: give the backup another name", file,
                              own_names[i]);
         }
     }
-    return st_sqlite_has_no_log(
-        file,
-        "SQLite would replay this log onto the backup; remove the log, or choose another file",
-        message);
+    return st_sqlite_has_no_log(file,
+                                "SQLite would write the changes in this log into the backup; "
+                                "remove the log, or choose another file",
+                                message);
 }
 
 /* The free disk space that must be left after a backup, because the daemon goes on writing to its
@@ -259,7 +262,7 @@ bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLI
     int length = snprintf(path, sizeof path, "%s/hedge.db", folder);
     int part_length = snprintf(part, sizeof part, "%s.part", file);
     if (length >= PATH_MAX || part_length >= PATH_MAX || !st_db_prepare()) {
-        return st_refuse(message, "a path is too long, or memory is out");
+        return st_refuse(message, "a path is too long, or there is no memory");
     }
     if (!exists(path)) {
         return st_refuse(message, "%.300s: %s", path, strerror(errno));

@@ -92,7 +92,7 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
     return version <= ST_SCHEMA_VERSION ||
            st_refuse(
                message,
-               "%.300s has version %lld of the tables, but this hedged%s%s supports them only up "
+               "the tables of %.300s have version %lld, but this hedged%s%s supports them only up "
                "to version %d: start a newer hedged, or restore a backup made by this one",
                path, (long long)version, release[0] == '\0' ? "" : " ", release, ST_SCHEMA_VERSION);
 }
@@ -123,10 +123,11 @@ static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
         return true;
     }
     if (mark.store != self->identity.store) {
-        return st_refuse(out->message,
-                         "%.300s/hedge.mark belongs to another store than hedge.db: put back the "
-                         "two files that belong together, or use `hedged --restore`",
-                         self->folder.path);
+        return st_refuse(
+            out->message,
+            "%.300s/hedge.mark does not belong to the hedge.db beside it, but to another store: "
+            "put back the two files that belong together, or use `hedged --restore`",
+            self->folder.path);
     }
     return mark.commits <= self->progress.commits ||
            st_refuse(

@@ -285,7 +285,8 @@ __attribute__((format(printf, 2, 3))) static st_status damaged(st_reader *reader
 static st_status failed(st_reader *reader, st_sql outcome, const char *what)
 {
     return outcome == ST_SQL_DAMAGED
-               ? damaged(reader, "%s cannot be read: the file is damaged there", what)
+               ? damaged(reader,
+                         "%s cannot be read, because a part of the database file is damaged", what)
                : status_of(outcome);
 }
 

@@ -270,8 +270,8 @@ bool st_sqlite_finish_restore(st_folder *folder)
     if (st_folder_finds(folder, "restored.db")) {
         if (!read_note(folder, before)) {
             return st_refuse(folder->message,
-                             "%.300s has a file `restoring` that does not name its store: a "
-                             "restore was interrupted; run it again",
+                             "%.300s has an incomplete file `restoring`, which an interrupted "
+                             "restore left: run the restore again",
                              folder->path);
         }
         if (!move_old(folder, before)) {
@@ -304,10 +304,10 @@ static bool restore(st_folder *folder, const char *path, const char *file, char 
     /* Only the file of the backup is copied. If SQLite's log is beside the file, the backup is
      * refused, because the changes in the log would be lost. */
     good = good && st_sqlite_finish_restore(folder) &&
-           st_sqlite_has_no_log(
-               file,
-               "the changes in this log are not in the file yet; restore a file that --backup made",
-               folder->message) &&
+           st_sqlite_has_no_log(file,
+                                "this log has changes that the file does not have yet; restore a "
+                                "file that --backup made",
+                                folder->message) &&
            st_sqlite_check_file(file, folder->message) && remove_copy(folder);
     if (good && !(copy_file(folder, file) && renew_copy(folder) &&
                   sync_name(folder, "restored.db", 0) && write_note(folder, before))) {
