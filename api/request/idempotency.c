@@ -117,9 +117,8 @@ bool api_idempotency_find(api_exchange *x)
                         "the key \"%.100s\" was used for another request", x->key);
     case ST_KEYED_DAMAGED:
         return api_fail(x, API_IDEMPOTENCY_MISMATCH,
-                        "the record of the request with the key \"%.100s\" is damaged on the disk, "
-                        "so the server does not know whether the request was done: check the mesh, "
-                        "and use another key to send the request again",
+                        "the record of the request with the key \"%.100s\" is damaged on the disk: "
+                        "check whether the request was done, and use another key to send it again",
                         x->key);
     case ST_KEYED_NO_MEMORY:
         break;

@@ -303,7 +303,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     assert_int_equal(shell(said, sizeof said, "echo x >%s", listen + 5), 0);
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", listen, "--store", "memory"), said, sizeof said), 1);
-    assert_non_null(strstr(said, "that is not a socket"));
+    assert_non_null(strstr(said, "and is not a socket"));
     memset(longest, 'x', sizeof longest);
     memcpy(longest, "unix:", 5);
     longest[5 + 108] = '\0';

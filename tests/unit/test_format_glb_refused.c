@@ -60,7 +60,7 @@ static void containers(void **state)
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length,
-                           "4 bytes follow the last chunk and are too few");
+                           "4 bytes follow the last chunk, which are too few");
     /* A third chunk has the type of a binary chunk, but only the second chunk may have this
      * type. */
     f = good;

@@ -128,7 +128,7 @@ static void what_is_no_library_is_refused_with_its_line(void **state)
         {"newmtl a\nd\n", "a number is missing", HE_SYNTAX, 2},
         {"newmtl a\nPm red\n", "'red' is not a number", HE_SYNTAX, 2},
         {"newmtl a\x01\n", "control character 1", HE_SYNTAX, 1},
-        {"# x\n\x89PNG\n", "not a line of a material library", HE_SYNTAX, 2},
+        {"# x\n\x89PNG\n", "cannot be part of a material library", HE_SYNTAX, 2},
         {"\xFF\xFEn\n", "UTF-16", HE_UNSUPPORTED, 1},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -456,7 +456,7 @@ static void wrong_text_names_its_line(void **state)
         snprintf(text, sizeof text, "%s%s", cube, rows[i].lines);
         expect_refused("obj", text, rows[i].status, rows[i].line, rows[i].words);
     }
-    expect_refused("obj", "", HE_SYNTAX, 1, "no vertices");
+    expect_refused("obj", "", HE_SYNTAX, 1, "no line of it is a vertex");
     expect_refused("obj", "hello world\nthis is not a mesh\n", HE_SYNTAX, 1, "not an OBJ file");
     /* hedge writes an empty mesh as a file of comments only, so such a file must be read as an
      * empty mesh. */

@@ -113,11 +113,11 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     if (ends[0].stays.i == ends[1].goes.i || ends[1].stays.i == ends[0].goes.i) {
         he_face f = he_face_of(m, he_twin(h));
         bool begin = ends[1].stays.i == ends[0].goes.i;
-        return he_fail(
-            err, HE_REPEATED_CORNER, HE_FACE, f.i,
-            "the boundary half-edges of edges %u and %u both %s at vertex %u: welding the edges "
-            "would join the two ends of edge %u, and face %u would use one vertex twice",
-            a.i, b.i, begin ? "begin" : "end", (begin ? ends[1] : ends[0]).stays.i, a.i, f.i);
+        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i,
+                       "the boundary half-edges of edges %u and %u both %s at vertex %u: welding "
+                       "would join the ends of edge %u, and face %u would use one vertex twice",
+                       a.i, b.i, begin ? "begin" : "end", (begin ? ends[1] : ends[0]).stays.i, a.i,
+                       f.i);
     }
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
         status = check_end(m, &ends[i], a, b, err);
