@@ -78,7 +78,8 @@ static bool read_line(srv_config *config, const line *at, bool *seen, char *mess
             message, size,
             row == NULL
                 ? "%s:%zu: there is no setting \"%.40s\"; hedged --print-config lists the settings"
-                : "%s:%zu: a file cannot set \"%.40s\"; hedged --print-config lists the settings",
+                : "%s:%zu: a configuration file cannot set \"%.40s\"; hedged --print-config lists "
+                  "the settings",
             at->path, at->number, name);
         return false;
     }

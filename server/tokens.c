@@ -19,7 +19,7 @@ bool srv_tokens_read(api_tokens *tokens, const char *path, char *message, size_t
     bool good = file != NULL && ferror(file) == 0;
     if (!good) {
         snprintf(why, sizeof why, "%s",
-                 bytes == NULL ? "no memory to read the file" : strerror(errno));
+                 bytes == NULL ? "no memory to read the file of tokens" : strerror(errno));
     } else {
         good = api_tokens_load(tokens, bytes, length, why);
     }

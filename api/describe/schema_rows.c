@@ -103,7 +103,8 @@ const api_member api_answer_members[] = {
      "different ones."},
     {"repair", "hole_edges", "count", OPTIONAL, "fill: the parameter `hole_edges` that was used."},
 
-    {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
+    {"imported", "import", "#import", REQUIRED,
+     "What the server read from the body, and what it repaired."},
 
     {"vertex", "id", "id", REQUIRED, NULL},
     {"vertex", "position", "point", REQUIRED, NULL},

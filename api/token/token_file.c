@@ -269,7 +269,7 @@ static bool read_line(const reader *r, const char *at, size_t length, api_token 
     unsigned seen = 0;
     word name, role, hash, more;
     if (!next_word(&at, end, &name) || !next_word(&at, end, &role) || !next_word(&at, end, &hash)) {
-        return fail(r, "the line is not NAME ROLE sha256:HASH");
+        return fail(r, "the line does not have the form NAME ROLE sha256:HASH");
     }
     if (!read_name(r, name, out) || !read_role(r, role, out) || !read_hash(r, hash, out)) {
         return false;
@@ -384,7 +384,7 @@ static bool read_lines(reader *r, const char *at, const char *end, gathered *to)
         at = newline == NULL ? end : newline + 1;
     }
     r->line = 0;
-    return to->list.count > 0 || fail(r, "the file has no token");
+    return to->list.count > 0 || fail(r, "the file of tokens has no token");
 }
 
 bool api_token_file_read(const char *bytes, size_t length, api_token_list *out,
@@ -394,8 +394,8 @@ bool api_token_file_read(const char *bytes, size_t length, api_token_list *out,
     gathered all = {.list = {he_mem_zero(API_TOKENS, sizeof *all.list.items), 0}};
     bool memory = met_new(&all.names);
     memory = met_new(&all.hashes) && memory && all.list.items != NULL;
-    bool good =
-        length <= API_TOKENS_FILE || fail(&r, "the file is larger than %d bytes", API_TOKENS_FILE);
+    bool good = length <= API_TOKENS_FILE ||
+                fail(&r, "the file of tokens is larger than %d bytes", API_TOKENS_FILE);
     good = good && (memory || fail(&r, "no memory for the tokens")) &&
            read_lines(&r, bytes, bytes + length, &all);
     met_free(&all.names);

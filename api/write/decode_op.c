@@ -48,9 +48,9 @@ static bool decode_element(const decoder *d, const he_param *param, const api_in
         return false;
     }
     if (found.list) {
-        return api_in_fail(
-            in, API_BAD_REFERENCE,
-            "the result is a list, but one id is expected: add \".0\" for its first element");
+        return api_in_fail(in, API_BAD_REFERENCE,
+                           "the reference names a list, but one id is expected: add \".0\" to name "
+                           "its first element");
     }
     *id = found.ids[0];
     return true;

@@ -3,8 +3,9 @@
 he_status he_budget_exhausted(he_budget *budget, he_error *err)
 {
     budget->left = 0;
-    return he_fail_plain(err, HE_LIMIT,
-                         "the request needs more computing steps than its budget has left");
+    return he_fail_plain(
+        err, HE_LIMIT,
+        "the request needs more computing steps than are left of the steps that it may take");
 }
 
 he_status he_budget_ask(he_budget *budget, he_error *err)

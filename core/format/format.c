@@ -226,7 +226,7 @@ he_status he_reader_new(const he_format *format, const he_limits *limits, he_rea
     }
     he_reader *reader = he_mem_zero(1, sizeof *reader);
     if (reader == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to read the file");
     }
     he_soup_init(&reader->import.soup, limits);
     reader->reading = format->reading;
@@ -342,7 +342,7 @@ he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t enc
     }
     he_writer *writer = he_mem_zero(1, sizeof *writer);
     if (writer == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the file");
     }
     writer->writing = format->writing;
     he_status status =

@@ -38,7 +38,7 @@ static he_status grow(fan *f, he_error *err)
         f->sums = sums;
     }
     if (corners == NULL || sums == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the corners about a vertex");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the corners around a vertex");
     }
     f->capacity = grown;
     return HE_OK;

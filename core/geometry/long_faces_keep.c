@@ -70,7 +70,8 @@ he_status he_long_faces_keep(const he_mesh *m, he_progress *progress, he_error *
     }
     he_long_faces *all = he_mem_zero(1, sizeof *all + count * sizeof *all->face);
     if (all == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu long faces", count);
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory for a list of %zu faces that have many corners", count);
     }
     status = cut_long(m, all, corners, progress, err);
     if (status == HE_OK) {

@@ -106,11 +106,11 @@ void st_unpacker_free(st_unpacker *unpacker)
 st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why)
 {
     const unsigned long long said = ZSTD_getFrameContentSize(packed.bytes, packed.size);
-    *why = "the part is not a zstd frame that declares its length";
+    *why = "the stored part is not a zstd frame that declares its length";
     if (said == ZSTD_CONTENTSIZE_UNKNOWN || said == ZSTD_CONTENTSIZE_ERROR) {
         return ST_DAMAGED;
     }
-    *why = "the zstd frame declares more bytes than a part may have";
+    *why = "the zstd frame of a stored part declares more bytes than a part may have";
     if (said > sizeof unpacker->part) {
         return ST_DAMAGED;
     }
@@ -120,7 +120,7 @@ st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, co
         *why = ZSTD_getErrorName(got);
         return ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation ? ST_NO_MEMORY : ST_DAMAGED;
     }
-    *why = "the zstd frame decompresses to fewer bytes than it declares";
+    *why = "the zstd frame of a stored part decompresses to fewer bytes than it declares";
     if (got != said) {
         return ST_DAMAGED;
     }

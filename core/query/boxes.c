@@ -188,7 +188,7 @@ static he_status grow(builder *b, he_error *err)
         size_t grown = he_mem_grown(b->capacity, need);
         he_box_node *nodes = he_mem_array(b->tree.nodes, grown, sizeof *nodes);
         if (nodes == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory for the boxes of a tree");
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for the boxes of a search tree");
         }
         b->tree.nodes = nodes;
         b->capacity = grown;
@@ -296,7 +296,7 @@ he_status he_boxes_make(const he_boxed *things, he_budget *budget, he_boxes *out
         group == NULL ? NULL : he_mem_array(NULL, things->groups, sizeof *b.group_boxes);
     he_status status = HE_OK;
     if (b.tree.nodes == NULL || b.tree.order == NULL || (group != NULL && b.group_boxes == NULL)) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u boxes", count);
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a search tree of %u boxes", count);
     } else {
         for (uint32_t i = 0; i < count; i++) {
             b.tree.order[i] = i;

@@ -202,7 +202,8 @@ static he_status build(he_bvh *tree, const he_mesh *m, uint32_t count, he_budget
     he_status status = HE_OK;
     tree->triangles = he_mem_array(NULL, count, sizeof *tree->triangles);
     if (tree->triangles == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a search tree of %u triangles",
+                             count);
     }
     status = list_triangles(tree, m, err);
     if (status == HE_OK) {
@@ -213,12 +214,14 @@ static he_status build(he_bvh *tree, const he_mesh *m, uint32_t count, he_budget
     }
     bounds = find_boxes(tree, m);
     if (bounds == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the boxes of %u triangles", count);
+        status = he_fail_plain(err, HE_NO_MEMORY,
+                               "no memory for the bounding boxes of %u triangles", count);
         goto out;
     }
     status = he_boxes_make(&(he_boxed){bounds, count, group, groups}, budget, &boxes, err);
     if (status == HE_OK && !arrange(tree, &boxes)) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
+        status =
+            he_fail_plain(err, HE_NO_MEMORY, "no memory for a search tree of %u triangles", count);
     }
     if (status == HE_OK) {
         status = he_bvh_find_discs(tree, m, budget, err);
@@ -244,7 +247,7 @@ he_status he_bvh_new(const he_mesh *m, he_progress *progress, he_bvh **out, he_e
     }
     he_bvh *tree = he_mem_zero(1, sizeof *tree);
     if (tree == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of boxes");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a search tree of boxes");
     }
     he_surface_box(m, &bounds);
     tree->exponent = he_exponent_of(fmax(he_vec3_extent(bounds.min), he_vec3_extent(bounds.max)));

@@ -255,9 +255,9 @@ static st_status take_edit_part(load *l, const st_piece *piece)
 {
     st_record *record = &l->pending;
     if (piece->coding != HE_CODING_PLAIN || piece->size > HE_STORED_PART) {
-        return damaged(l,
-                       "a part of the edit of record %llu has another coding than an edit may have",
-                       (unsigned long long)record->number);
+        return damaged(
+            l, "a part of the edit of record %llu has a coding that a part of an edit cannot have",
+            (unsigned long long)record->number);
     }
     memcpy(l->edit + record->body_size, piece->bytes, piece->size);
     record->body_size += piece->size;
@@ -327,7 +327,7 @@ static st_status check_record(load *l, const st_record *record)
 {
     const st_mesh *mesh = l->mesh;
     if (mesh->content == NULL) {
-        return damaged(l, "the first record of the mesh has no content");
+        return damaged(l, "the first record of the mesh has no mesh data");
     }
     bool revises = record->kind <= ST_RECORD_CONTENT;
     uint64_t number = l->record + 1;
@@ -404,7 +404,8 @@ static st_status take(load *l, const st_piece *piece)
     case ST_PIECE_END:
         break;
     }
-    return l->mesh->content != NULL ? ST_OK : damaged(l, "the mesh has no content");
+    return l->mesh->content != NULL ? ST_OK
+                                    : damaged(l, "the records of the mesh have no mesh data");
 }
 
 /* --- the end --- */

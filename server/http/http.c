@@ -217,7 +217,7 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
 {
     srv_http *http = he_mem_zero(1, sizeof *http);
     if (http == NULL) {
-        snprintf(message, size, "no memory to start");
+        snprintf(message, size, "no memory to start the HTTP server");
         return NULL;
     }
     http->options = *options;
@@ -252,7 +252,7 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
         char text[SRV_ADDRESS_TEXT];
         srv_address_format(&options->address.socket.any, true, text);
         snprintf(message, size, "cannot listen on %s: %s", text,
-                 errno == 0 ? "the server could not be started" : strerror(errno));
+                 errno == 0 ? "the HTTP server could not be started" : strerror(errno));
         http_free(http);
         return NULL;
     }

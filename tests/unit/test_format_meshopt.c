@@ -255,7 +255,7 @@ static void what_the_extension_forbids_is_refused(void **state)
         {CORNERS("'mode':'ATTRIBUTES','count':200,'byteStride':16"), NULL, HE_SYNTAX,
          "the bytes are not ATTRIBUTES of 200"},
         {CORNERS("'mode':'TRIANGLES','count':6,'byteStride':4"), NULL, HE_SYNTAX,
-         "the bytes are not TRIANGLES in compressed form"},
+         "the bytes are not a compressed stream of the mode TRIANGLES"},
         {"{'buffer':2,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
          HE_BAD_INDEX, "there is no buffer 2; the file has 2"},
         {"{'buffer':1,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
@@ -280,7 +280,7 @@ static void what_the_extension_forbids_is_refused(void **state)
         {NULL, INDICES("'mode':'TRIANGLES','count':3,'byteStride':2"), HE_BAD_VALUE,
          "the buffer view declares 12 bytes, but decompresses to 6"},
         {NULL, INDICES("'mode':'INDICES','count':6,'byteStride':2"), HE_SYNTAX,
-         "the bytes are not INDICES in compressed form"},
+         "the bytes are not a compressed stream of the mode INDICES"},
     };
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -337,7 +337,7 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
                           "EXT_meshopt_compression allows at most 0");
     b.bytes[0] = 0xB0;
     expect_packed_refused(&b, first, second, HE_SYNTAX,
-                          "the bytes are not ATTRIBUTES in compressed form");
+                          "the bytes are not a compressed stream of the mode ATTRIBUTES");
     b.bytes[0] = 0xA0;
     b.bytes[b.at] = 0xE2;
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED,

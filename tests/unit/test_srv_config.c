@@ -303,9 +303,9 @@ static void a_line_that_is_wrong_is_named(void **state)
         ROW("samples\nworkers = 65\n", ":2: workers takes a number from 0 to 64"),
         ROW("samples = maybe", ":1: samples takes 0 or 1"),
         ROW("log = all", ":1: log takes"),
-        ROW("config = other", ":1: a file cannot set \"config\""),
-        ROW("backup = x", ":1: a file cannot set \"backup\""),
-        ROW("help", ":1: a file cannot set \"help\""),
+        ROW("config = other", ":1: a configuration file cannot set \"config\""),
+        ROW("backup = x", ":1: a configuration file cannot set \"backup\""),
+        ROW("help", ":1: a configuration file cannot set \"help\""),
         ROW("= 1", ":1: there is no setting \"\""),
         ROW("samples\nwork\0ers = 1\n", ":2: the line has a zero byte"),
 #undef ROW

@@ -64,10 +64,10 @@ static void each_refusal_names_the_line_and_repeats_nothing(void **state)
     static const struct {
         const char *text, *message;
     } rows[] = {
-        {"", "the file has no token"},
-        {"# only\n\n", "the file has no token"},
-        {"a\n", "line 1: the line is not NAME ROLE sha256:HASH"},
-        {"\na read\n", "line 2: the line is not NAME ROLE sha256:HASH"},
+        {"", "the file of tokens has no token"},
+        {"# only\n\n", "the file of tokens has no token"},
+        {"a\n", "line 1: the line does not have the form NAME ROLE sha256:HASH"},
+        {"\na read\n", "line 2: the line does not have the form NAME ROLE sha256:HASH"},
         {"a/b read " HASH, "line 1: the name (field 1) is not"},
         {"hedge_secret read " HASH, "line 1: the name (field 1) is not"},
         {PREFIX "01234567890123456 read " HASH, "line 1: the name (field 1) is not"},
@@ -153,7 +153,7 @@ static void a_file_has_its_limits(void **state)
     memset(large, '\n', API_TOKENS_FILE + 1);
     large[API_TOKENS_FILE + 1] = '\0';
     assert_false(read_text(large, &list));
-    assert_string_equal(message, "the file is larger than 1048576 bytes");
+    assert_string_equal(message, "the file of tokens is larger than 1048576 bytes");
     memset(large, ' ', API_TOKEN_LINE + 1);
     large[API_TOKEN_LINE + 1] = '\0';
     assert_false(read_text(large, &list));

@@ -64,7 +64,7 @@ he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex *vertex, he_
         return status;
     }
     if (!(t > 0 && t < 1)) {
-        return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "t must be between 0 and 1, not %g", t);
+        return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "\"t\" must be between 0 and 1, not %g", t);
     }
     he_reservation need = {0};
     he_bisect_reservation(&need);

@@ -365,7 +365,7 @@ static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to
         return status;
     }
     if (!(t >= 0 && t <= 1)) {
-        return he_fail(err, HE_BAD_VALUE, HE_HALFEDGE, h.i, "t must be from 0 to 1, not %g", t);
+        return he_fail(err, HE_BAD_VALUE, HE_HALFEDGE, h.i, "\"t\" must be from 0 to 1, not %g", t);
     }
     if (to != NULL && !he_point_is_finite(*to)) {
         return he_fail(err, HE_NOT_FINITE, HE_HALFEDGE, h.i, "the position must be finite");

@@ -13,7 +13,7 @@ static he_status check(const he_mesh *m, he_edge e, double t, he_error *err)
     he_prefetch_about(m, e);
     he_prefetch_ends(m, e);
     if (!(t > 0 && t < 1)) {
-        return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "t must be between 0 and 1, not %g", t);
+        return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "\"t\" must be between 0 and 1, not %g", t);
     }
     he_halfedge h = he_edge_halfedge(e, 0), back = he_twin(h);
     he_vertex c = he_target(m, he_next(m, h)), d = he_target(m, he_next(m, back));

@@ -255,7 +255,7 @@ static he_status glb_open(he_import *into, void **state, he_error *err)
 {
     glb *g = he_mem_zero(1, sizeof *g);
     if (g == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to read the GLB file");
     }
     g->into = into;
     *state = g;
@@ -306,7 +306,7 @@ static he_status gltf_open(he_import *into, void **state, he_error *err)
 {
     text *t = he_mem_zero(1, sizeof *t);
     if (t == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to read the glTF file");
     }
     t->into = into;
     *state = t;

@@ -135,7 +135,8 @@ static he_status check_stream(const he_gltf *asset, uint32_t object,
                             (unsigned long long)packed->length);
     }
     if (version < 0) {
-        return he_json_fail(json, object, err, HE_SYNTAX, "the bytes are not %s in compressed form",
+        return he_json_fail(json, object, err, HE_SYNTAX,
+                            "the bytes are not a compressed stream of the mode %s",
                             he_meshopt_modes[stream->mode]);
     }
     if (version > latest) {
@@ -190,9 +191,10 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     }
     if (!he_meshopt_decode(&stream, packed.bytes, (size_t)packed.length, own)) {
         he_mem_free(own);
-        return he_json_fail(json, object, err, HE_SYNTAX,
-                            "the bytes are not %s of %llu elements in compressed form",
-                            he_meshopt_modes[stream.mode], (unsigned long long)stream.count);
+        return he_json_fail(
+            json, object, err, HE_SYNTAX,
+            "the bytes are not a compressed stream of the mode %s with %llu elements",
+            he_meshopt_modes[stream.mode], (unsigned long long)stream.count);
     }
     *out = (he_gltf_buffer){.bytes = own, .own = own, .length = length, .place = HE_GLTF_NOWHERE};
     asset->steps += bytes / sizeof(uint32_t);
@@ -217,7 +219,8 @@ he_status he_gltf_unpack(he_gltf *asset, uint32_t view, uint32_t extension,
     if (asset->unpacked == NULL) {
         asset->unpacked = he_mem_zero(asset->views.count, sizeof *asset->unpacked);
         if (asset->unpacked == NULL) {
-            return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu views", asset->views.count);
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu buffer views",
+                                 asset->views.count);
         }
     }
     size_t i = number_of(&asset->views, view);

@@ -313,7 +313,7 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_progress *pro
 {
     glb_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the GLB file");
     }
     w->halfedge = HE_NONE;
     bool packs = encoding == HE_GLB_MESHOPT;
@@ -321,7 +321,7 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     if (status == HE_OK && w->g.splits.copies.count > 0) {
         w->at = he_mem_array(NULL, mesh->c.vertices.issued, sizeof *w->at);
         if (w->at == NULL) {
-            status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+            status = he_fail_plain(err, HE_NO_MEMORY, "no memory to write the GLB file");
         }
     }
     if (status == HE_OK && w->g.groups.order != NULL) {

@@ -54,7 +54,7 @@ static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     (void)encoding;
     mtl_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the MTL file");
     }
     w->table = he_mesh_materials(mesh);
     for (size_t i = 0; i < w->table->count; i++) {

@@ -416,7 +416,7 @@ static he_status obj_open(he_import *into, void **state, he_error *err)
 {
     obj *o = he_mem_zero(1, sizeof *o);
     if (o == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to read the OBJ file");
     }
     o->into = into;
     he_lines_init(&o->lines, read_line, o);

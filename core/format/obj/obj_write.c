@@ -122,7 +122,7 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     (void)encoding;
     obj_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the OBJ file");
     }
     w->mesh = mesh;
     w->halfedge = HE_NONE;

@@ -515,7 +515,7 @@ static he_status off_open(he_import *into, void **state, he_error *err)
 {
     off *o = he_mem_zero(1, sizeof *o);
     if (o == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a reader");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to read the OFF file");
     }
     o->into = o->values.into = into;
     he_lines_init(&o->lines, read_line, o);

@@ -31,7 +31,7 @@ static he_status off_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     (void)progress;
     off_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the OFF file");
     }
     w->mesh = mesh;
     w->halfedge = HE_NONE;

@@ -247,7 +247,7 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_progress *pro
                                                 HE_PLY_BIG_ENDIAN};
     ply_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the PLY file");
     }
     w->mesh = mesh;
     w->encoding = encodings[encoding];

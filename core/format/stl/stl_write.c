@@ -135,7 +135,7 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_progress *pro
 {
     stl_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the STL file");
     }
     w->mesh = mesh;
     w->text = encoding != 0;

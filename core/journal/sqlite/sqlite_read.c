@@ -443,7 +443,7 @@ static st_status unpack(st_reader *reader, st_piece *piece)
     return status != ST_DAMAGED
                ? status
                : damaged(reader,
-                         "part %llu of the content after record %llu cannot be decompressed: %s",
+                         "part %llu of the mesh data after record %llu cannot be decompressed: %s",
                          (unsigned long long)reader->part, (unsigned long long)reader->number, why);
 }
 
@@ -464,12 +464,12 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
                          : st_db_step(db, reader->parts);
     if (outcome == ST_SQL_DONE) {
         reader->parts = NULL;
-        return damaged(reader, "part %llu of the content after record %llu is missing",
+        return damaged(reader, "part %llu of the mesh data after record %llu is missing",
                        (unsigned long long)reader->part, (unsigned long long)reader->number);
     }
     if (outcome != ST_SQL_ROW) {
         reader->parts = NULL;
-        return failed(reader, outcome, "a part of the content");
+        return failed(reader, outcome, "a part of the mesh data");
     }
     const unsigned char *bytes = st_db_bytes(reader->parts, 1, &size);
     uint32_t sum = 0;
@@ -478,7 +478,7 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
     }
     if (size < ST_PART_HEAD || st_db_word(reader->parts, 0) != reader->part ||
         sum != st_part_sum(reader->snapshot, reader->part, bytes + sizeof sum, size - sizeof sum)) {
-        return damaged(reader, "part %llu of the content after record %llu has a wrong checksum",
+        return damaged(reader, "part %llu of the mesh data after record %llu has a wrong checksum",
                        (unsigned long long)reader->part, (unsigned long long)reader->number);
     }
     *out = (st_piece){.kind = ST_PIECE_PART,
@@ -506,7 +506,7 @@ static st_status read_inline_part(st_reader *reader, bool *got, st_piece *out)
         return ST_OK;
     }
     if (!he_take_bytes(c, 1, &coding) || !he_take_u32(c, &size) || size > he_left(c)) {
-        return damaged(reader, "the content in record %llu ends within a part",
+        return damaged(reader, "the mesh data in record %llu ends within a part",
                        (unsigned long long)reader->number);
     }
     *out = (st_piece){.kind = ST_PIECE_PART, .coding = coding, .bytes = c->at, .size = size};
@@ -547,7 +547,7 @@ static st_status read_inline_base(st_reader *reader)
     }
     const st_frame *frame = &reader->frame;
     if (frame->record.kind != ST_RECORD_CONTENT || frame->in_parts) {
-        return damaged(reader, "record %llu, from which the mesh is loaded, has no content",
+        return damaged(reader, "record %llu, from which the mesh is loaded, has no mesh data",
                        (unsigned long long)number);
     }
     if (number == 1 && frame->chain != st_chain_of_origin(reader->row.origin)) {
@@ -627,7 +627,7 @@ static st_status read_record(st_reader *reader, st_piece *out)
     if (reader->frame.in_parts) {
         status = find_snapshot(reader, number, false);
         if (status == ST_ABSENT) {
-            return damaged(reader, "the content of record %llu is missing",
+            return damaged(reader, "the mesh data of record %llu is missing",
                            (unsigned long long)number);
         }
         reader->at = AT_RECORD_PARTS;
