@@ -221,7 +221,7 @@ static void one_file_is_the_mesh(void **state)
                    "first bytes: "
                    "a.bin, a.mtl",
                    send_files(b, "/v1/meshes", none));
-    expect_refused(422, "unclear_parts", "names, media types and first bytes show: ",
+    expect_refused(422, "unclear_parts", "names, media types and first bytes: ",
                    send_files(b, "/v1/meshes", (file[MOST_FILES]){{NULL, NULL, NULL, 0}}));
     bench_done(expect_triangle("obj", send_files(b, "/v1/meshes", bare)));
     expect_refused(422, "unclear_parts", "could be the mesh: x, y;",
