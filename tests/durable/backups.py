@@ -15,7 +15,7 @@ import subprocess
 import threading
 import time
 
-from daemon import ETAG, Daemon, Refused
+from daemon import ETAG, Daemon, Refused, environment
 from replay import Replay, Wrong, state
 from writers import Draw, write_for
 
@@ -25,13 +25,11 @@ KINDS = [(kind, weight) for kind, weight in Draw.KINDS if kind != 'delete']
 
 def maintain(run, folder, *arguments, faults=None):
     """Runs hedged for one task; returns its exit status and its output."""
-    environment = dict(os.environ)
-    if faults:
-        environment.update({k: str(v) for k, v in faults.items()}, LD_PRELOAD=run.library,
-                           FAULT_FOLDER=folder)
+    if faults is not None:
+        faults = {**faults, 'FAULT_FOLDER': folder}
     ended = subprocess.run([run.hedged, '--store', 'sqlite:' + folder, *arguments],
                            stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
-                           env=environment)
+                           env=environment(faults, run.library))
     return ended.returncode, ended.stderr + ended.stdout
 
 

@@ -69,24 +69,29 @@ class Refused(Exception):
         self.status, self.said = status, said
 
 
+def environment(faults, library):
+    """Returns the environment of a daemon; `faults` are the settings of inject/faults.c, or None."""
+    variables = dict(os.environ)
+    if faults is not None:
+        variables.update({name: str(value) for name, value in faults.items()})
+        variables['LD_PRELOAD'] = library
+        # A sanitizer requires to be the first library; this option makes it accept another one
+        # before it.
+        variables['ASAN_OPTIONS'] = (variables.get('ASAN_OPTIONS', '')
+                                     + ':verify_asan_link_order=0')
+    return variables
+
+
 class Daemon:
     """A daemon on a free port. `faults` are the settings of inject/faults.c, `around` is a program
     to run it under."""
 
     def __init__(self, program, flags, faults=None, library=None, around=(), on_start=None):
-        environment = dict(os.environ)
-        if faults is not None:
-            environment.update({name: str(value) for name, value in faults.items()})
-            environment['LD_PRELOAD'] = library
-            # A sanitizer requires to be the first library; this option makes it accept another one
-            # before it.
-            environment['ASAN_OPTIONS'] = (environment.get('ASAN_OPTIONS', '')
-                                           + ':verify_asan_link_order=0')
         self.process = subprocess.Popen(
             [*around, program, '--listen', '127.0.0.1:0', '--log', 'off', '--idle-timeout', '3600',
              *flags],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-            env=environment)
+            env=environment(faults, library))
         atexit.register(self.process.kill)  # no effect on one that was waited for
         if on_start:
             on_start(self.process)
