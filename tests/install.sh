@@ -83,6 +83,16 @@ man_is_whole() {
     grep -q "$("$hedged" --version)" "$work/plain" && ! grep -n '@[A-Z]*@' "$man"
 }
 
+# The manual page must name each problem (api/json/problem.h) that only a store on the disk causes.
+man_has_problems_of_store() {
+    sed -n 's/.*X([A-Z_]*, "\(store_[a-z]*\|mesh_damaged\|mesh_newer\|loading\|interrupted\)".*/\1/p' \
+        api/json/problem.h >"$work/problems"
+    [ "$(wc -l <"$work/problems")" -ge 8 ] || return 1
+    while read -r problem; do
+        grep -qE "^\.IR? $problem( |$)" "$man" || { echo "no $problem"; return 1; }
+    done <"$work/problems"
+}
+
 man_is_clean() {
     groff -man -Tascii -ww "$man" 2>"$work/warnings" >/dev/null || return 1
     cat "$work/warnings"
@@ -122,6 +132,7 @@ version_is_named() {
 check 'make install puts everything in its place' installs
 check 'the program runs from there with its page' runs_from_there
 check 'the manual page has every option and its text' man_is_whole
+check 'the manual page names the problems of a store' man_has_problems_of_store
 check 'the unit starts what was installed' unit_is_whole
 if command -v groff >/dev/null; then
     check 'the manual page is set without a warning' man_is_clean
