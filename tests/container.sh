@@ -223,6 +223,15 @@ is_locked_in() {
     touch "/proc/$first/root/tmp/x" 2>&1 | grep 'Read-only file system'
 }
 
+# Makes a backup beside the daemon and verifies it. Both times hedged is run as `docker exec` runs it,
+# without a shell.
+backs_up() {
+    for task in --backup --verify; do
+        env -i HEDGE_STORE=sqlite:/data PATH="$PATH:/usr/local/bin" nsenter --target "$first" --mount \
+            --pid --root --wd --setuid 10001 --setgid 10001 hedged "$task" /data/backup.db || return 1
+    done
+}
+
 mkfifo "$work/log"
 check 'there is the base image' has_base
 check 'the image builds' builds
@@ -246,6 +255,7 @@ check 'it starts on a read-only root' start_read_only
 if [ -n "$base" ]; then
     check 'it is process 1, without rights, on a root that cannot be written' is_locked_in
     check 'a mesh is created and edited there' creates_and_edits
+    check 'a backup is made beside the daemon' backs_up
     check 'SIGTERM stops process 1 with status 0' stops
 fi
 check 'it starts again with the same volume' start_read_only
