@@ -123,8 +123,12 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
         api_in_point(in);
         return false;
     }
-    return api_route_find(x->service->routes, "GET", &path, &variables, allow) != NULL ||
-           api_in_fail(in, API_BAD_PATH, "no route answers GET \"%.150s\"", raw);
+    const api_route *route = api_route_find(x->service->routes, "GET", &path, &variables, allow);
+    if (route == NULL) {
+        return api_in_fail(in, API_BAD_PATH, "no route answers GET \"%.150s\"", raw);
+    }
+    return route->role != API_ROLE_OPEN ||
+           api_in_fail(in, API_BAD_PATH, "GET \"%.150s\" needs no ticket", raw);
 }
 
 void api_tickets_post(api_exchange *x)

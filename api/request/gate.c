@@ -61,14 +61,15 @@ const char *api_gate_ticket(const char *query)
 static bool take_ticket(api_exchange *x, const char *ticket)
 {
     const char *path = x->request.path, *query = x->request.query;
-    int length = ticket == query ? 0 : (int)(ticket - query) - 1;
+    const bool alone = ticket == query;
+    int length = alone ? 0 : (int)(ticket - query) - 1;
     size_t size = strlen(path) + (size_t)length + 2;
     char *target = api_arena_array(&x->arena, size, 1);
     if (target == NULL) {
         return api_fail_memory(x);
     }
-    (void)snprintf(target, size, "%s%s%.*s", path, length > 0 ? "?" : "", length, query);
-    x->request.query = target + strlen(path) + (length > 0 ? 1 : 0);
+    (void)snprintf(target, size, "%s%s%.*s", path, alone ? "" : "?", length, query);
+    x->request.query = target + strlen(path) + (alone ? 0 : 1);
     return (strcmp(x->request.method, "GET") == 0 &&
             api_tickets_take(x->service->tickets, ticket + strlen(API_TICKET), target,
                              st_clock_utc(), &x->token)) ||

@@ -87,7 +87,8 @@ static void close_parts(srv_parts *parts)
 int srv_daemon_run(const srv_started *started)
 {
     const srv_log_settings settings = srv_start_log_settings(started->config);
-    srv_parts parts = {.started = started, .config = started->config};
+    srv_parts parts = {
+        .started = started, .config = started->config, .reload_lock = PTHREAD_MUTEX_INITIALIZER};
     sigset_t signals;
     srv_signals_begin(&signals);
     const st_memory_limit limit = srv_choose_budget(started->config);
@@ -103,10 +104,8 @@ int srv_daemon_run(const srv_started *started)
     bool open = srv_open_tokens(&parts) && srv_open_certificates(&parts) &&
                 srv_open_store(&parts) && srv_open_service(&parts) && srv_open_http(&parts);
     if (open) {
-        char text[SRV_URL_TEXT + 32];
         siginfo_t reason;
-        snprintf(text, sizeof text, "READY=1\nSTATUS=listening on %s", parts.url);
-        srv_notify(text);
+        srv_watch_announce(&parts);
         wait_for_stop(&parts, &signals, &reason);
         if (!stop(&parts, &reason)) {
             /* Threads of the abandoned work still use the daemon's memory, so nothing is freed. The

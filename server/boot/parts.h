@@ -13,6 +13,7 @@
 #include "server/net/unix_socket.h"
 #include "system/parallel.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 
 typedef struct srv_parts {
@@ -40,6 +41,11 @@ typedef struct srv_parts {
     char url[SRV_URL_TEXT]; /* the daemon's URL, with the port that is in use */
     _Atomic bool ready;     /* whether the daemon serves requests, for /readyz */
     _Atomic bool full;      /* whether memory is full, for /readyz: see watch.h */
+    /* Whether the message READY=1 to systemd was lost, so that watch.c must send it again. */
+    _Atomic bool unannounced;
+    /* Held during a reload: of two reloads, the later one must not be overtaken by the earlier one,
+     * which may have read the files before they were changed. */
+    pthread_mutex_t reload_lock;
 } srv_parts;
 
 /* Each of these functions opens its parts of the daemon as `parts->config` says. Returns false,

@@ -115,9 +115,8 @@ static void tell_systemd_begun(void)
     srv_notify(text);
 }
 
-bool srv_reload(void *context, char *message, size_t size)
+static bool reload_all(srv_parts *parts, char *message, size_t size)
 {
-    srv_parts *parts = context;
     char why[320], state[512];
     bool ok = true;
     tell_systemd_begun();
@@ -133,12 +132,21 @@ bool srv_reload(void *context, char *message, size_t size)
         }
     }
     if (ok) {
-        char status[SRV_STATUS];
-        srv_watch_describe(parts, status);
-        snprintf(state, sizeof state, "READY=1\nSTATUS=%s", status);
+        srv_watch_announce(parts);
     } else {
         snprintf(state, sizeof state, "READY=1\nSTATUS=not reloaded: %s", why);
+        if (!srv_notify(state)) {
+            atomic_store(&parts->unannounced, true);
+        }
     }
-    srv_notify(state);
+    return ok;
+}
+
+bool srv_reload(void *context, char *message, size_t size)
+{
+    srv_parts *parts = context;
+    pthread_mutex_lock(&parts->reload_lock);
+    const bool ok = reload_all(parts, message, size);
+    pthread_mutex_unlock(&parts->reload_lock);
     return ok;
 }

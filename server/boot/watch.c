@@ -59,12 +59,20 @@ void srv_watch_describe(const srv_parts *parts, char text[SRV_STATUS])
                                           : "");
 }
 
-static void tell_systemd(const srv_parts *parts)
+/* Sends the lines `head`, which may be empty, and the STATUS. Returns what srv_notify returns. */
+static bool tell_systemd(const srv_parts *parts, const char *head)
 {
-    char status[SRV_STATUS], text[SRV_STATUS + 16];
+    char status[SRV_STATUS], text[SRV_STATUS + 32];
     srv_watch_describe(parts, status);
-    snprintf(text, sizeof text, "STATUS=%s", status);
-    srv_notify(text);
+    snprintf(text, sizeof text, "%sSTATUS=%s", head, status);
+    return srv_notify(text);
+}
+
+void srv_watch_announce(srv_parts *parts)
+{
+    if (!tell_systemd(parts, "READY=1\n")) {
+        atomic_store(&parts->unannounced, true);
+    }
 }
 
 /* Notifies systemd's watchdog twice within its timeout, if a worker thread still answers requests;
@@ -90,6 +98,9 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 void srv_watch_look(srv_watch *watch, srv_parts *parts)
 {
     const st_health before = watch->health;
+    if (atomic_exchange(&parts->unannounced, false)) {
+        srv_watch_announce(parts);
+    }
     feed_watchdog(parts, &watch->fed);
     st_memory_rests(&watch->rest, processor_micros());
     st_store_rest(parts->store);
@@ -97,6 +108,6 @@ void srv_watch_look(srv_watch *watch, srv_parts *parts)
     st_store_health(parts->store, &watch->health);
     tell_health(parts->log, &before, &watch->health, srv_config_folder(parts->config));
     if (watch->health.status != before.status) {
-        tell_systemd(parts);
+        tell_systemd(parts, "");
     }
 }

@@ -18,6 +18,10 @@ typedef struct srv_watch {
 enum { SRV_STATUS = SRV_URL_TEXT + 128 };
 void srv_watch_describe(const srv_parts *parts, char text[SRV_STATUS]);
 
+/* Sends READY=1 and this text to systemd, when the daemon has started or was reloaded. If the
+ * message is lost (notify.h), srv_watch_look sends it again. */
+void srv_watch_announce(srv_parts *parts);
+
 /* Does the periodic work; it must be called about once a second, with a `watch` that is zero at
  * first. Returns unused memory to the system, finds out whether memory is full, reports in the log
  * and to systemd when the disk is full, has space again or failed, and notifies systemd's

@@ -14,21 +14,22 @@ bool srv_notify(const char *message)
     struct sockaddr_un to = {.sun_family = AF_UNIX};
     size_t length = name == NULL ? 0 : strlen(name);
     if (length < 2 || length >= sizeof to.sun_path || (name[0] != '/' && name[0] != '@')) {
-        return false;
+        return true;
     }
     memcpy(to.sun_path, name, length);
     if (name[0] == '@') {
         /* An abstract name, which exists only in the kernel: there is no file. */
         to.sun_path[0] = '\0';
     }
-    int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0) {
         return false;
     }
     ssize_t sent = sendto(fd, message, strlen(message), MSG_NOSIGNAL, (const struct sockaddr *)&to,
                           (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length));
+    const bool full = sent < 0 && (errno == EAGAIN || errno == ENOBUFS);
     close(fd);
-    return sent >= 0;
+    return !full;
 }
 
 /* Parses a positive number; returns 0 for any other text. */

@@ -9,8 +9,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sends a message, such as "READY=1"; lines are separated by '\n'. Returns false if there is no
- * socket, or if sending failed, which is no reason to stop. */
+/* Sends a message, such as "READY=1"; lines are separated by '\n'. It never waits: if systemd has
+ * not read the messages before, and its queue is full, the message is lost. Returns false if the
+ * message was lost for a reason that passes: the queue was full, or there was no free descriptor.
+ * Other failures, and a missing socket, return true: sending again would not help. */
 bool srv_notify(const char *message);
 
 /* Returns the number of microseconds within which systemd's watchdog expects the message

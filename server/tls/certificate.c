@@ -73,6 +73,14 @@ static gnutls_datum_t datum_of(const file *f)
     return (gnutls_datum_t){(unsigned char *)f->text, (unsigned)f->length};
 }
 
+/* Writes that a file is not PEM; `code` is gnutls's reason, whose text ends with a full stop. */
+static void tell_not_pem(const file *f, const char *what, int code, char *message, size_t size)
+{
+    const char *why = gnutls_strerror(code);
+    snprintf(message, size, "%s has no %s in PEM: %.*s", f->path, what, (int)strcspn(why, "."),
+             why);
+}
+
 static bool read_chain(srv_certificate *pair, const file *f, char *message, size_t size)
 {
     const gnutls_datum_t data = datum_of(f);
@@ -82,7 +90,7 @@ static bool read_chain(srv_certificate *pair, const file *f, char *message, size
     if (code == GNUTLS_E_SHORT_MEMORY_BUFFER) {
         snprintf(message, size, "%s has more than %d certificates", f->path, SRV_MAX_CHAIN);
     } else if (code < 0) {
-        snprintf(message, size, "%s has no certificate in PEM: %s", f->path, gnutls_strerror(code));
+        tell_not_pem(f, "certificate", code, message, size);
     }
     pair->length = code < 0 ? 0 : length;
     return code >= 0;
@@ -101,7 +109,7 @@ static bool read_key(srv_certificate *pair, const file *f, char *message, size_t
             "%s is encrypted, and hedged does not ask for a passphrase: decrypt the file first",
             f->path);
     } else if (code < 0) {
-        snprintf(message, size, "%s has no private key in PEM: %s", f->path, gnutls_strerror(code));
+        tell_not_pem(f, "private key", code, message, size);
     }
     return code >= 0;
 }

@@ -619,6 +619,9 @@ static void try_tickets(world *w)
     must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m x\"}", 400});
     must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"//evil.example/\"}", 400});
     must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m/undo\"}", 400});
+    must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"/version\"}", 400});
+    ask_ticket(w, "left", "/v1/meshes/left-m?", url);
+    try_url(w, "GET", url, 200);
     ask_ticket(w, "left", "/v1/meshes/left-m", url);
     write_file(file, "left");
     bench_change_tokens(w->bench, file);

@@ -114,6 +114,45 @@ static void a_watchdog_of_another_process_is_not_fed(void **state)
     close(fd);
 }
 
+/* Fills the queue of the socket `to` with heartbeats, which hear() skips. A sender may have only so
+ * many unread messages, so there are several senders. */
+static void fill(int to)
+{
+    struct sockaddr_un name;
+    socklen_t length = sizeof name;
+    size_t sent;
+    assert_int_equal(getsockname(to, (struct sockaddr *)&name, &length), 0);
+    do {
+        int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+        assert_true(fd >= 0);
+        sent = 0;
+        while (sendto(fd, "WATCHDOG=1", 10, 0, (struct sockaddr *)&name, length) > 0) {
+            sent++;
+        }
+        close(fd);
+    } while (sent > 0);
+}
+
+/* The daemon must not wait for a systemd that reads no messages. Once systemd reads them again, it
+ * must be told that the daemon is ready, or it would end the daemon. */
+static void a_systemd_that_reads_nothing_delays_nothing(void **state)
+{
+    (void)state;
+    char name[64], text[512];
+    snprintf(name, sizeof name, "@hedge-full-%d", (int)getpid());
+    int fd = be_systemd(name);
+    fill(fd);
+    daemon_process *d = daemon_start(NULL);
+    assert_int_equal(daemon_stop(d), 0);
+    d = daemon_start(NULL);
+    expect_ready(fd, d);
+    assert_int_equal(daemon_stop(d), 0);
+    hear(fd, text);
+    assert_string_equal(text, "STOPPING=1\nSTATUS=stopping");
+    unsetenv("NOTIFY_SOCKET");
+    close(fd);
+}
+
 static void write_file(const char *path, const char *text)
 {
     FILE *out = fopen(path, "w");
@@ -216,6 +255,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(systemd_hears_of_start_life_and_stop),
         cmocka_unit_test(a_watchdog_of_another_process_is_not_fed),
+        cmocka_unit_test(a_systemd_that_reads_nothing_delays_nothing),
         cmocka_unit_test(systemd_hears_of_a_reload),
         cmocka_unit_test(a_file_holds_the_settings),
         cmocka_unit_test(variables_that_no_option_has_are_named),

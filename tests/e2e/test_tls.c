@@ -174,7 +174,7 @@ static void what_cannot_serve_stops_the_start(void **state)
         const char *certificate, *key, *why;
     } rows[] = {
         {certificate, other, "does not belong to the first certificate in"},
-        {key, key, "has no certificate in PEM"},
+        {key, key, "has no certificate in PEM: No certificate was found\""},
         {certificate, certificate, "has no private key in PEM"},
         {"/nowhere/c.pem", key, "/nowhere/c.pem cannot be read: No such file"},
     };

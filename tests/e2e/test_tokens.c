@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -97,6 +98,63 @@ static void a_daemon_asks_for_tokens_and_reads_its_file_again(void **state)
     free(log);
 }
 
+/* Sends POST /v1/admin/reload on a connection of its own, which is returned. */
+static int begin_reload(const daemon_process *d, const made *who)
+{
+    char request[400];
+    const int length = snprintf(request, sizeof request,
+                                "POST /v1/admin/reload HTTP/1.1\r\nHost: localhost\r\n%s\r\n"
+                                "Content-Length: 0\r\n\r\n",
+                                who->header);
+    int fd = client_connect(d, 0);
+    assert_int_equal(write(fd, request, (size_t)length), length);
+    return fd;
+}
+
+static void end_reload(int fd)
+{
+    char answer[13] = "";
+    for (size_t used = 0; used < 12;) {
+        const ssize_t got = read(fd, answer + used, 12 - used);
+        assert_true(got > 0);
+        used += (size_t)got;
+    }
+    assert_string_equal(answer, "HTTP/1.1 200");
+    close(fd);
+}
+
+/* A reload that began before a token was removed must not bring it back when it ends after another
+ * reload. The first reload reads a pipe, so that the test decides when it ends. */
+static void a_reload_does_not_undo_a_later_one(void **state)
+{
+    (void)state;
+    made alice = make("alice", "write"), boss = make("boss", "admin");
+    char other[FOLDER_PATH + 10];
+    snprintf(other, sizeof other, "%s/pipe", folder);
+    write_file(alice.line, boss.line);
+    daemon_process *d = daemon_start(ARGUMENTS("--tokens", path));
+    client *c = client_new(d);
+    assert_int_equal(mkfifo(other, 0600), 0);
+    assert_int_equal(rename(other, path), 0);
+    int first = begin_reload(d, &boss);
+    FILE *feed = fopen(path, "w"); /* returns when the daemon has opened the pipe, too */
+    assert_non_null(feed);
+    assert_int_equal(unlink(path), 0);
+    write_file("#", boss.line);
+    int second = begin_reload(d, &boss);
+    /* These requests give the second reload time to end first, which it must not do. */
+    for (int i = 0; i < 100; i++) {
+        reply_done(reply_expect(200, ask(c, &alice, "GET", "/v1/token", NULL)));
+    }
+    fprintf(feed, "%s\n%s\n", alice.line, boss.line);
+    assert_int_equal(fclose(feed), 0);
+    end_reload(first);
+    end_reload(second);
+    reply_done(reply_expect(401, ask(c, &alice, "GET", "/v1/token", NULL)));
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 static void a_wrong_file_is_no_start(void **state)
 {
     (void)state;
@@ -122,6 +180,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_daemon_asks_for_tokens_and_reads_its_file_again),
+        cmocka_unit_test(a_reload_does_not_undo_a_later_one),
         cmocka_unit_test(a_wrong_file_is_no_start),
     };
     folder_make(folder);
