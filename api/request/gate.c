@@ -7,8 +7,9 @@
 #include <string.h>
 #include <strings.h>
 
-/* Finds the token in `Bearer TOKEN` (RFC 9110 11.4 and RFC 6750 2.1): a scheme, blanks, and a token
- * with nothing after it. Sets *text to NULL if there is no header or another scheme. */
+/* Finds the token in `Bearer TOKEN` (RFC 9110 11.4 and RFC 6750 2.1): a scheme, blanks, and a
+ * token. Returns its length, or 0 if anything but blanks follows it; libmicrohttpd does not remove
+ * blanks at the end of a header. Sets *text to NULL if there is no header or another scheme. */
 static size_t read_bearer(const char *header, const char **text)
 {
     static const char scheme[] = "bearer";
@@ -18,7 +19,8 @@ static size_t read_bearer(const char *header, const char **text)
         return 0;
     }
     *text = header + length + strspn(header + length, " ");
-    return strcspn(*text, " \t");
+    const size_t token = strcspn(*text, " \t");
+    return (*text)[token + strspn(*text + token, " \t")] == '\0' ? token : 0;
 }
 
 /* Refuses a request without a valid token. The attempt is counted for the client's address, so that
@@ -81,7 +83,7 @@ static bool take_bearer(api_exchange *x, const char *header)
 {
     const char *text;
     size_t length = read_bearer(header, &text);
-    if (text != NULL && text[length] == '\0') {
+    if (text != NULL) {
         x->token = api_tokens_find(x->service->options.tokens, text, length, st_clock_utc());
     }
     return x->token != NULL || refuse_unknown(x, text != NULL);

@@ -290,6 +290,21 @@ static double revision_of(world *w, const char *mesh)
     return number;
 }
 
+/* The name of the scheme has no case, and blanks around the token do not belong to it. */
+static void try_spellings(world *w)
+{
+    static const char *const spellings[] = {"BEARER boss" SECRET, "bearer   boss" SECRET,
+                                            "Bearer boss" SECRET " \t"};
+    for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++) {
+        const char *const headers[] = {"Authorization", spellings[i], NULL};
+        bench_reply r = ask_with(w, "GET", "/v1/token", headers, NULL);
+        if (r.status != 200) {
+            found(w, "\"%s\" is %d: %.200s", spellings[i], r.status, r.body);
+        }
+        bench_done(r);
+    }
+}
+
 /* A refusal because the token's role is too small must name the sufficient role, and the request
  * must change nothing; a token with the sufficient role must be admitted. */
 static void try_roles(world *w)
@@ -668,6 +683,7 @@ size_t gate_findings(bool tell)
     try_list(&w, "left", "left-m ");
     try_list(&w, "boss", "also-right.m left-m m right-m ");
     try_strangers(&w);
+    try_spellings(&w);
     try_roles(&w);
     try_rehearsals(&w);
     try_prefixes(&w);
