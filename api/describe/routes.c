@@ -619,7 +619,8 @@ static const api_route routes[] = {
      .doc = "A ticket lets one GET pass without the header Authorization, which browsers do not "
             "send for images and downloads in a page. `path` in the answer is the path of the "
             "request with a ticket added. The ticket is valid for one GET within 60 seconds, with "
-            "the rights of the token that asked for it."},
+            "the rights of the token that asked for it. A path that needs no token is refused, "
+            "because it needs no ticket either."},
     {.method = "POST",
      .path = "/v1/admin/reload",
      .name = "reload_tokens",
