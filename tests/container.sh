@@ -88,15 +88,22 @@ says() {
     [ "$1" = "$2" ] || { echo "\"$1\" instead of \"$2\""; return 1; }
 }
 
+# label NAME: prints a label org.opencontainers.image.NAME of the image
+label() {
+    config "index .Docker.Config.Labels \"org.opencontainers.image.$1\""
+}
+
 is_described() {
+    revision=$(label revision)
     says "$(config .Docker.Config.User)" 10001:10001 &&
         says "$(config .Docker.Config.Entrypoint)" '[hedged]' &&
         says "$(config .Docker.Config.StopSignal)" SIGTERM &&
         says "$(config .Docker.Config.ExposedPorts)" 'map[8080/tcp:{}]' &&
         says "$(config .Docker.Config.Healthcheck.Test)" '[CMD hedged --healthcheck]' &&
-        says "hedged $(config 'index .Docker.Config.Labels "org.opencontainers.image.version"')" \
+        says "$revision" "$(git rev-parse HEAD 2>/dev/null)" &&
+        says "hedged $(label version)${revision:+ (commit $revision)}" \
             "$(chroot "$root" /usr/local/bin/hedged --version)" &&
-        says "$(config 'index .Docker.Config.Labels "org.opencontainers.image.licenses"')" MIT
+        says "$(label licenses)" MIT
 }
 
 has_no_tools() {
