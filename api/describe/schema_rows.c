@@ -18,7 +18,7 @@ static const api_record *const records[] = {
     &api_summary_record,  &api_entry_record,   &api_counted_record,   &api_job_state_record,
     &api_import_record,   &api_warning_record, &api_health_record,    &api_readiness_record,
     &api_version_record,  &api_index_record,   &api_token_record,     &api_ticket_record,
-    &api_reloaded_record,
+    &api_reloaded_record, &api_history_record,
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -324,17 +324,7 @@ const api_member api_answer_members[] = {
 
     {"entry", NULL, NULL, REQUIRED, NULL},
 
-    {"history", "revision", "count", REQUIRED, NULL},
-    {"history", "entries", "*#entry", REQUIRED, "The entries, the newest first."},
-    {"history", "undo", "count", REQUIRED, "How many steps can be undone."},
-    {"history", "redo", "count", REQUIRED, "How many steps can be redone."},
-    {"history", "oldest", "count", REQUIRED, "The oldest revision that can still be read."},
-    {"history", "dropped", "count", REQUIRED,
-     "How many entries were removed to keep within the undo budget."},
-    {"history", "bytes", "count", REQUIRED, "Memory that the history uses."},
-    {"history", "budget", "count", REQUIRED,
-     "Memory that the history may use: the option --undo-budget."},
-    {"history", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"history", NULL, NULL, REQUIRED, NULL},
 
     {"found", "halfedge", "id?", OPTIONAL, "The half-edge from the first vertex to the second."},
     {"found", "edge", "id?", OPTIONAL, "The edge between the two vertices."},

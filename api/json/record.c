@@ -2,14 +2,20 @@
 
 #include <string.h>
 
-static bool is_type(const api_field *field, const char *type)
+/* Returns true if a text is the name of a type, or that name and a question mark. */
+static bool is_name(const char *text, const char *name)
 {
-    const size_t length = strlen(type);
-    if (strncmp(field->type, type, length) != 0) {
+    const size_t length = strlen(name);
+    if (strncmp(text, name, length) != 0) {
         return false;
     }
-    const char *rest = field->type + length;
+    const char *rest = text + length;
     return *rest == '\0' || strcmp(rest, "?") == 0;
+}
+
+static bool is_type(const api_field *field, const char *type)
+{
+    return is_name(field->type, type);
 }
 
 static bool is_nullable(const api_field *field)
@@ -60,7 +66,11 @@ static void write_value(api_out *out, const api_field *field, const char *value)
     const void *at = value + field->offset;
     switch (field->form) {
     case API_FORM_NONE:
-        field->write(out, value);
+        if (field->record != NULL) {
+            api_record_write(out, field->record, at);
+        } else {
+            field->write(out, at);
+        }
         break;
     case API_FORM_BOOL:
         api_out_bool(out, *(const bool *)at);
@@ -128,12 +138,15 @@ static bool is_missing_allowed(const api_field *field)
 
 bool api_field_fits(const api_field *field)
 {
-    if (!is_missing_allowed(field) || (field->form == API_FORM_NONE) != (field->write != NULL)) {
+    const bool made = field->write != NULL, nested = field->record != NULL;
+    if (!is_missing_allowed(field) || (made && nested) ||
+        (field->form == API_FORM_NONE) != (made || nested)) {
         return false;
     }
     switch (field->form) {
     case API_FORM_NONE:
-        return true;
+        return !nested ||
+               (field->type[0] == '#' && is_name(field->type + 1, field->record->schema));
     case API_FORM_BOOL:
         return is_type(field, "flag");
     case API_FORM_INT:
@@ -144,7 +157,8 @@ bool api_field_fits(const api_field *field)
     case API_FORM_U64:
         return is_type(field, "count");
     case API_FORM_DOUBLE:
-        return is_type(field, "number") || is_type(field, "time");
+        return is_type(field, "number") || is_type(field, "time") ||
+               field->type[0] == '#'; /* a number within limits */
     case API_FORM_TEXT:
     case API_FORM_CHARS:
         return is_type(field, "text") || field->type[0] == '#'; /* a name of an enumeration */

@@ -8,11 +8,13 @@
  *         API_FIELD("revision", "count", st_entry, revision, .required = true),
  *         API_FIELD("inverts", "count", st_entry, inverts, .zero_is_none = true,
  *                   .doc = "The revision that it undid or redid."),
- *         API_FIELD_MADE("ops", "*text", write_ops, .required = true),
+ *         API_FIELD_MADE_OF("action", "#action", st_entry, action, write_action, .required = true),
+ *         API_FIELD_RECORD("created", "#counted", st_entry, tally.created, &api_counted_record),
  *     };
  *     const api_record api_entry_record = {"entry", fields, sizeof fields / sizeof *fields};
  *
- * A member without a value is null if it is required, else it is left out. */
+ * The members are written in the order of the rows. A member without a value is null if it is
+ * required, else it is left out. */
 #ifndef HE_API_JSON_RECORD_H
 #define HE_API_JSON_RECORD_H
 
@@ -22,7 +24,7 @@
 
 /* The C type of a value in the struct. The macro API_FORM determines it. */
 typedef enum api_form {
-    /* The value is not stored in the struct: the row's function `write` computes and writes it. */
+    /* The value is not a simple one: the row's function `write` or its table `record` writes it. */
     API_FORM_NONE,
     API_FORM_BOOL,
     API_FORM_INT,
@@ -35,28 +37,32 @@ typedef enum api_form {
     API_FORM_VEC3
 } api_form;
 
+typedef struct api_record api_record;
+
 typedef struct api_field {
     const char *name;
     const char *type; /* type of the schema, written as api/describe/schema_rows.h says */
     bool required;
     const char *doc; /* description in the OpenAPI document, may be NULL */
     api_form form;
-    size_t offset;     /* offset of the value in the struct */
+    size_t offset;     /* offset of the value in the struct; 0 is also that of the whole struct */
     bool zero_is_none; /* true if 0 or "" means that there is no value */
     /* 1 + the offset of a bool in the struct that says whether there is a value (API_KNOWN); 0:
      * there always is one */
     size_t known;
-    /* Writes a value that must be computed from the struct at `value`, after the member's name;
-     * NULL if the value is written as it is. */
-    void (*write)(api_out *out, const void *value);
+    /* Writes, after the member's name, a value that must be computed from what lies at the offset;
+     * NULL if no function is needed. */
+    void (*write)(api_out *out, const void *at);
+    /* The table from which the struct at the offset is written as an object, or NULL. */
+    const api_record *record;
 } api_field;
 
 /* All members of an object that is written from a struct. */
-typedef struct api_record {
+struct api_record {
     const char *schema;
     const api_field *fields;
     size_t count;
-} api_record;
+};
 
 #define API_FORM(lvalue) \
     _Generic((lvalue),                                                                             \
@@ -75,10 +81,22 @@ typedef struct api_record {
         .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), \
         .form = API_FORM(((struct_ *)0)->member_), __VA_ARGS__                  \
     }
-/* Makes a row of a table whose value a function computes and writes. */
+/* Makes a row of a table whose value a function computes and writes from the whole struct. */
 #define API_FIELD_MADE(name_, type_, write_, ...)                        \
     {                                                                    \
         .name = (name_), .type = (type_), .write = (write_), __VA_ARGS__ \
+    }
+/* A row whose value a function writes, which is given a pointer to the member of the struct. */
+#define API_FIELD_MADE_OF(name_, type_, struct_, member_, write_, ...)                             \
+    {                                                                                              \
+        .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), .write = (write_), \
+        __VA_ARGS__                                                                                \
+    }
+/* A row whose value is an object that is written from a member of the struct by another table. */
+#define API_FIELD_RECORD(name_, type_, struct_, member_, record_, ...)          \
+    {                                                                           \
+        .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), \
+        .record = (record_), __VA_ARGS__                                        \
     }
 #define API_KNOWN(struct_, member_) (offsetof(struct_, member_) + 1)
 

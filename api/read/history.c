@@ -4,12 +4,13 @@
 #include "api/event/change_json.h"
 #include "api/read/records.h"
 
+#include <assert.h>
 #include <string.h>
 
-/* Writes the names of an entry's operations, stored as "a,b,...", as a list ["a","b","..."]. */
-static void write_ops(api_out *out, const void *value)
+/* Writes the names of operations "a,b,..." as a list ["a","b","..."]. */
+static void write_ops(api_out *out, const void *ops)
 {
-    const char *names = ((const st_entry *)value)->ops;
+    const char *names = ops;
     api_out_array_begin(out);
     while (*names != '\0') {
         size_t length = strcspn(names, ",");
@@ -19,14 +20,17 @@ static void write_ops(api_out *out, const void *value)
     api_out_array_end(out);
 }
 
-static void write_action(api_out *out, const void *value)
+static void write_action(api_out *out, const void *action)
 {
-    api_out_string(out, api_action_name(((const st_entry *)value)->action));
+    api_out_string(out, api_action_name(*(const st_action *)action));
 }
 
+/* Names the items of an array in st_tally, from which the table below writes an object. */
 typedef struct counted {
     uint32_t vertices, edges, faces;
 } counted;
+static_assert(sizeof(counted) == sizeof(((const st_tally *)NULL)->created),
+              "three counts without a gap");
 
 static const api_field counted_fields[] = {
     API_FIELD("vertices", "count", counted, vertices, .required = true),
@@ -36,39 +40,20 @@ static const api_field counted_fields[] = {
 const api_record api_counted_record = {"counted", counted_fields,
                                        sizeof counted_fields / sizeof *counted_fields};
 
-static void write_counted(api_out *out, const uint32_t counts[3])
-{
-    const counted value = {counts[0], counts[1], counts[2]};
-    api_record_write(out, &api_counted_record, &value);
-}
-
-static void write_created(api_out *out, const void *value)
-{
-    write_counted(out, ((const st_entry *)value)->tally.created);
-}
-
-static void write_deleted(api_out *out, const void *value)
-{
-    write_counted(out, ((const st_entry *)value)->tally.deleted);
-}
-
-static void write_modified(api_out *out, const void *value)
-{
-    write_counted(out, ((const st_entry *)value)->tally.modified);
-}
-
 static const api_field entry_fields[] = {
     API_FIELD("revision", "count", st_entry, revision, .required = true),
-    API_FIELD_MADE("action", "#action", write_action, .required = true),
+    API_FIELD_MADE_OF("action", "#action", st_entry, action, write_action, .required = true),
     API_FIELD(
         "inverts", "count", st_entry, inverts, .zero_is_none = true,
         .doc = "If the entry is an undo or a redo: the revision whose change it undid or redid."),
-    API_FIELD_MADE("ops", "*text", write_ops, .required = true),
-    API_FIELD_MADE("created", "#counted", write_created, .known = API_KNOWN(st_entry, tally.known),
-                   .doc = "How many elements the edit created, if that is known."),
-    API_FIELD_MADE("deleted", "#counted", write_deleted, .known = API_KNOWN(st_entry, tally.known)),
-    API_FIELD_MADE("modified", "#counted", write_modified,
-                   .known = API_KNOWN(st_entry, tally.known)),
+    API_FIELD_MADE_OF("ops", "*text", st_entry, ops, write_ops, .required = true),
+    API_FIELD_RECORD("created", "#counted", st_entry, tally.created, &api_counted_record,
+                     .known = API_KNOWN(st_entry, tally.known),
+                     .doc = "How many elements the edit created, if that is known."),
+    API_FIELD_RECORD("deleted", "#counted", st_entry, tally.deleted, &api_counted_record,
+                     .known = API_KNOWN(st_entry, tally.known)),
+    API_FIELD_RECORD("modified", "#counted", st_entry, tally.modified, &api_counted_record,
+                     .known = API_KNOWN(st_entry, tally.known)),
     API_FIELD("undoable", "flag", st_entry, undoable, .required = true,
               .doc = "True if the edit can still be undone."),
     API_FIELD("bytes", "count", st_entry, bytes, .required = true,
@@ -92,57 +77,75 @@ static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, 
            st_history_entry(x->mesh, (size_t)(x->info.revision - revision), out);
 }
 
-/* Writes the entries of the page. Sets `*next` to the revision with which the next page begins, or
- * to 0 if there is none. */
-static void write_entries(api_exchange *x, const page *p, uint64_t *next)
+/* The answer: the values of its members, and the page whose entries it lists. */
+typedef struct answer {
+    const api_exchange *x;
+    const page *page;
+    uint64_t revision, undo, redo;
+    st_history reach;
+    char next[API_CURSOR]; /* "" on the last page */
+} answer;
+
+static void write_entries(api_out *out, const void *value)
 {
+    const answer *a = value;
     st_entry entry;
-    uint64_t revision = p->first;
-    bool more = find_entry(x, p, revision, &entry);
-    api_out_key(&x->out, "entries");
-    api_out_array_begin(&x->out);
-    for (uint64_t i = 0; more && i < p->limit; i++) {
-        api_record_write(&x->out, &api_entry_record, &entry);
-        more = find_entry(x, p, --revision, &entry);
+    uint64_t revision = a->page->first;
+    api_out_array_begin(out);
+    for (uint64_t i = 0; i < a->page->limit && find_entry(a->x, a->page, revision, &entry); i++) {
+        api_record_write(out, &api_entry_record, &entry);
+        revision--;
     }
-    api_out_array_end(&x->out);
-    *next = more ? revision : 0;
+    api_out_array_end(out);
 }
 
-/* Writes the cursor of the next page. It contains a revision number, so edits that are made between
- * two requests do not change the pages. */
-static void write_next(api_exchange *x, const page *p, uint64_t next)
+static const api_field history_fields[] = {
+    API_FIELD("revision", "count", answer, revision, .required = true),
+    API_FIELD_MADE("entries", "*#entry", write_entries, .required = true,
+                   .doc = "The entries, the newest first."),
+    API_FIELD("undo", "count", answer, undo, .required = true,
+              .doc = "How many steps can be undone."),
+    API_FIELD("redo", "count", answer, redo, .required = true,
+              .doc = "How many steps can be redone."),
+    API_FIELD("oldest", "count", answer, reach.oldest, .required = true,
+              .doc = "The oldest revision that can still be read."),
+    API_FIELD("dropped", "count", answer, reach.dropped, .required = true,
+              .doc = "How many entries were removed to keep within the undo budget."),
+    API_FIELD("bytes", "count", answer, reach.bytes, .required = true,
+              .doc = "Memory that the history uses."),
+    API_FIELD("budget", "count", answer, reach.budget, .required = true,
+              .doc = "Memory that the history may use: the option --undo-budget."),
+    API_FIELD("next", "text?", answer, next, .required = true, .zero_is_none = true,
+              .doc = "The cursor of the next page."),
+};
+const api_record api_history_record = {"history", history_fields,
+                                       sizeof history_fields / sizeof *history_fields};
+
+/* Writes the cursor of the next page, or "" if there is none. The cursor contains a revision
+ * number, so edits that are made between two requests do not change the pages. */
+static void find_next(api_exchange *x, const page *p, char next[API_CURSOR])
 {
-    char cursor[API_CURSOR];
-    api_out_key(&x->out, "next");
-    if (next == 0) {
-        api_out_null(&x->out);
+    st_entry entry;
+    next[0] = '\0';
+    if (p->first <= p->limit || !find_entry(x, p, p->first - p->limit, &entry)) {
         return;
     }
-    api_cursor_write("edits", &x->info, next, cursor);
-    api_out_string(&x->out, cursor);
+    api_cursor_write("edits", &x->info, p->first - p->limit, next);
     api_answer_header_format(
         x, "Link", "</v1/meshes/%s/edits?limit=%llu&since=%llu&cursor=%s>; rel=\"next\"",
-        x->mesh_id, (unsigned long long)p->limit, (unsigned long long)p->last, cursor);
+        x->mesh_id, (unsigned long long)p->limit, (unsigned long long)p->last, next);
 }
 
 static void write_history(api_exchange *x, const page *p)
 {
-    api_out *out = &x->out;
-    uint64_t next;
-    st_history history;
-    st_history_reach(x->mesh, &history);
-    api_out_object_begin(out);
-    api_out_key_u64(out, "revision", x->info.revision);
-    write_entries(x, p, &next);
-    api_out_key_u64(out, "undo", x->info.undo);
-    api_out_key_u64(out, "redo", x->info.redo);
-    api_out_key_u64(out, "oldest", history.oldest);
-    api_out_key_u64(out, "dropped", history.dropped);
-    api_out_key_u64(out, "bytes", history.bytes);
-    api_out_key_u64(out, "budget", history.budget);
-    write_next(x, p, next);
-    api_out_object_end(out);
+    answer value = {.x = x,
+                    .page = p,
+                    .revision = x->info.revision,
+                    .undo = x->info.undo,
+                    .redo = x->info.redo};
+    st_history_reach(x->mesh, &value.reach);
+    find_next(x, p, value.next);
+    api_record_write(&x->out, &api_history_record, &value);
 }
 
 /* Reads the cursor of a page. Returns false if it is invalid. */

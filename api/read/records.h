@@ -5,9 +5,9 @@
 
 #include "api/json/record.h"
 
-/* The JSON members of an entry of the history, and of the object in that entry that counts changed
- * elements. */
-extern const api_record api_entry_record, api_counted_record;
+/* The JSON members of the history, of an entry in it, and of the object in the entry that counts
+ * changed elements. */
+extern const api_record api_history_record, api_entry_record, api_counted_record;
 /* The JSON members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
 extern const api_record api_token_record, api_ticket_record, api_reloaded_record;
 

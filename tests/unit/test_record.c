@@ -9,6 +9,10 @@
 
 #include <cmocka.h>
 
+typedef struct size {
+    double width;
+} size;
+
 typedef struct thing {
     char id[8];
     const char *title;
@@ -20,12 +24,24 @@ typedef struct thing {
     bool has_status, open;
     double area, ended;
     he_vec3 point;
+    size size;
+    int letter;
 } thing;
 
 static void write_twice(api_out *out, const void *value)
 {
     api_out_u64(out, 2 * (uint64_t)((const thing *)value)->edges);
 }
+
+static void write_letter(api_out *out, const void *letter)
+{
+    api_out_string(out, (const char[]){(char)('a' + *(const int *)letter), '\0'});
+}
+
+static const api_field size_fields[] = {
+    API_FIELD("width", "#fraction", size, width, .required = true),
+};
+static const api_record size_record = {"size", size_fields, 1};
 
 static const api_field fields[] = {
     API_FIELD("id", "text", thing, id, .required = true),
@@ -40,6 +56,9 @@ static const api_field fields[] = {
     API_FIELD("area", "number", thing, area, .required = true),
     API_FIELD("ended", "time?", thing, ended, .required = true, .zero_is_none = true),
     API_FIELD("point", "point", thing, point, .required = true),
+    API_FIELD_RECORD("size", "#size?", thing, size, &size_record,
+                     .known = API_KNOWN(thing, has_status)),
+    API_FIELD_MADE_OF("letter", "#letter", thing, letter, write_letter, .required = true),
 };
 static const api_record record = {"thing", fields, sizeof fields / sizeof *fields};
 
@@ -69,22 +88,29 @@ static void each_type_is_written_as_json_has_it(void **state)
                          .open = true,
                          .area = 0.5,
                          .ended = 1767268800,
-                         .point = {1, 2, 3}};
+                         .point = {1, 2, 3},
+                         .size = {0.25},
+                         .letter = 2};
     expect(&value,
            "{\"id\":\"a\",\"title\":\"A \\\"b\\\"\",\"vertex\":7,\"edges\":3,\"halfedges\":6,"
            "\"bytes\":1099511627776,\"euler\":-2,\"status\":201,\"open\":true,\"area\":0.5,"
-           "\"ended\":\"2026-01-01T12:00:00.000Z\",\"point\":[1,2,3]}");
+           "\"ended\":\"2026-01-01T12:00:00.000Z\",\"point\":[1,2,3],\"size\":{\"width\":0.25},"
+           "\"letter\":\"c\"}");
 }
 
 static void a_member_without_a_value_is_null_or_left_out(void **state)
 {
     (void)state;
     const thing value = {.title = "", .vertex = HE_NONE};
-    expect(&value, "{\"id\":\"\",\"title\":null,\"vertex\":null,\"edges\":0,\"halfedges\":0,"
-                   "\"euler\":0,\"open\":false,\"area\":0,\"ended\":null,\"point\":[0,0,0]}");
+    expect(
+        &value,
+        "{\"id\":\"\",\"title\":null,\"vertex\":null,\"edges\":0,\"halfedges\":0,"
+        "\"euler\":0,\"open\":false,\"area\":0,\"ended\":null,\"point\":[0,0,0],\"letter\":\"a\"}");
     const thing untitled = {.vertex = HE_NONE};
-    expect(&untitled, "{\"id\":\"\",\"title\":null,\"vertex\":null,\"edges\":0,\"halfedges\":0,"
-                      "\"euler\":0,\"open\":false,\"area\":0,\"ended\":null,\"point\":[0,0,0]}");
+    expect(
+        &untitled,
+        "{\"id\":\"\",\"title\":null,\"vertex\":null,\"edges\":0,\"halfedges\":0,"
+        "\"euler\":0,\"open\":false,\"area\":0,\"ended\":null,\"point\":[0,0,0],\"letter\":\"a\"}");
 }
 
 static void a_value_of_another_type_is_refused(void **state)
@@ -96,6 +122,10 @@ static void a_value_of_another_type_is_refused(void **state)
         API_FIELD("open", "#other", thing, open, .required = true),
         API_FIELD("bytes", "count", thing, bytes, .required = true, .zero_is_none = true),
         API_FIELD("edges", "*count", thing, edges, .required = true),
+        API_FIELD_RECORD("size", "#other", thing, size, &size_record, .required = true),
+        API_FIELD_RECORD("size", "size", thing, size, &size_record, .required = true),
+        {.name = "size", .type = "#size", .record = &size_record, .write = write_twice},
+        {.name = "size", .type = "#size"},
     };
     for (size_t i = 0; i < record.count; i++) {
         assert_true(api_field_fits(&fields[i]));
