@@ -3,6 +3,7 @@
 #include "api/describe/page_records.h"
 #include "api/document/summary.h"
 #include "api/document/upload.h"
+#include "api/event/events.h"
 #include "api/job/job_out.h"
 #include "api/read/records.h"
 
@@ -18,7 +19,8 @@ static const api_record *const records[] = {
     &api_summary_record,  &api_entry_record,   &api_counted_record,   &api_job_state_record,
     &api_import_record,   &api_warning_record, &api_health_record,    &api_readiness_record,
     &api_version_record,  &api_index_record,   &api_token_record,     &api_ticket_record,
-    &api_reloaded_record, &api_history_record,
+    &api_reloaded_record, &api_history_record, &api_metadata_record,  &api_resync_record,
+    &api_bye_record,
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -471,13 +473,11 @@ const api_member api_answer_members[] = {
     {"delta_values", "faces", "*#face_row", REQUIRED, NULL},
     {"delta_values", "attributes", "#written_values", REQUIRED, NULL},
 
-    {"metadata", "name", "text", REQUIRED, "The new name."},
+    {"metadata", NULL, NULL, REQUIRED, NULL},
 
-    {"resync", "revision", "count", REQUIRED,
-     "The present revision; the client must fetch the mesh again."},
-    {"resync", "reason", "#resync_reason", REQUIRED, NULL},
+    {"resync", NULL, NULL, REQUIRED, NULL},
 
-    {"bye", "reason", "#bye_reason", REQUIRED, NULL},
+    {"bye", NULL, NULL, REQUIRED, NULL},
 
     {"job_state_told", NULL, NULL, REQUIRED, NULL},
 

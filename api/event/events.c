@@ -15,7 +15,7 @@ static void add_id(api_text *text, uint64_t incarnation, uint64_t revision)
     api_text_add_format(text, "id: %016" PRIx64 ".%" PRIu64 "\n", incarnation, revision);
 }
 
-void api_event_add(api_text *text, const char *name, const api_text *data)
+static void add_event(api_text *text, const char *name, const api_text *data)
 {
     api_text_add_format(text, "event: %s\ndata: ", name);
     api_text_add(text, data->bytes, data->length);
@@ -32,42 +32,58 @@ void api_event_begin(api_text *text, const st_mesh_info *info, bool place)
     api_text_add_string(text, "\n");
 }
 
-void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason)
+void api_event_record(api_text *text, const char *name, const api_record *record, const void *value)
 {
     api_text data = {0};
     api_out out;
     api_out_init(&out, &data);
-    api_out_object_begin(&out);
-    api_out_key_u64(&out, "revision", revision);
-    api_out_key_string(&out, "reason", reason);
-    api_out_object_end(&out);
-    add_id(text, incarnation, revision);
-    api_event_add(text, "resync", &data);
+    api_record_write(&out, record, value);
+    add_event(text, name, &data);
     api_text_clear(&data);
 }
+
+typedef struct resync {
+    uint64_t revision;
+    const char *reason;
+} resync;
+
+static const api_field resync_fields[] = {
+    API_FIELD("revision", "count", resync, revision, .required = true,
+              .doc = "The present revision; the client must fetch the mesh again."),
+    API_FIELD("reason", "#resync_reason", resync, reason, .required = true),
+};
+const api_record api_resync_record = {"resync", resync_fields,
+                                      sizeof resync_fields / sizeof *resync_fields};
+
+void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason)
+{
+    add_id(text, incarnation, revision);
+    api_event_record(text, "resync", &api_resync_record, &(resync){revision, reason});
+}
+
+static const api_field metadata_fields[] = {
+    API_FIELD("name", "text", st_mesh_info, name, .required = true, .doc = "The new name."),
+};
+const api_record api_metadata_record = {"metadata", metadata_fields,
+                                        sizeof metadata_fields / sizeof *metadata_fields};
 
 void api_event_metadata(api_text *text, const st_mesh_info *info)
 {
-    api_text data = {0};
-    api_out out;
-    api_out_init(&out, &data);
-    api_out_object_begin(&out);
-    api_out_key_string(&out, "name", info->name);
-    api_out_object_end(&out);
-    api_event_add(text, "metadata", &data);
-    api_text_clear(&data);
+    api_event_record(text, "metadata", &api_metadata_record, info);
 }
+
+typedef struct bye {
+    const char *reason;
+} bye;
+
+static const api_field bye_fields[] = {
+    API_FIELD("reason", "#bye_reason", bye, reason, .required = true),
+};
+const api_record api_bye_record = {"bye", bye_fields, sizeof bye_fields / sizeof *bye_fields};
 
 void api_event_bye(api_text *text, const char *reason)
 {
-    api_text data = {0};
-    api_out out;
-    api_out_init(&out, &data);
-    api_out_object_begin(&out);
-    api_out_key_string(&out, "reason", reason);
-    api_out_object_end(&out);
-    api_event_add(text, "bye", &data);
-    api_text_clear(&data);
+    api_event_record(text, "bye", &api_bye_record, &(bye){reason});
 }
 
 static void begin_edit(api_out *out, const st_mesh_info *info)
@@ -106,7 +122,7 @@ static void write_stale(api_text *data, const st_mesh_info *info)
 static void add_edit(api_text *text, const st_mesh_info *info, const api_text *data)
 {
     add_id(text, info->incarnation, info->revision);
-    api_event_add(text, "edit", data);
+    add_event(text, "edit", data);
 }
 
 void api_event_stale(api_text *text, const st_mesh_info *info)

@@ -19,8 +19,11 @@
 #ifndef HE_API_EVENT_EVENTS_H
 #define HE_API_EVENT_EVENTS_H
 
-#include "api/json/text.h"
+#include "api/json/record.h"
 #include "store/followers.h"
+
+/* The JSON members of the data of the events resync, metadata and bye. */
+extern const api_record api_resync_record, api_metadata_record, api_bye_record;
 
 /* A comment in the format text/event-stream, sent to keep an idle connection open. */
 #define API_EVENT_IDLE ":\n\n"
@@ -44,8 +47,10 @@ void api_event_metadata(api_text *text, const st_mesh_info *info);
  * position is later than the present one), "lost" (the newest changes could not be made durable;
  * the stream ends). */
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason);
-/* Appends a message with the given event name and data. */
-void api_event_add(api_text *text, const char *name, const api_text *data);
+/* Appends a message with the given event name, whose data is the struct at `value` written as an
+ * object. */
+void api_event_record(api_text *text, const char *name, const api_record *record,
+                      const void *value);
 /* Appends a `bye`, after which the stream ends. Reasons: "deleted", "stopping", "token" (the
  * client's token is no longer valid), and on the stream of a job "ended". */
 void api_event_bye(api_text *text, const char *reason);

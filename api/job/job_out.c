@@ -115,26 +115,18 @@ void api_write_job(api_out *out, const api_job *job, bool whole)
 
 void api_event_job_state(api_text *text, const api_job *job)
 {
-    api_text data = {0};
-    api_out out;
     shown value;
-    api_out_init(&out, &data);
     show(job, false, &value);
-    api_record_write(&out, &api_job_state_record, &value);
-    api_event_add(text, "job", &data);
-    api_text_clear(&data);
+    api_event_record(text, "job", &api_job_state_record, &value);
 }
 
 void api_event_job(api_text *text, const api_job *job, bool bye)
 {
-    api_text data = {0};
-    api_out out;
+    shown value;
     if (bye) {
         api_event_bye(text, job->state >= API_JOB_DONE ? "ended" : "stopping");
         return;
     }
-    api_out_init(&out, &data);
-    api_write_job(&out, job, job->length <= API_MAX_EVENT);
-    api_event_add(text, "job", &data);
-    api_text_clear(&data);
+    show(job, job->length <= API_MAX_EVENT, &value);
+    api_event_record(text, "job", &api_job_record, &value);
 }
