@@ -5,6 +5,7 @@
 #include "api/document/upload.h"
 #include "api/event/events.h"
 #include "api/job/job_out.h"
+#include "api/json/attribute_value.h"
 #include "api/read/records.h"
 
 #include <stddef.h>
@@ -15,12 +16,32 @@ enum { OPTIONAL = false, REQUIRED = true };
 
 /* The tables of members with which answers are written. */
 static const api_record *const records[] = {
-    &api_counts_record,   &api_box_record,     &api_mesh_item_record, &api_job_record,
-    &api_summary_record,  &api_entry_record,   &api_counted_record,   &api_job_state_record,
-    &api_import_record,   &api_warning_record, &api_health_record,    &api_readiness_record,
-    &api_version_record,  &api_index_record,   &api_token_record,     &api_ticket_record,
-    &api_reloaded_record, &api_history_record, &api_metadata_record,  &api_resync_record,
+    &api_counts_record,
+    &api_box_record,
+    &api_mesh_item_record,
+    &api_job_record,
+    &api_summary_record,
+    &api_entry_record,
+    &api_counted_record,
+    &api_job_state_record,
+    &api_import_record,
+    &api_warning_record,
+    &api_health_record,
+    &api_readiness_record,
+    &api_version_record,
+    &api_index_record,
+    &api_token_record,
+    &api_ticket_record,
+    &api_reloaded_record,
+    &api_history_record,
+    &api_metadata_record,
+    &api_resync_record,
     &api_bye_record,
+    &api_attribute_read_record,
+    &api_attribute_added_record,
+    &api_attribute_info_record,
+    &api_attribute_list_record,
+    &api_attribute_values_record,
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -68,8 +89,7 @@ const api_member api_answer_members[] = {
 
     {"import", NULL, NULL, REQUIRED, NULL},
 
-    {"attribute_read", "domain", "#domain", REQUIRED, NULL},
-    {"attribute_read", "name", "text", REQUIRED, NULL},
+    {"attribute_read", NULL, NULL, REQUIRED, NULL},
 
     {"warning", NULL, NULL, REQUIRED, NULL},
 
@@ -153,21 +173,9 @@ const api_member api_answer_members[] = {
     {"face", "attributes", "#values_by_name", OPTIONAL,
      "Values by the name of the attribute, if the mesh has any."},
 
-    {"attribute_info", "domain", "#domain", REQUIRED, NULL},
-    {"attribute_info", "name", "text", REQUIRED, NULL},
-    {"attribute_info", "type", "#type_name", REQUIRED, NULL},
-    {"attribute_info", "components", "count", REQUIRED, "How many numbers one value has."},
-    {"attribute_info", "rule", "#rule_name", REQUIRED, NULL},
-    {"attribute_info", "default", "#value", REQUIRED,
-     "The value of elements for which none was written."},
-    {"attribute_info", "labels", "*text", OPTIONAL,
-     "Only in the list of attributes: the texts of the attribute, whose values are indices into "
-     "this list."},
-    {"attribute_info", "bytes", "count", REQUIRED,
-     "Size of the values as application/octet-stream."},
+    {"attribute_info", NULL, NULL, REQUIRED, NULL},
 
-    {"attribute_list", "revision", "count", REQUIRED, NULL},
-    {"attribute_list", "attributes", "*#attribute_info", REQUIRED, NULL},
+    {"attribute_list", NULL, NULL, REQUIRED, NULL},
 
     {"material_row", "name", "#material_name", REQUIRED,
      "The name of the material, which differs from the names of other materials."},
@@ -180,18 +188,7 @@ const api_member api_answer_members[] = {
     {"material_list", "revision", "count", REQUIRED, NULL},
     {"material_list", "materials", "*#material_row", REQUIRED, "The materials, the oldest first."},
 
-    {"attribute_values", "revision", "count", REQUIRED, NULL},
-    {"attribute_values", "domain", "#domain", REQUIRED, NULL},
-    {"attribute_values", "name", "text", REQUIRED, NULL},
-    {"attribute_values", "type", "#type_name", REQUIRED, NULL},
-    {"attribute_values", "components", "count", REQUIRED, NULL},
-    {"attribute_values", "rule", "#rule_name", REQUIRED, NULL},
-    {"attribute_values", "default", "#value", REQUIRED, NULL},
-    {"attribute_values", "bytes", "count", REQUIRED, NULL},
-    {"attribute_values", "ids", "*id", REQUIRED, NULL},
-    {"attribute_values", "values", "*#value", REQUIRED,
-     "One value for each id; an array if it has several components."},
-    {"attribute_values", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"attribute_values", NULL, NULL, REQUIRED, NULL},
 
     {"attribute_written", "revision", "count", REQUIRED, NULL},
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was changed."},
@@ -458,15 +455,7 @@ const api_member api_answer_members[] = {
     {"delta", "values", "#delta_values", OPTIONAL,
      "All values that were written, complete enough to mirror the mesh exactly."},
 
-    {"attribute_added", "domain", "#domain", REQUIRED, NULL},
-    {"attribute_added", "name", "text", REQUIRED, NULL},
-    {"attribute_added", "type", "#type_name", REQUIRED, NULL},
-    {"attribute_added", "components", "count", REQUIRED, "How many numbers one value has."},
-    {"attribute_added", "rule", "#rule_name", REQUIRED, NULL},
-    {"attribute_added", "default", "#value", REQUIRED,
-     "The value of elements for which none was written."},
-    {"attribute_added", "labels", "*text", OPTIONAL,
-     "The texts of the attribute: its values are indices into this list."},
+    {"attribute_added", NULL, NULL, REQUIRED, NULL},
 
     {"delta_values", "vertices", "*#vertex_row", REQUIRED, NULL},
     {"delta_values", "halfedges", "*#halfedge_row", REQUIRED, NULL},

@@ -222,11 +222,11 @@ static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 static void begin_attribute(api_document_out *out, const he_column *column)
 {
     api_out json;
+    const api_shown_column shown = api_show_column(out->mesh, column);
     api_text_add_string(&out->text, out->listed ? ",\n" : "\n");
     api_out_init(&json, &out->text);
     api_out_object_begin(&json);
-    api_write_head(&json, column);
-    api_write_labels(&json, column);
+    api_record_members(&json, &api_attribute_added_record, &shown);
     api_out_key(&json, "values");
     api_text_add_char(&out->text, '[');
     out->listed = true;

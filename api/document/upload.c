@@ -4,6 +4,7 @@
 #include "api/document/document_in.h"
 #include "api/document/parts.h"
 #include "api/document/repairs.h"
+#include "api/json/attribute_value.h"
 #include "api/json/known_names.h"
 #include "api/request/admit.h"
 #include "format/io/foreign.h"
@@ -710,10 +711,9 @@ static void write_attributes(api_out *out, const void *value)
     const upload *u = ((const report *)value)->u;
     api_out_array_begin(out);
     for (size_t i = 0; i < u->attribute_count; i++) {
-        api_out_object_begin(out);
-        api_out_key_string(out, "domain", he_kind_plural(u->attributes[i].domain));
-        api_out_key_string(out, "name", u->attributes[i].name);
-        api_out_object_end(out);
+        const api_shown_column shown = {.domain = he_kind_plural(u->attributes[i].domain),
+                                        .name = u->attributes[i].name};
+        api_record_write(out, &api_attribute_read_record, &shown);
     }
     api_out_array_end(out);
 }

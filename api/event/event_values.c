@@ -242,23 +242,7 @@ static void write_attributes(api_out *out, const he_mesh *mesh, const touched *t
     api_out_object_end(out);
 }
 
-static void write_added(api_out *out, const he_column *column)
-{
-    api_out_object_begin(out);
-    api_write_head(out, column);
-    api_write_labels(out, column);
-    api_out_object_end(out);
-}
-
-static void write_dropped(api_out *out, const he_column *column)
-{
-    api_out_object_begin(out);
-    api_out_key_string(out, "domain", he_kind_plural(column->domain));
-    api_out_key_string(out, "name", column->name);
-    api_out_object_end(out);
-}
-
-static void write_columns_dropped(api_out *out, const touched *t)
+static void write_columns_dropped(api_out *out, const he_mesh *mesh, const touched *t)
 {
     bool open = false;
     for (size_t i = 0; i < t->slot_count; i++) {
@@ -270,7 +254,8 @@ static void write_columns_dropped(api_out *out, const touched *t)
             api_out_array_begin(out);
             open = true;
         }
-        write_dropped(out, t->slots[i].dropped);
+        const api_shown_column shown = api_show_column(mesh, t->slots[i].dropped);
+        api_record_write(out, &api_attribute_read_record, &shown);
     }
     if (open) {
         api_out_array_end(out);
@@ -289,7 +274,8 @@ static void write_columns_added(api_out *out, const he_mesh *mesh, const touched
             api_out_array_begin(out);
             open = true;
         }
-        write_added(out, he_mesh_column(mesh, i));
+        const api_shown_column shown = api_show_column(mesh, he_mesh_column(mesh, i));
+        api_record_write(out, &api_attribute_added_record, &shown);
     }
     if (open) {
         api_out_array_end(out);
@@ -303,7 +289,7 @@ he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *de
     he_status status = find_touched(&t, mesh, delta, undone, err);
     if (status == HE_OK) {
         /* Dropped columns are written first, because an added column may have the same name. */
-        write_columns_dropped(out, &t);
+        write_columns_dropped(out, mesh, &t);
         write_columns_added(out, mesh, &t);
         if (t.materials) {
             api_out_key(out, "materials");

@@ -72,36 +72,71 @@ void api_write_value(api_out *out, const he_column *column, const unsigned char 
     }
 }
 
-void api_write_head(api_out *out, const he_column *column)
+/* --- the JSON members of an attribute --- */
+
+api_shown_column api_show_column(const he_mesh *mesh, const he_column *column)
 {
-    api_out_key_string(out, "domain", he_kind_plural(column->domain));
-    api_out_key_string(out, "name", column->name);
-    api_out_key_string(out, "type", he_type_name(column->type));
-    api_out_key_u64(out, "components", column->components);
-    api_out_key_string(out, "rule", he_rule_name(column->rule));
-    api_out_key(out, "default");
+    return (api_shown_column){.column = column,
+                              .domain = he_kind_plural(column->domain),
+                              .name = column->name,
+                              .type = he_type_name(column->type),
+                              .components = column->components,
+                              .rule = he_rule_name(column->rule),
+                              .has_labels = column->labels != NULL,
+                              .bytes = (uint64_t)he_mesh_issued(mesh, column->domain) *
+                                       column->row_bytes};
+}
+
+void api_write_default(api_out *out, const void *shown)
+{
+    const he_column *column = ((const api_shown_column *)shown)->column;
     api_write_value(out, column, column->fallback);
 }
 
-void api_write_labels(api_out *out, const he_column *column)
+static void write_labels(api_out *out, const void *shown)
 {
-    if (column->labels != NULL) {
-        size_t count = he_labels_count(column->labels);
-        api_out_key(out, "labels");
-        api_out_array_begin(out);
-        for (size_t i = 0; i < count && i < API_MAX_LABELS; i++) {
-            api_out_string(out, he_labels_get(column->labels, i));
-        }
-        api_out_array_end(out);
+    const he_labels *labels = ((const api_shown_column *)shown)->column->labels;
+    const size_t count = he_labels_count(labels);
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count && i < API_MAX_LABELS; i++) {
+        api_out_string(out, he_labels_get(labels, i));
     }
+    api_out_array_end(out);
 }
 
-void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column)
-{
-    api_write_head(out, column);
-    api_out_key_u64(out, "bytes",
-                    (uint64_t)he_mesh_issued(mesh, column->domain) * column->row_bytes);
-}
+/* The rows with which the two tables below begin. */
+#define HEAD_FIELDS                                                                      \
+    API_FIELD("domain", "#domain", api_shown_column, domain, .required = true),          \
+        API_FIELD("name", "text", api_shown_column, name, .required = true),             \
+        API_FIELD("type", "#type_name", api_shown_column, type, .required = true),       \
+        API_FIELD("components", "count", api_shown_column, components, .required = true, \
+                  .doc = "How many numbers one value has."),                             \
+        API_FIELD("rule", "#rule_name", api_shown_column, rule, .required = true),       \
+        API_FIELD_MADE("default", "#value", api_write_default, .required = true,         \
+                       .doc = "The value of elements for which none was written.")
+
+static const api_field added_fields[] = {
+    HEAD_FIELDS,
+    API_FIELD_MADE("labels", "*text", write_labels,
+                   .known = API_KNOWN(api_shown_column, has_labels),
+                   .doc = "The texts to which the values are indices."),
+};
+const api_record api_attribute_added_record = {"attribute_added", added_fields,
+                                               sizeof added_fields / sizeof *added_fields};
+/* The first two rows, which identify an attribute. */
+const api_record api_attribute_read_record = {"attribute_read", added_fields, 2};
+
+static const api_field info_fields[] = {
+    HEAD_FIELDS,
+    API_FIELD("bytes", "count", api_shown_column, bytes, .required = true,
+              .doc = "Size of the values as application/octet-stream."),
+    API_FIELD_MADE(
+        "labels", "*text", write_labels, .known = API_KNOWN(api_shown_column, has_labels),
+        .doc = "Only in the list of attributes: the texts to which the values are indices."),
+};
+const api_record api_attribute_info_record = {"attribute_info", info_fields,
+                                              sizeof info_fields / sizeof *info_fields};
+#undef HEAD_FIELDS
 
 uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id)
 {

@@ -9,7 +9,7 @@
 #define HE_API_JSON_ATTRIBUTE_VALUE_H
 
 #include "api/json/json_in.h"
-#include "api/json/json_out.h"
+#include "api/json/record.h"
 #include "mesh/column.h"
 
 /* Writes the attribute value of one element; `row` has the bytes of the value. */
@@ -26,13 +26,23 @@ bool api_read_values(const api_in *in, const he_column *column, unsigned char **
  * and labels. Makes a new column (the array of an attribute's values) that has no values yet. The
  * caller reads the other members. */
 bool api_read_column(const api_in *object, he_kind domain, const char *name, he_column **out);
-/* These three functions write members of an object that the caller has begun: api_write_head writes
- * the members from "domain" to "default"; api_write_labels writes "labels" if the column has labels
- * (the list may be long); api_write_column writes what api_write_head writes and "bytes", the size
- * of all values. */
-void api_write_head(api_out *out, const he_column *column);
-void api_write_labels(api_out *out, const he_column *column);
-void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);
+
+/* A column, with the values of the JSON members of an attribute. The texts are borrowed. */
+typedef struct api_shown_column {
+    const he_column *column;
+    const char *domain, *name, *type, *rule;
+    uint32_t components;
+    bool has_labels; /* the labels are written; cleared by a caller that does not want the list */
+    uint64_t bytes;  /* size of all values */
+} api_shown_column;
+
+api_shown_column api_show_column(const he_mesh *mesh, const he_column *column);
+/* The JSON members of an api_shown_column: "domain" and "name" (api_attribute_read_record), those
+ * from "domain" to "default" and "labels" (api_attribute_added_record), and these and "bytes". */
+extern const api_record api_attribute_read_record, api_attribute_added_record,
+    api_attribute_info_record;
+/* Writes the default value of an api_shown_column; a function for rows of tables. */
+void api_write_default(api_out *out, const void *shown);
 
 /* Writes the member "attributes" of an element, if the mesh has attributes in its domain. Returns
  * the number of values written. */

@@ -4,31 +4,43 @@
 
 #include "api/document/attribute_path.h"
 #include "api/json/attribute_value.h"
+#include "api/read/records.h"
 #include "api/request/mesh_access.h"
 
 #include <stdio.h>
 #include <string.h>
 
+typedef struct list {
+    uint64_t revision;
+    const he_mesh *mesh;
+} list;
+
+static void write_attributes(api_out *out, const void *value)
+{
+    const he_mesh *mesh = ((const list *)value)->mesh;
+    api_out_array_begin(out);
+    for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
+        const he_column *column = he_mesh_column(mesh, i);
+        if (column != NULL) {
+            const api_shown_column shown = api_show_column(mesh, column);
+            api_record_write(out, &api_attribute_info_record, &shown);
+        }
+    }
+    api_out_array_end(out);
+}
+
+static const api_field list_fields[] = {
+    API_FIELD("revision", "count", list, revision, .required = true),
+    API_FIELD_MADE("attributes", "*#attribute_info", write_attributes, .required = true),
+};
+const api_record api_attribute_list_record = {"attribute_list", list_fields,
+                                              sizeof list_fields / sizeof *list_fields};
+
 void api_attributes_list(api_exchange *x)
 {
-    const he_mesh *mesh = x->content;
     if (!api_not_modified(x, "attributes")) {
-        api_out *out = &x->out;
-        api_out_object_begin(out);
-        api_out_key_u64(out, "revision", x->info.revision);
-        api_out_key(out, "attributes");
-        api_out_array_begin(out);
-        for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
-            const he_column *column = he_mesh_column(mesh, i);
-            if (column != NULL) {
-                api_out_object_begin(out);
-                api_write_column(out, mesh, column);
-                api_write_labels(out, column);
-                api_out_object_end(out);
-            }
-        }
-        api_out_array_end(out);
-        api_out_object_end(out);
+        api_record_write(&x->out, &api_attribute_list_record,
+                         &(list){x->info.revision, x->content});
         api_answer_json(x, 200);
     }
 }
@@ -77,34 +89,61 @@ void api_attribute_path(const api_exchange *x, char out[API_LOCATION])
 
 /* --- values as JSON --- */
 
-static void begin_values(api_exchange *x, const he_mesh *mesh, const he_column *column)
+/* The values of the JSON members of an answer with values. */
+typedef struct page {
+    uint64_t revision;
+    api_shown_column column;
+    const uint32_t *ids;
+    size_t count;
+    char next[API_CURSOR]; /* cursor of the next page; "" if there is none */
+} page;
+
+static void write_ids(api_out *out, const void *value)
 {
-    api_out_object_begin(&x->out);
-    api_out_key_u64(&x->out, "revision", x->info.revision);
-    api_write_column(&x->out, mesh, column);
+    const page *p = value;
+    api_out_ids(out, p->ids, p->count);
 }
 
-static void write_rows(api_out *out, const he_column *column, const uint32_t *ids, size_t count)
+static void write_values(api_out *out, const void *value)
 {
-    api_out_key_ids(out, "ids", ids, count);
-    api_out_key(out, "values");
+    const page *p = value;
+    const he_column *column = p->column.column;
     api_out_array_begin(out);
-    for (size_t i = 0; i < count; i++) {
-        api_write_value(out, column, he_column_value(column, ids[i]));
+    for (size_t i = 0; i < p->count; i++) {
+        api_write_value(out, column, he_column_value(column, p->ids[i]));
     }
     api_out_array_end(out);
 }
 
-static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
+static const api_field values_fields[] = {
+    API_FIELD("revision", "count", page, revision, .required = true),
+    API_FIELD("domain", "#domain", page, column.domain, .required = true),
+    API_FIELD("name", "text", page, column.name, .required = true),
+    API_FIELD("type", "#type_name", page, column.type, .required = true),
+    API_FIELD("components", "count", page, column.components, .required = true),
+    API_FIELD("rule", "#rule_name", page, column.rule, .required = true),
+    API_FIELD_MADE_OF("default", "#value", page, column, api_write_default, .required = true),
+    API_FIELD("bytes", "count", page, column.bytes, .required = true),
+    API_FIELD_MADE("ids", "*id", write_ids, .required = true),
+    API_FIELD_MADE("values", "*#value", write_values, .required = true,
+                   .doc = "One value for each id; an array if it has several components."),
+    API_FIELD("next", "text?", page, next, .required = true, .zero_is_none = true,
+              .doc = "The cursor of the next page."),
+};
+const api_record api_attribute_values_record = {"attribute_values", values_fields,
+                                                sizeof values_fields / sizeof *values_fields};
+
+static void answer_values(api_exchange *x, const page *p)
 {
-    api_out_key(&x->out, "next");
-    if (id == HE_NONE) {
-        api_out_null(&x->out);
-        return;
-    }
-    char cursor[API_CURSOR], path[API_LOCATION];
+    api_record_write(&x->out, &api_attribute_values_record, p);
+    api_answer_json(x, 200);
+}
+
+/* Writes the cursor of the page that begins at `id`, and the header Link with it. */
+static void find_next(api_exchange *x, uint32_t id, uint64_t limit, char cursor[API_CURSOR])
+{
+    char path[API_LOCATION];
     api_cursor_write("attribute", &x->info, id, cursor);
-    api_out_string(&x->out, cursor);
     api_attribute_path(x, path);
     api_answer_header_format(x, "Link", "<%s?limit=%llu&cursor=%s>; rel=\"next\"", path,
                              (unsigned long long)limit, cursor);
@@ -139,11 +178,14 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
          id = he_mesh_next_live(mesh, x->kind, (uint64_t)id + 1)) {
         ids[count++] = id;
     }
-    begin_values(x, mesh, column);
-    write_rows(&x->out, column, ids, count);
-    write_next(x, id, limit);
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
+    page p = {.revision = x->info.revision,
+              .column = api_show_column(mesh, column),
+              .ids = ids,
+              .count = count};
+    if (id != HE_NONE) {
+        find_next(x, id, limit, p.next);
+    }
+    answer_values(x, &p);
 }
 
 /* Reads the ids in a parameter such as "1,2,3". The parameter has at most one id for every two
@@ -197,11 +239,10 @@ static bool read_some(api_exchange *x, const he_mesh *mesh, choice *out)
 static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *column,
                         const choice *chosen)
 {
-    begin_values(x, mesh, column);
-    write_rows(&x->out, column, chosen->of, chosen->count);
-    api_out_key_null(&x->out, "next");
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
+    answer_values(x, &(page){.revision = x->info.revision,
+                             .column = api_show_column(mesh, column),
+                             .ids = chosen->of,
+                             .count = chosen->count});
 }
 
 /* --- values as binary data --- */

@@ -8,6 +8,8 @@
 /* The JSON members of the history, of an entry in it, and of the object in the entry that counts
  * changed elements. */
 extern const api_record api_history_record, api_entry_record, api_counted_record;
+/* The JSON members of the list of attributes, and of an answer with values of an attribute. */
+extern const api_record api_attribute_list_record, api_attribute_values_record;
 /* The JSON members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
 extern const api_record api_token_record, api_ticket_record, api_reloaded_record;
 

@@ -68,10 +68,10 @@ static bool write_answer(api_exchange *x, writing *w)
         api_out_key_bool(out, "dry_run", true);
     }
     if (column != NULL) {
+        api_shown_column shown = api_show_column(mesh, column);
+        shown.has_labels = false; /* the client has sent them, and they may be many */
         api_out_key(out, "attribute");
-        api_out_object_begin(out);
-        api_write_column(out, mesh, column);
-        api_out_object_end(out);
+        api_record_write(out, &api_attribute_info_record, &shown);
     }
     api_write_changes(out, &x->write.changes);
     if (w->effect && !st_write_undoable(&x->write)) {
