@@ -6,6 +6,7 @@
 #include "api/event/events.h"
 #include "api/job/job_out.h"
 #include "api/json/attribute_value.h"
+#include "api/json/material_value.h"
 #include "api/read/records.h"
 
 #include <stddef.h>
@@ -42,6 +43,8 @@ static const api_record *const records[] = {
     &api_attribute_info_record,
     &api_attribute_list_record,
     &api_attribute_values_record,
+    &api_material_record,
+    &api_material_list_record,
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -177,16 +180,9 @@ const api_member api_answer_members[] = {
 
     {"attribute_list", NULL, NULL, REQUIRED, NULL},
 
-    {"material_row", "name", "#material_name", REQUIRED,
-     "The name of the material, which differs from the names of other materials."},
-    {"material_row", "base_color", "#color_alpha", REQUIRED, "Colour and opacity."},
-    {"material_row", "metallic", "#fraction", REQUIRED, NULL},
-    {"material_row", "roughness", "#fraction", REQUIRED, NULL},
-    {"material_row", "emission", "#color", REQUIRED, NULL},
-    {"material_row", "two_sided", "flag", REQUIRED, NULL},
+    {"material_row", NULL, NULL, REQUIRED, NULL},
 
-    {"material_list", "revision", "count", REQUIRED, NULL},
-    {"material_list", "materials", "*#material_row", REQUIRED, "The materials, the oldest first."},
+    {"material_list", NULL, NULL, REQUIRED, NULL},
 
     {"attribute_values", NULL, NULL, REQUIRED, NULL},
 

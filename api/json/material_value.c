@@ -2,9 +2,8 @@
 
 #include <string.h>
 
-static void write_numbers(api_out *out, const char *key, const double *numbers, size_t count)
+static void write_numbers(api_out *out, const double *numbers, size_t count)
 {
-    api_out_key(out, key);
     api_out_array_begin(out);
     for (size_t i = 0; i < count; i++) {
         api_out_number(out, numbers[i]);
@@ -12,24 +11,36 @@ static void write_numbers(api_out *out, const char *key, const double *numbers, 
     api_out_array_end(out);
 }
 
-static void write_material(api_out *out, const he_material *row)
+static void write_color(api_out *out, const void *color)
 {
-    api_out_object_begin(out);
-    api_out_key_string(out, "name", row->name);
-    write_numbers(out, "base_color", row->look.base_color, 4);
-    api_out_key_number(out, "metallic", row->look.metallic);
-    api_out_key_number(out, "roughness", row->look.roughness);
-    write_numbers(out, "emission", row->look.emission, 3);
-    api_out_key_bool(out, "two_sided", row->look.two_sided);
-    api_out_object_end(out);
+    write_numbers(out, color, 3);
 }
+
+static void write_color_alpha(api_out *out, const void *color)
+{
+    write_numbers(out, color, 4);
+}
+
+static const api_field material_fields[] = {
+    API_FIELD("name", "#material_name", he_material, name, .required = true,
+              .doc = "The name; no two materials have the same."),
+    API_FIELD_MADE_OF("base_color", "#color_alpha", he_material, look.base_color, write_color_alpha,
+                      .required = true, .doc = "Colour and opacity."),
+    API_FIELD("metallic", "#fraction", he_material, look.metallic, .required = true),
+    API_FIELD("roughness", "#fraction", he_material, look.roughness, .required = true),
+    API_FIELD_MADE_OF("emission", "#color", he_material, look.emission, write_color,
+                      .required = true),
+    API_FIELD("two_sided", "flag", he_material, look.two_sided, .required = true),
+};
+const api_record api_material_record = {"material_row", material_fields,
+                                        sizeof material_fields / sizeof *material_fields};
 
 void api_write_materials(api_out *out, const he_materials *materials)
 {
     api_out_array_begin(out);
     for (size_t i = 0; i < materials->count; i++) {
         if (materials->rows[i] != NULL) {
-            write_material(out, materials->rows[i]);
+            api_record_write(out, &api_material_record, materials->rows[i]);
         }
     }
     api_out_array_end(out);

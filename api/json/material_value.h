@@ -9,8 +9,11 @@
 #define HE_API_JSON_MATERIAL_VALUE_H
 
 #include "api/json/json_in.h"
-#include "api/json/json_out.h"
+#include "api/json/record.h"
 #include "mesh/material.h"
+
+/* The JSON members of a he_material. */
+extern const api_record api_material_record;
 
 /* Writes all materials of a mesh as a list, in the order in which the mesh stores them. */
 void api_write_materials(api_out *out, const he_materials *materials);
