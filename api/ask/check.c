@@ -4,6 +4,7 @@
  * not wait that long. Self-intersections, which take longest, are searched for only on request. */
 #include "api/request/handlers.h"
 
+#include "api/ask/records.h"
 #include "api/ask/spatial.h"
 #include "mesh/check.h"
 #include "mesh/walk.h"
@@ -21,7 +22,11 @@ static_assert((int)NAMED == HE_DEFECTS_LISTED,
 /* The progress (0 to 1) of a check when only the search for self-intersections is left to do. */
 static const double FOUND = 0.2;
 
+/* What was found, from which the JSON members of the answer are written. */
 typedef struct report {
+    const he_mesh *mesh;
+    uint64_t revision;
+    bool valid;
     he_problem problems[NAMED];
     size_t broken;
     he_thresholds thresholds;
@@ -59,7 +64,8 @@ static bool examine(api_asker *a, report *r)
     if (he_check_with_progress(a->mesh, progress, r->problems, NAMED, &r->broken, &err) != HE_OK) {
         return api_fail_core(a->x, &err);
     }
-    if (r->broken > 0) {
+    r->valid = r->broken == 0;
+    if (!r->valid) {
         /* The tests for defects rely on valid links, so they are not made on a mesh with broken
          * invariants. */
         return true;
@@ -74,22 +80,61 @@ static bool examine(api_asker *a, report *r)
 
 /* --- writing the report --- */
 
-static void write_problems(api_out *out, const report *r)
+static void write_rule(api_out *out, const void *rule)
 {
-    api_out_key(out, "problems");
+    char text[16];
+    snprintf(text, sizeof text, "I%d", *(const int *)rule);
+    api_out_string(out, text);
+}
+
+static void write_kind(api_out *out, const void *kind)
+{
+    api_out_string(out, he_kind_name(*(const he_kind *)kind));
+}
+
+static const api_field broken_fields[] = {
+    API_FIELD_MADE_OF("rule", "text", he_problem, rule, write_rule, .required = true,
+                      .doc = "The number of the invariant, I1 to I13."),
+    API_FIELD_MADE_OF("kind", "#element_kind", he_problem, kind, write_kind, .required = true),
+    API_FIELD("id", "id", he_problem, id, .required = true),
+    API_FIELD("detail", "text", he_problem, text, .required = true),
+};
+const api_record api_broken_record = {"broken", broken_fields,
+                                      sizeof broken_fields / sizeof *broken_fields};
+
+static void write_problems(api_out *out, const void *value)
+{
+    const report *r = value;
     api_out_array_begin(out);
     for (size_t i = 0; i < r->broken && i < NAMED; i++) {
-        char rule[16];
-        snprintf(rule, sizeof rule, "I%d", r->problems[i].rule);
-        api_out_object_begin(out);
-        api_out_key_string(out, "rule", rule);
-        api_out_key_string(out, "kind", he_kind_name(r->problems[i].kind));
-        api_out_key_id(out, "id", r->problems[i].id);
-        api_out_key_string(out, "detail", r->problems[i].text);
-        api_out_object_end(out);
+        api_record_write(out, &api_broken_record, &r->problems[i]);
     }
     api_out_array_end(out);
 }
+
+/* The values of the JSON members of a defect. */
+typedef struct shown_defect {
+    const char *code;
+    he_kind kind;
+    he_defect_found found;
+    char text[HE_PROBLEM_TEXT];
+    bool has_other, has_value;
+} shown_defect;
+
+static const api_field defect_fields[] = {
+    API_FIELD("code", "text", shown_defect, code, .required = true),
+    API_FIELD_MADE_OF("kind", "#element_kind", shown_defect, kind, write_kind, .required = true),
+    API_FIELD("id", "id", shown_defect, found.id, .required = true),
+    API_FIELD("detail", "text", shown_defect, text, .required = true),
+    API_FIELD("other", "id", shown_defect, found.other, .known = API_KNOWN(shown_defect, has_other),
+              .doc = "The other vertex in the same place, or the other face, which this face "
+                     "intersects."),
+    API_FIELD("value", "number", shown_defect, found.value,
+              .known = API_KNOWN(shown_defect, has_value),
+              .doc = "The measured distance, length, width, diagonal or volume."),
+};
+const api_record api_defect_record = {"defect", defect_fields,
+                                      sizeof defect_fields / sizeof *defect_fields};
 
 /* Writes one sentence about a defect into `text`. Returns true if the report also shows the value
  * of the defect. */
@@ -133,36 +178,27 @@ static bool describe(const he_mesh *m, he_defect_code code, const he_defect_foun
     return false;
 }
 
-static void write_defects(api_out *out, const he_mesh *m, const report *r)
+static void write_defects(api_out *out, const void *value)
 {
-    api_out_key(out, "defects");
+    const report *r = value;
     api_out_array_begin(out);
     for (he_defect_code code = 0; code < HE_DEFECTS; code++) {
         const he_defect_list *list = &r->defects.of[code];
         for (uint32_t i = 0; i < list->count; i++) {
-            const he_defect_found *d = &list->listed[i];
-            char text[HE_PROBLEM_TEXT];
-            bool has_value = describe(m, code, d, text, sizeof text);
-            api_out_object_begin(out);
-            api_out_key_string(out, "code", he_defect_name(code));
-            api_out_key_string(out, "kind", he_kind_name(he_defect_kind(code)));
-            api_out_key_id(out, "id", d->id);
-            api_out_key_string(out, "detail", text);
-            if (d->other != HE_NONE) {
-                api_out_key_id(out, "other", d->other);
-            }
-            if (has_value) {
-                api_out_key_number(out, "value", d->value);
-            }
-            api_out_object_end(out);
+            shown_defect shown = {.code = he_defect_name(code),
+                                  .kind = he_defect_kind(code),
+                                  .found = list->listed[i],
+                                  .has_other = list->listed[i].other != HE_NONE};
+            shown.has_value = describe(r->mesh, code, &shown.found, shown.text, sizeof shown.text);
+            api_record_write(out, &api_defect_record, &shown);
         }
     }
     api_out_array_end(out);
 }
 
-static void write_totals(api_out *out, const report *r)
+static void write_totals(api_out *out, const void *value)
 {
-    api_out_key(out, "totals");
+    const report *r = value;
     api_out_object_begin(out);
     api_out_key_u64(out, "problems", r->broken);
     for (he_defect_code code = 0; code < HE_DEFECTS; code++) {
@@ -173,24 +209,35 @@ static void write_totals(api_out *out, const report *r)
     api_out_object_end(out);
 }
 
-static void write_report(api_asker *a, const report *r)
-{
-    api_out *out = a->out;
-    api_out_object_begin(out);
-    api_out_key_u64(out, "revision", a->revision);
-    api_out_key_bool(out, "valid", r->broken == 0);
-    write_problems(out, r);
-    write_defects(out, a->mesh, r);
-    write_totals(out, r);
-    api_out_key(out, "thresholds");
-    api_out_object_begin(out);
-    api_out_key_number(out, "merge", r->thresholds.merge);
-    api_out_key_number(out, "flat", r->thresholds.flat);
-    api_out_key_number(out, "small", r->thresholds.small);
-    api_out_object_end(out);
-    api_out_key_bool(out, "complete", r->complete);
-    api_out_object_end(out);
-}
+static const api_field thresholds_fields[] = {
+    API_FIELD("merge", "number", he_thresholds, merge, .required = true),
+    API_FIELD("flat", "number", he_thresholds, flat, .required = true),
+    API_FIELD("small", "number", he_thresholds, small, .required = true),
+};
+const api_record api_thresholds_record = {"thresholds", thresholds_fields,
+                                          sizeof thresholds_fields / sizeof *thresholds_fields};
+
+static const api_field check_fields[] = {
+    API_FIELD("revision", "count", report, revision, .required = true),
+    API_FIELD("valid", "flag", report, valid, .required = true),
+    API_FIELD_MADE("problems", "*#broken", write_problems, .required = true,
+                   .doc = "Broken invariants."),
+    API_FIELD_MADE("defects", "*#defect", write_defects, .required = true,
+                   .doc = "Defects that a valid mesh may have, such as a bow-tie."),
+    API_FIELD_MADE("totals", "#totals", write_totals, .required = true,
+                   .doc = "The number of defects with each code; the first 100 of each are listed. "
+                          "`self_intersection` is present if the request asked for it."),
+    API_FIELD_RECORD("thresholds", "#thresholds", report, thresholds, &api_thresholds_record,
+                     .required = true,
+                     .doc = "The lengths that decide what is a defect: given by the request, or "
+                            "derived from the bounding box of the edges. 0 if the mesh is not "
+                            "valid, because defects are then not searched for."),
+    API_FIELD("complete", "flag", report, complete, .required = true,
+              .doc = "False if the search stopped at 1048576 pairs of intersecting faces, so that "
+                     "there may be more."),
+};
+const api_record api_check_record = {"check", check_fields,
+                                     sizeof check_fields / sizeof *check_fields};
 
 /* --- the handler of the route --- */
 
@@ -201,10 +248,12 @@ static void answer(api_exchange *x, api_asker *a)
         api_fail_memory(x);
         return;
     }
+    r->mesh = a->mesh;
+    r->revision = a->revision;
     r->meets = api_param_flag(x, "self_intersections");
     r->complete = true;
     if (examine(a, r)) {
-        write_report(a, r);
+        api_record_write(a->out, &api_check_record, r);
         api_answer_json(x, 200);
     }
     he_mem_free(r);

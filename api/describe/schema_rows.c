@@ -1,5 +1,6 @@
 #include "api/describe/schema_rows.h"
 
+#include "api/ask/records.h"
 #include "api/describe/page_records.h"
 #include "api/document/summary.h"
 #include "api/document/upload.h"
@@ -45,6 +46,10 @@ static const api_record *const records[] = {
     &api_attribute_values_record,
     &api_material_record,
     &api_material_list_record,
+    &api_broken_record,
+    &api_defect_record,
+    &api_thresholds_record,
+    &api_check_record,
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -244,38 +249,13 @@ const api_member api_answer_members[] = {
     {"components", "by", "#connection", REQUIRED, NULL},
     {"components", "components", "*#component", REQUIRED, NULL},
 
-    {"broken", "rule", "text", REQUIRED, "The number of the invariant, I1 to I13."},
-    {"broken", "kind", "#element_kind", REQUIRED, NULL},
-    {"broken", "id", "id", REQUIRED, NULL},
-    {"broken", "detail", "text", REQUIRED, NULL},
+    {"broken", NULL, NULL, REQUIRED, NULL},
 
-    {"defect", "code", "text", REQUIRED, NULL},
-    {"defect", "kind", "#element_kind", REQUIRED, NULL},
-    {"defect", "id", "id", REQUIRED, NULL},
-    {"defect", "detail", "text", REQUIRED, NULL},
-    {"defect", "other", "id", OPTIONAL,
-     "The other vertex in the same place, or the other face, which this face intersects."},
-    {"defect", "value", "number", OPTIONAL,
-     "The measured distance, length, width, diagonal or volume."},
+    {"defect", NULL, NULL, REQUIRED, NULL},
 
-    {"thresholds", "merge", "number", REQUIRED, NULL},
-    {"thresholds", "flat", "number", REQUIRED, NULL},
-    {"thresholds", "small", "number", REQUIRED, NULL},
+    {"thresholds", NULL, NULL, REQUIRED, NULL},
 
-    {"check", "revision", "count", REQUIRED, NULL},
-    {"check", "valid", "flag", REQUIRED, NULL},
-    {"check", "problems", "*#broken", REQUIRED, "Broken invariants."},
-    {"check", "defects", "*#defect", REQUIRED,
-     "Defects that a valid mesh may have, such as a bow-tie."},
-    {"check", "totals", "#totals", REQUIRED,
-     "The number of defects with each code; the first 100 of each are listed. `self_intersection` "
-     "is present if the request asked for it."},
-    {"check", "thresholds", "#thresholds", REQUIRED,
-     "The lengths that decide what is a defect: given by the request, or derived from the bounding "
-     "box of the edges. 0 if the mesh is not valid, because defects are then not searched for."},
-    {"check", "complete", "flag", REQUIRED,
-     "False if the search stopped at 1048576 pairs of intersecting faces, so that there may be "
-     "more."},
+    {"check", NULL, NULL, REQUIRED, NULL},
 
     {"sets", "vertices", "*id", REQUIRED, NULL},
     {"sets", "edges", "*id", REQUIRED, "Edges; the half-edges of edge e are 2e and 2e + 1."},

@@ -1,0 +1,13 @@
+/* records.h - the tables of JSON members (api/json/record.h) from which the handlers in api/ask
+ * write their answers. */
+#ifndef HE_API_ASK_RECORDS_H
+#define HE_API_ASK_RECORDS_H
+
+#include "api/json/record.h"
+
+/* The members of the answer of GET .../check, and of the objects in it: a broken invariant, a
+ * defect and the thresholds. */
+extern const api_record api_check_record, api_broken_record, api_defect_record,
+    api_thresholds_record;
+
+#endif
