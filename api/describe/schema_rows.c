@@ -8,6 +8,7 @@
 #include "api/job/job_out.h"
 #include "api/json/attribute_value.h"
 #include "api/json/material_value.h"
+#include "api/json/problem.h"
 #include "api/read/records.h"
 
 #include <stddef.h>
@@ -50,6 +51,8 @@ static const api_record *const records[] = {
     &api_defect_record,
     &api_thresholds_record,
     &api_check_record,
+    &api_problem_element_record,
+    &api_problem_record,
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -519,34 +522,9 @@ const api_member api_answer_members[] = {
 
     {"index", NULL, NULL, REQUIRED, NULL},
 
-    {"problem_element", "kind", "#element_kind", REQUIRED, NULL},
-    {"problem_element", "id", "id", REQUIRED, NULL},
-    {"problem_element", "code", "text", OPTIONAL, NULL},
-    {"problem_element", "detail", "text", OPTIONAL, NULL},
-    {"problem_element", "pointer", "text", OPTIONAL, NULL},
+    {"problem_element", NULL, NULL, REQUIRED, NULL},
 
-    {"problem", "type", "text", REQUIRED,
-     "The path of a page of this server that explains the code."},
-    {"problem", "title", "text", REQUIRED, NULL},
-    {"problem", "status", "integer", REQUIRED, NULL},
-    {"problem", "detail", "text", REQUIRED, NULL},
-    {"problem", "code", "text", REQUIRED,
-     "A name for programs, which stays the same in later releases."},
-    {"problem", "pointer", "text", OPTIONAL,
-     "A JSON pointer (RFC 6901) to the wrong value in the body."},
-    {"problem", "role", "#role_name", OPTIONAL, "The role that the token would need."},
-    {"problem", "element", "#problem_element", OPTIONAL, NULL},
-    {"problem", "elements", "*#problem_element", OPTIONAL,
-     "The elements that the problem is about; at most the first 100 are listed."},
-    {"problem", "total", "count", OPTIONAL, "The number of elements that the problem is about."},
-    {"problem", "repair", "*#repair_name", OPTIONAL,
-     "The repairs with which the server would accept the body, as values of the parameter "
-     "`repair`."},
-    {"problem", "revision", "count", OPTIONAL,
-     "The present revision of the mesh, if the status is 412."},
-    {"problem", "supported", "*text", OPTIONAL,
-     "The supported media types or content codings, if the status is 406 or 415."},
-    {"problem", "request_id", "text", OPTIONAL, NULL},
+    {"problem", NULL, NULL, REQUIRED, NULL},
     {NULL, NULL, NULL, OPTIONAL, NULL},
 };
 

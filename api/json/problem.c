@@ -1,6 +1,5 @@
 #include "api/json/problem.h"
 
-#include "api/json/json_out.h"
 #include "api/limits.h"
 #include "repair/repair.h"
 #include "system/memory.h"
@@ -284,37 +283,6 @@ void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER])
     }
 }
 
-static void write_element(api_out *out, he_kind kind, uint32_t id)
-{
-    api_out_key_string(out, "kind", he_kind_name(kind));
-    api_out_key_id(out, "id", id);
-}
-
-static void write_report(const api_problem *problem, api_out *out)
-{
-    const he_report *report = problem->report;
-    api_out_key(out, "elements");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < report->total && i < API_PROBLEM_ELEMENTS && i < HE_REPORT_DEFECTS;
-         i++) {
-        const he_defect *defect = &report->defects[i];
-        char text[HE_ERROR_TEXT];
-        he_defect_text(defect, text, sizeof text);
-        api_out_object_begin(out);
-        write_element(out, defect->kind, defect->id);
-        api_out_key_string(out, "code", he_status_slug(defect->reason));
-        api_out_key_string(out, "detail", text);
-        if (problem->report_pointers) {
-            char pointer[API_DEFECT_POINTER];
-            api_defect_pointer(defect, pointer);
-            api_out_key_string(out, "pointer", pointer);
-        }
-        api_out_object_end(out);
-    }
-    api_out_array_end(out);
-    api_out_key_u64(out, "total", report->total);
-}
-
 /* Replaces HE_NO_MEMORY by API_MEMORY_BUDGET if the memory budget is used up: a function that runs
  * out of memory does not know whether the budget or the machine's memory is the reason, but the
  * client should. */
@@ -333,60 +301,140 @@ const char *api_problem_unwritten(void)
                  "\"detail\":\"no memory for the request\",\"code\":\"no_memory\"}";
 }
 
+/* --- writing a problem --- */
+
+/* The values of the JSON members of an element that a problem is about. */
+typedef struct shown_element {
+    const char *kind;
+    uint32_t id;
+    const char *code, *detail, *pointer; /* NULL: none */
+} shown_element;
+
+static const api_field element_fields[] = {
+    API_FIELD("kind", "#element_kind", shown_element, kind, .required = true),
+    API_FIELD("id", "id", shown_element, id, .required = true),
+    API_FIELD("code", "text", shown_element, code, .required = false),
+    API_FIELD("detail", "text", shown_element, detail, .required = false),
+    API_FIELD("pointer", "text", shown_element, pointer, .required = false),
+};
+const api_record api_problem_element_record = {"problem_element", element_fields,
+                                               sizeof element_fields / sizeof *element_fields};
+
+/* The values of the JSON members of a problem. */
+typedef struct shown_problem {
+    const api_problem *problem;
+    char type[64];
+    const char *title;
+    int status;
+    const char *detail, *code, *pointer, *role;
+    bool has_element, has_report, has_repairs, has_revision, has_supported;
+    shown_element element;
+    uint64_t total, revision;
+    const char *request_id;
+} shown_problem;
+
+static void write_elements(api_out *out, const void *value)
+{
+    const api_problem *problem = ((const shown_problem *)value)->problem;
+    const he_report *report = problem->report;
+    api_out_array_begin(out);
+    for (size_t i = 0; i < report->total && i < API_PROBLEM_ELEMENTS && i < HE_REPORT_DEFECTS;
+         i++) {
+        const he_defect *defect = &report->defects[i];
+        char text[HE_ERROR_TEXT], pointer[API_DEFECT_POINTER];
+        he_defect_text(defect, text, sizeof text);
+        api_defect_pointer(defect, pointer);
+        api_record_write(out, &api_problem_element_record,
+                         &(shown_element){.kind = he_kind_name(defect->kind),
+                                          .id = defect->id,
+                                          .code = he_status_slug(defect->reason),
+                                          .detail = text,
+                                          .pointer = problem->report_pointers ? pointer : NULL});
+    }
+    api_out_array_end(out);
+}
+
+static void write_repairs(api_out *out, const void *value)
+{
+    const unsigned repairs = ((const shown_problem *)value)->problem->repairs;
+    api_out_array_begin(out);
+    for (unsigned r = 0; r < HE_REPAIR_COUNT; r++) {
+        if ((repairs >> r & 1) != 0) {
+            api_out_string(out, he_repair_names[r]);
+        }
+    }
+    api_out_array_end(out);
+}
+
+static void write_supported(api_out *out, const void *value)
+{
+    const char *const *name = ((const shown_problem *)value)->problem->supported;
+    api_out_array_begin(out);
+    for (; *name != NULL; name++) {
+        api_out_string(out, *name);
+    }
+    api_out_array_end(out);
+}
+
+static const api_field problem_fields[] = {
+    API_FIELD("type", "text", shown_problem, type, .required = true,
+              .doc = "The path of a page of this server that explains the code."),
+    API_FIELD("title", "text", shown_problem, title, .required = true),
+    API_FIELD("status", "integer", shown_problem, status, .required = true),
+    API_FIELD("detail", "text", shown_problem, detail, .required = true),
+    API_FIELD("code", "text", shown_problem, code, .required = true,
+              .doc = "A name for programs, which stays the same in later releases."),
+    API_FIELD("pointer", "text", shown_problem, pointer,
+              .doc = "A JSON pointer (RFC 6901) to the wrong value in the body."),
+    API_FIELD("role", "#role_name", shown_problem, role,
+              .doc = "The role that the token would need."),
+    API_FIELD_RECORD("element", "#problem_element", shown_problem, element,
+                     &api_problem_element_record, .known = API_KNOWN(shown_problem, has_element)),
+    API_FIELD_MADE("elements", "*#problem_element", write_elements,
+                   .known = API_KNOWN(shown_problem, has_report),
+                   .doc = "The elements that the problem is about, at most the first 100."),
+    API_FIELD("total", "count", shown_problem, total, .known = API_KNOWN(shown_problem, has_report),
+              .doc = "The number of elements that the problem is about."),
+    API_FIELD_MADE("repair", "*#repair_name", write_repairs,
+                   .known = API_KNOWN(shown_problem, has_repairs),
+                   .doc = "The repairs with which the server would accept the body."),
+    API_FIELD("revision", "count", shown_problem, revision,
+              .known = API_KNOWN(shown_problem, has_revision),
+              .doc = "With 412: the present revision."),
+    API_FIELD_MADE("supported", "*text", write_supported,
+                   .known = API_KNOWN(shown_problem, has_supported),
+                   .doc = "With 406 and 415: the supported media types or codings."),
+    API_FIELD("request_id", "text", shown_problem, request_id, .required = false),
+};
+const api_record api_problem_record = {"problem", problem_fields,
+                                       sizeof problem_fields / sizeof *problem_fields};
+
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text)
 {
     api_out out;
-    api_out_init(&out, text);
     const int code = named_code(problem->code);
     const char *slug = api_code_slug(code);
-    char type[64];
-    snprintf(type, sizeof type, "/problems/%s", slug);
-    api_out_object_begin(&out);
-    api_out_key_string(&out, "type", type);
-    api_out_key_string(&out, "title", api_code_title(code));
-    api_out_key_i64(&out, "status", api_problem_http(problem));
-    api_out_key_string(&out, "detail", problem->detail);
-    api_out_key_string(&out, "code", slug);
-    if (problem->has_pointer) {
-        api_out_key_string(&out, "pointer", problem->pointer);
-    }
+    shown_problem shown = {.problem = problem,
+                           .title = api_code_title(code),
+                           .status = api_problem_http(problem),
+                           .detail = problem->detail,
+                           .code = slug,
+                           .pointer = problem->has_pointer ? problem->pointer : NULL,
+                           .role = problem->role,
+                           .has_element = problem->has_element,
+                           .has_report = problem->report != NULL,
+                           .has_repairs = problem->repairs != 0,
+                           .has_revision = problem->has_revision,
+                           .has_supported = problem->supported != NULL,
+                           .total = problem->report == NULL ? 0 : problem->report->total,
+                           .revision = problem->revision,
+                           .request_id = request_id};
+    snprintf(shown.type, sizeof shown.type, "/problems/%s", slug);
     if (problem->has_element) {
-        api_out_key(&out, "element");
-        api_out_object_begin(&out);
-        write_element(&out, problem->kind, problem->id);
-        api_out_object_end(&out);
+        shown.element = (shown_element){.kind = he_kind_name(problem->kind), .id = problem->id};
     }
-    if (problem->report != NULL) {
-        write_report(problem, &out);
-    }
-    if (problem->repairs != 0) {
-        api_out_key(&out, "repair");
-        api_out_array_begin(&out);
-        for (unsigned r = 0; r < HE_REPAIR_COUNT; r++) {
-            if ((problem->repairs >> r & 1) != 0) {
-                api_out_string(&out, he_repair_names[r]);
-            }
-        }
-        api_out_array_end(&out);
-    }
-    if (problem->has_revision) {
-        api_out_key_u64(&out, "revision", problem->revision);
-    }
-    if (problem->role != NULL) {
-        api_out_key_string(&out, "role", problem->role);
-    }
-    if (problem->supported != NULL) {
-        api_out_key(&out, "supported");
-        api_out_array_begin(&out);
-        for (const char *const *type_name = problem->supported; *type_name != NULL; type_name++) {
-            api_out_string(&out, *type_name);
-        }
-        api_out_array_end(&out);
-    }
-    if (request_id != NULL) {
-        api_out_key_string(&out, "request_id", request_id);
-    }
-    api_out_object_end(&out);
+    api_out_init(&out, text);
+    api_record_write(&out, &api_problem_record, &shown);
 }
 
 void api_problem_page(int code, api_text *text)

@@ -7,7 +7,7 @@
 #ifndef HE_API_JSON_PROBLEM_H
 #define HE_API_JSON_PROBLEM_H
 
-#include "api/json/text.h"
+#include "api/json/record.h"
 #include "build/build.h"
 #include "store/publish/durability_wait.h"
 
@@ -335,6 +335,8 @@ const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
 /* Returns the JSON object that is sent, with status 507, if there is no memory to write a problem;
  * a string literal. */
 const char *api_problem_unwritten(void);
+/* The JSON members of a problem, and of an element that it is about. */
+extern const api_record api_problem_record, api_problem_element_record;
 /* Appends the problem as a JSON object to `text`; `request_id` may be NULL. HE_NO_MEMORY is written
  * as API_MEMORY_BUDGET if the memory budget is used up. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
