@@ -53,6 +53,12 @@ static const api_record *const records[] = {
     &api_check_record,
     &api_problem_element_record,
     &api_problem_record,
+    &api_mesh_page_record,
+    &api_job_page_record,
+    &api_page_records[HE_VERTEX],
+    &api_page_records[HE_HALFEDGE],
+    &api_page_records[HE_EDGE],
+    &api_page_records[HE_FACE],
 };
 enum { RECORDS = sizeof records / sizeof *records };
 
@@ -82,19 +88,11 @@ const api_member api_answer_members[] = {
 
     {"mesh_item", NULL, NULL, REQUIRED, NULL},
 
-    {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
-    {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
-    {"mesh_page", "listeners", "count", OPTIONAL,
-     "How many clients of the whole server listen to events of meshes. The members `listeners`, "
-     "`memory_bytes` and `memory_budget` are missing for tokens with prefixes."},
-    {"mesh_page", "memory_bytes", "count", OPTIONAL, "Memory that the whole server uses."},
-    {"mesh_page", "memory_budget", "count", OPTIONAL,
-     "Memory that the server may use; 0: no limit."},
+    {"mesh_page", NULL, NULL, REQUIRED, NULL},
 
     {"job", NULL, NULL, REQUIRED, NULL},
 
-    {"job_page", "items", "*#job", REQUIRED, NULL},
-    {"job_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"job_page", NULL, NULL, REQUIRED, NULL},
 
     {"summary", NULL, NULL, REQUIRED, NULL},
 
@@ -208,21 +206,13 @@ const api_member api_answer_members[] = {
      "Present only if false: the change is larger than the undo budget, so that neither this "
      "change nor an earlier one can be undone."},
 
-    {"vertex_page", "revision", "count", REQUIRED, NULL},
-    {"vertex_page", "items", "*#vertex", REQUIRED, NULL},
-    {"vertex_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"vertex_page", NULL, NULL, REQUIRED, NULL},
 
-    {"halfedge_page", "revision", "count", REQUIRED, NULL},
-    {"halfedge_page", "items", "*#halfedge", REQUIRED, NULL},
-    {"halfedge_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"halfedge_page", NULL, NULL, REQUIRED, NULL},
 
-    {"edge_page", "revision", "count", REQUIRED, NULL},
-    {"edge_page", "items", "*#edge", REQUIRED, NULL},
-    {"edge_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"edge_page", NULL, NULL, REQUIRED, NULL},
 
-    {"face_page", "revision", "count", REQUIRED, NULL},
-    {"face_page", "items", "*#face", REQUIRED, NULL},
-    {"face_page", "next", "text?", REQUIRED, "The cursor of the next page."},
+    {"face_page", NULL, NULL, REQUIRED, NULL},
 
     {"adjacency", "revision", "count", OPTIONAL,
      "The revision; missing if the answer is one of several in `results`, which all have one "

@@ -167,11 +167,6 @@ static const api_field summary_fields[] = {
 const api_record api_summary_record = {"summary", summary_fields,
                                        sizeof summary_fields / sizeof *summary_fields};
 
-void api_write_brief(api_out *out, const st_card *card)
-{
-    api_record_members(out, &api_mesh_item_record, card);
-}
-
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary)
 {
     const he_topology *t = &summary->topology;

@@ -37,9 +37,6 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 /* Writes the members of a summary (id, name, revision, counts and so on) into an object that the
  * caller has begun. */
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
-/* Writes what the store describes of each mesh, even when it is not in memory: id, name, revision,
- * some counts, and, for a damaged mesh, what is damaged. */
-void api_write_brief(api_out *out, const st_card *card);
 
 /* The handler of GET /v1/meshes/{mesh}, which answers 200 with the summary, from the cache if
  * possible, and the function that estimates the cost of that handler. */

@@ -3,6 +3,7 @@
 #include "api/request/handlers.h"
 
 #include "api/read/elements.h"
+#include "api/read/records.h"
 #include "api/request/mesh_access.h"
 
 #include <string.h>
@@ -14,37 +15,71 @@ static uint64_t page_limit(const api_exchange *x)
     return api_param_u64(x, "limit", API_DEFAULT_PAGE);
 }
 
-static void write_next(api_exchange *x, uint32_t id)
+/* The values of the JSON members of a page. The rows are written in order, so `next` is written
+ * after `items` have counted the id on to the next page. */
+typedef struct page {
+    api_exchange *x;
+    uint64_t revision;
+    uint32_t *id; /* the next element to write; HE_NONE: there are no more */
+} page;
+
+static void write_items(api_out *out, const void *value)
 {
-    api_out_key(&x->out, "next");
-    if (id == HE_NONE) {
-        api_out_null(&x->out);
+    const page *p = value;
+    const api_exchange *x = p->x;
+    const uint64_t limit = page_limit(x);
+    uint32_t id = *p->id;
+    api_out_array_begin(out);
+    for (uint64_t i = 0; i < limit && id != HE_NONE && x->text.length < API_MAX_PAGE_BYTES; i++) {
+        api_write_element(out, x->content, x->kind, id);
+        id = he_mesh_next_live(x->content, x->kind, (uint64_t)id + 1);
+    }
+    api_out_array_end(out);
+    *p->id = id;
+}
+
+static void write_next(api_out *out, const void *value)
+{
+    const page *p = value;
+    api_exchange *x = p->x;
+    if (*p->id == HE_NONE) {
+        api_out_null(out);
         return;
     }
     const char *collection = he_kind_plural(x->kind);
     char cursor[API_CURSOR];
-    api_cursor_write(collection, &x->info, id, cursor);
-    api_out_string(&x->out, cursor);
+    api_cursor_write(collection, &x->info, *p->id, cursor);
+    api_out_string(out, cursor);
     api_answer_header_format(x, "Link", "</v1/meshes/%s/%s?limit=%llu&cursor=%s>; rel=\"next\"",
                              x->mesh_id, collection, (unsigned long long)page_limit(x), cursor);
 }
 
+/* The rows of a page of elements of one kind; `items_` is the type of its items. */
+#define PAGE_FIELDS(items_)                                             \
+    API_FIELD("revision", "count", page, revision, .required = true),   \
+        API_FIELD_MADE("items", items_, write_items, .required = true), \
+        API_FIELD_MADE("next", "text?", write_next, .required = true,   \
+                       .doc = "The cursor of the next page.")
+
+static const api_field vertex_fields[] = {PAGE_FIELDS("*#vertex")};
+static const api_field halfedge_fields[] = {PAGE_FIELDS("*#halfedge")};
+static const api_field edge_fields[] = {PAGE_FIELDS("*#edge")};
+static const api_field face_fields[] = {PAGE_FIELDS("*#face")};
+#undef PAGE_FIELDS
+
+const api_record api_page_records[] = {
+    [HE_VERTEX] = {"vertex_page", vertex_fields, sizeof vertex_fields / sizeof *vertex_fields},
+    [HE_HALFEDGE] = {"halfedge_page", halfedge_fields,
+                     sizeof halfedge_fields / sizeof *halfedge_fields},
+    [HE_EDGE] = {"edge_page", edge_fields, sizeof edge_fields / sizeof *edge_fields},
+    [HE_FACE] = {"face_page", face_fields, sizeof face_fields / sizeof *face_fields},
+};
+
 static void write_page(api_exchange *x, uint64_t from)
 {
-    const he_mesh *mesh = x->content;
-    uint64_t limit = page_limit(x);
-    api_out_object_begin(&x->out);
-    api_out_key_u64(&x->out, "revision", x->info.revision);
-    api_out_key(&x->out, "items");
-    api_out_array_begin(&x->out);
-    uint32_t id = he_mesh_next_live(mesh, x->kind, from);
-    for (uint64_t i = 0; i < limit && id != HE_NONE && x->text.length < API_MAX_PAGE_BYTES; i++) {
-        api_write_element(&x->out, mesh, x->kind, id);
-        id = he_mesh_next_live(mesh, x->kind, (uint64_t)id + 1);
-    }
-    api_out_array_end(&x->out);
-    write_next(x, id);
-    api_out_object_end(&x->out);
+    uint32_t id = he_mesh_next_live(x->content, x->kind, from);
+    const page value = {.x = x, .revision = x->info.revision, .id = &id};
+    api_record_write(&x->out, &api_page_records[x->kind], &value);
     api_answer_json(x, 200);
 }
 

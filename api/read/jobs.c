@@ -1,6 +1,7 @@
 /* jobs.c - GET and DELETE /v1/jobs: the state and the results of work that was answered 202. */
 #include "api/event/events.h"
 #include "api/job/job_out.h"
+#include "api/read/records.h"
 #include "api/request/handlers.h"
 #include "format/text/number.h"
 
@@ -129,6 +130,7 @@ void api_job_events(api_exchange *x)
 typedef struct page {
     api_out *out;
     uint64_t last; /* number of the last job on the page */
+    bool more;     /* there is a next page */
 } page;
 
 static void show_brief(void *context, const api_job *job)
@@ -137,6 +139,45 @@ static void show_brief(void *context, const api_job *job)
     api_write_job(p->out, job, false);
     p->last = job->number;
 }
+
+/* The values of the JSON members of an answer. The rows are written in order, so `next` is written
+ * after `items` have filled in what the page ends with. */
+typedef struct shown_page {
+    api_exchange *x;
+    api_job_page asked;
+    page *page;
+} shown_page;
+
+static void write_items(api_out *out, const void *value)
+{
+    const shown_page *shown = value;
+    api_job_table *jobs = shown->x->service->options.jobs;
+    api_out_array_begin(out);
+    shown->page->more = jobs != NULL && api_job_list(jobs, &shown->asked, show_brief, shown->page);
+    api_out_array_end(out);
+}
+
+static void write_next(api_out *out, const void *value)
+{
+    const shown_page *shown = value;
+    if (!shown->page->more) {
+        api_out_null(out);
+        return;
+    }
+    char cursor[32];
+    snprintf(cursor, sizeof cursor, "j%llu", (unsigned long long)shown->page->last);
+    api_out_string(out, cursor);
+    api_answer_header_format(shown->x, "Link", "</v1/jobs?limit=%zu&cursor=%s>; rel=\"next\"",
+                             shown->asked.limit, cursor);
+}
+
+static const api_field page_fields[] = {
+    API_FIELD_MADE("items", "*#job", write_items, .required = true),
+    API_FIELD_MADE("next", "text?", write_next, .required = true,
+                   .doc = "The cursor of the next page."),
+};
+const api_record api_job_page_record = {"job_page", page_fields,
+                                        sizeof page_fields / sizeof *page_fields};
 
 /* Reads the cursor of a page: the number of the last job, after a letter that keeps clients from
  * using a job's number as a cursor. */
@@ -159,28 +200,13 @@ static bool read_cursor(api_exchange *x, uint64_t *after)
 
 void api_jobs_list(api_exchange *x)
 {
-    api_job_table *jobs = x->service->options.jobs;
-    api_job_page asked = {.viewer = x->token,
-                          .limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_JOBS)};
     page p = {.out = &x->out};
-    if (!read_cursor(x, &asked.after)) {
-        return;
+    shown_page shown = {
+        .x = x,
+        .asked = {.viewer = x->token, .limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_JOBS)},
+        .page = &p};
+    if (read_cursor(x, &shown.asked.after)) {
+        api_record_write(&x->out, &api_job_page_record, &shown);
+        api_answer_json(x, 200);
     }
-    api_out_object_begin(&x->out);
-    api_out_key(&x->out, "items");
-    api_out_array_begin(&x->out);
-    bool more = jobs != NULL && api_job_list(jobs, &asked, show_brief, &p);
-    api_out_array_end(&x->out);
-    api_out_key(&x->out, "next");
-    if (more) {
-        char cursor[32];
-        snprintf(cursor, sizeof cursor, "j%llu", (unsigned long long)p.last);
-        api_out_string(&x->out, cursor);
-        api_answer_header_format(x, "Link", "</v1/jobs?limit=%zu&cursor=%s>; rel=\"next\"",
-                                 asked.limit, cursor);
-    } else {
-        api_out_null(&x->out);
-    }
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
 }

@@ -3,6 +3,7 @@
 #include "api/request/handlers.h"
 
 #include "api/document/summary.h"
+#include "api/read/records.h"
 #include "api/request/gate.h"
 #include "api/request/new_mesh.h"
 #include "store/followers.h"
@@ -27,22 +28,6 @@ static bool read_list_cursor(api_exchange *x, const char **after)
     return true;
 }
 
-/* Writes totals of the whole server, which help a client decide what to delete. They are not shown
- * to a token with prefixes, because they include meshes that it cannot see. */
-static void write_server(api_exchange *x)
-{
-    uint64_t used, budget;
-    if (x->token != NULL && x->token->prefix_count > 0) {
-        return;
-    }
-    api_out_key_u64(&x->out, "listeners", st_listeners(x->store));
-    if (x->service->options.memory != NULL) {
-        x->service->options.memory(&used, &budget);
-        api_out_key_u64(&x->out, "memory_bytes", used);
-        api_out_key_u64(&x->out, "memory_budget", budget);
-    }
-}
-
 /* The number of cards (descriptions of meshes) that are read at once; there are few, because large
  * allocations fail first when memory is short. */
 enum { CARDS = 32 };
@@ -57,6 +42,7 @@ typedef struct list_page {
     char from[ST_MESH_ID + 1];
     char last[ST_MESH_ID + 1]; /* id of the last item */
     bool more;                 /* there is a next page */
+    bool failed;               /* the problem of the request is filled */
 } list_page;
 
 /* Writes the meshes whose ids begin with `prefix` and come after `from` of the page. */
@@ -81,9 +67,7 @@ static bool write_range(api_exchange *x, list_page *p, const char *prefix)
                 p->more = true;
                 return true;
             }
-            api_out_object_begin(&x->out);
-            api_write_brief(&x->out, card);
-            api_out_object_end(&x->out);
+            api_record_write(&x->out, &api_mesh_item_record, card);
             memcpy(p->from, card->id, sizeof card->id);
             memcpy(p->last, card->id, sizeof card->id);
         }
@@ -109,7 +93,7 @@ static void go_to(list_page *p, const char *prefix)
 
 /* Writes the page. It looks only at ids that the token can see, so the time does not depend on the
  * number of other meshes. */
-static bool write_items(api_exchange *x, list_page *p)
+static bool write_ranges(api_exchange *x, list_page *p)
 {
     const char *ranges[API_TOKEN_PREFIXES];
     size_t count = x->token == NULL ? 0 : api_token_ranges(x->token, ranges);
@@ -129,35 +113,88 @@ static bool write_items(api_exchange *x, list_page *p)
     return true;
 }
 
+/* The values of the JSON members of an answer. The rows are written in order, so `next` is written
+ * after `items` have filled in what the page ends with. */
+typedef struct shown_page {
+    api_exchange *x;
+    list_page *page;
+    /* Totals of the whole server, which help a client decide what to delete. */
+    bool shows_listeners, shows_memory;
+    uint64_t listeners, used, budget;
+} shown_page;
+
+static void write_items(api_out *out, const void *value)
+{
+    const shown_page *shown = value;
+    api_out_array_begin(out);
+    shown->page->failed = !write_ranges(shown->x, shown->page);
+    api_out_array_end(out);
+}
+
+static void write_next(api_out *out, const void *value)
+{
+    const shown_page *shown = value;
+    const list_page *p = shown->page;
+    if (!p->more) {
+        api_out_null(out);
+        return;
+    }
+    char cursor[ST_MESH_ID + 2] = "m";
+    memcpy(cursor + 1, p->last, sizeof p->last);
+    api_out_string(out, cursor);
+    api_answer_header_format(shown->x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"",
+                             p->limit, cursor);
+}
+
+static const api_field page_fields[] = {
+    API_FIELD_MADE("items", "*#mesh_item", write_items, .required = true),
+    API_FIELD_MADE("next", "text?", write_next, .required = true,
+                   .doc = "The cursor of the next page."),
+    API_FIELD("listeners", "count", shown_page, listeners,
+              .known = API_KNOWN(shown_page, shows_listeners),
+              .doc = "How many clients of the whole server listen to events of meshes. This member "
+                     "and the next two are missing for tokens with prefixes."),
+    API_FIELD("memory_bytes", "count", shown_page, used,
+              .known = API_KNOWN(shown_page, shows_memory),
+              .doc = "Memory that the whole server uses."),
+    API_FIELD("memory_budget", "count", shown_page, budget,
+              .known = API_KNOWN(shown_page, shows_memory),
+              .doc = "Memory that the server may use; 0: no limit."),
+};
+const api_record api_mesh_page_record = {"mesh_page", page_fields,
+                                         sizeof page_fields / sizeof *page_fields};
+
+/* Finds the totals of the whole server. They are not shown to a token with prefixes, because they
+ * include meshes that it cannot see. */
+static void find_totals(shown_page *shown)
+{
+    const api_exchange *x = shown->x;
+    const api_options *options = &x->service->options;
+    if (x->token != NULL && x->token->prefix_count > 0) {
+        return;
+    }
+    shown->shows_listeners = true;
+    shown->listeners = st_listeners(x->store);
+    if (options->memory != NULL) {
+        shown->shows_memory = true;
+        options->memory(&shown->used, &shown->budget);
+    }
+}
+
 static void list(api_exchange *x)
 {
     const char *after;
     list_page p = {.limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_PAGE)};
+    shown_page shown = {.x = x, .page = &p};
     if (!read_list_cursor(x, &after)) {
         return;
     }
     snprintf(p.from, sizeof p.from, "%s", after);
-    api_out *out = &x->out;
-    api_out_object_begin(out);
-    api_out_key(out, "items");
-    api_out_array_begin(out);
-    if (!write_items(x, &p)) {
-        return;
+    find_totals(&shown);
+    api_record_write(&x->out, &api_mesh_page_record, &shown);
+    if (!p.failed) {
+        api_answer_json(x, 200);
     }
-    api_out_array_end(out);
-    api_out_key(out, "next");
-    if (p.more) {
-        char cursor[ST_MESH_ID + 2] = "m";
-        memcpy(cursor + 1, p.last, sizeof p.last);
-        api_out_string(out, cursor);
-        api_answer_header_format(x, "Link", "</v1/meshes?limit=%zu&cursor=%s>; rel=\"next\"",
-                                 p.limit, cursor);
-    } else {
-        api_out_null(out);
-    }
-    write_server(x);
-    api_out_object_end(out);
-    api_answer_json(x, 200);
 }
 
 void api_meshes_list(api_exchange *x)

@@ -12,6 +12,8 @@ extern const api_record api_history_record, api_entry_record, api_counted_record
 extern const api_record api_attribute_list_record, api_attribute_values_record;
 /* The JSON members of the list of materials. */
 extern const api_record api_material_list_record;
+/* The JSON members of a page of meshes, of jobs, and of elements of each he_kind up to HE_FACE. */
+extern const api_record api_mesh_page_record, api_job_page_record, api_page_records[HE_FACE + 1];
 /* The JSON members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
 extern const api_record api_token_record, api_ticket_record, api_reloaded_record;
 
