@@ -53,6 +53,10 @@ static const api_record *const records[] = {
     &api_check_record,
     &api_problem_element_record,
     &api_problem_record,
+    &api_loop_record,
+    &api_boundaries_record,
+    &api_component_record,
+    &api_components_record,
     &api_mesh_page_record,
     &api_job_page_record,
     &api_page_records[HE_VERTEX],
@@ -226,21 +230,13 @@ const api_member api_answer_members[] = {
      "position offsets[i + 1]."},
     {"dense", "ids", "*id", REQUIRED, NULL},
 
-    {"loop", "halfedge", "id", REQUIRED, NULL},
-    {"loop", "length", "count", REQUIRED, "The number of half-edges."},
-    {"loop", "halfedges", "*id", REQUIRED, NULL},
-    {"loop", "vertices", "*id", REQUIRED, "Origins of the half-edges."},
+    {"loop", NULL, NULL, REQUIRED, NULL},
 
-    {"boundaries", "revision", "count", REQUIRED, NULL},
-    {"boundaries", "loops", "*#loop", REQUIRED, NULL},
+    {"boundaries", NULL, NULL, REQUIRED, NULL},
 
-    {"component", "faces", "count", REQUIRED, NULL},
-    {"component", "vertices", "count", REQUIRED, NULL},
-    {"component", "face", "id", REQUIRED, "The id of a face of the component."},
+    {"component", NULL, NULL, REQUIRED, NULL},
 
-    {"components", "revision", "count", REQUIRED, NULL},
-    {"components", "by", "#connection", REQUIRED, NULL},
-    {"components", "components", "*#component", REQUIRED, NULL},
+    {"components", NULL, NULL, REQUIRED, NULL},
 
     {"broken", NULL, NULL, REQUIRED, NULL},
 

@@ -14,6 +14,10 @@ extern const api_record api_attribute_list_record, api_attribute_values_record;
 extern const api_record api_material_list_record;
 /* The JSON members of a page of meshes, of jobs, and of elements of each he_kind up to HE_FACE. */
 extern const api_record api_mesh_page_record, api_job_page_record, api_page_records[HE_FACE + 1];
+/* The JSON members of the answers of GET .../boundaries and GET .../components, and of the objects
+ * that they list. */
+extern const api_record api_boundaries_record, api_loop_record, api_components_record,
+    api_component_record;
 /* The JSON members of the answers of GET /v1/token, POST /v1/tickets and POST /v1/admin/reload. */
 extern const api_record api_token_record, api_ticket_record, api_reloaded_record;
 

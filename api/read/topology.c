@@ -2,94 +2,143 @@
  * the whole mesh. */
 #include "api/request/handlers.h"
 
+#include "api/read/records.h"
 #include "mesh/walk.h"
 #include "query/topology.h"
 #include "query/traverse.h"
 
-/* Answers 200 with an object that has the member "revision" and those that `write` writes. */
-static void answer(api_exchange *x, bool (*write)(api_exchange *x, const he_mesh *mesh))
-{
-    api_out_object_begin(&x->out);
-    api_out_key_u64(&x->out, "revision", x->info.revision);
-    if (write(x, x->content)) {
-        api_out_object_end(&x->out);
-        api_answer_json(x, 200);
-    }
-}
-
 /* --- GET .../boundaries --- */
 
-static void write_loop(api_out *out, const he_mesh *mesh, const he_boundary *loop,
-                       const he_ids *halfedges)
+/* The values of the JSON members of a boundary loop. */
+typedef struct shown_loop {
+    const he_mesh *mesh;
+    he_boundary loop;
+    const he_ids *halfedges;
+} shown_loop;
+
+static void write_halfedges(api_out *out, const void *value)
 {
-    api_out_object_begin(out);
-    api_out_key_id(out, "halfedge", loop->halfedge);
-    api_out_key_u64(out, "length", loop->length);
-    api_out_key_ids(out, "halfedges", halfedges->ids, halfedges->count);
-    api_out_key(out, "vertices");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < halfedges->count; i++) {
-        api_out_id(out, he_origin(mesh, (he_halfedge){halfedges->ids[i]}).i);
-    }
-    api_out_array_end(out);
-    api_out_object_end(out);
+    const he_ids *halfedges = ((const shown_loop *)value)->halfedges;
+    api_out_ids(out, halfedges->ids, halfedges->count);
 }
 
-static bool write_boundaries(api_exchange *x, const he_mesh *mesh)
+static void write_origins(api_out *out, const void *value)
 {
-    he_boundaries boundaries = {0};
+    const shown_loop *shown = value;
+    api_out_array_begin(out);
+    for (size_t i = 0; i < shown->halfedges->count; i++) {
+        api_out_id(out, he_origin(shown->mesh, (he_halfedge){shown->halfedges->ids[i]}).i);
+    }
+    api_out_array_end(out);
+}
+
+static const api_field loop_fields[] = {
+    API_FIELD("halfedge", "id", shown_loop, loop.halfedge, .required = true),
+    API_FIELD("length", "count", shown_loop, loop.length, .required = true,
+              .doc = "The number of half-edges."),
+    API_FIELD_MADE("halfedges", "*id", write_halfedges, .required = true),
+    API_FIELD_MADE("vertices", "*id", write_origins, .required = true,
+                   .doc = "Origins of the half-edges."),
+};
+const api_record api_loop_record = {"loop", loop_fields, sizeof loop_fields / sizeof *loop_fields};
+
+/* The boundary loops of a mesh, from which the JSON members of an answer are written. */
+typedef struct shown_boundaries {
+    uint64_t revision;
+    const he_mesh *mesh;
+    const he_boundaries *found;
+    he_error *err; /* gets the reason if there is no memory for the half-edges of a loop */
+} shown_boundaries;
+
+static void write_loops(api_out *out, const void *value)
+{
+    const shown_boundaries *shown = value;
     he_ids halfedges = {0};
-    he_error err = {0};
-    he_status status = he_boundaries_find(mesh, &boundaries, &err);
-    api_out_key(&x->out, "loops");
-    api_out_array_begin(&x->out);
-    for (size_t i = 0; i < boundaries.count && status == HE_OK; i++) {
-        const he_boundary *loop = &boundaries.loops[i];
+    he_status status = HE_OK;
+    api_out_array_begin(out);
+    for (size_t i = 0; i < shown->found->count && status == HE_OK; i++) {
+        const shown_loop loop = {shown->mesh, shown->found->loops[i], &halfedges};
         halfedges.count = 0;
-        status = he_traverse_loop(mesh, (he_halfedge){loop->halfedge}, &halfedges, &err);
+        status = he_traverse_loop(shown->mesh, (he_halfedge){loop.loop.halfedge}, &halfedges,
+                                  shown->err);
         if (status == HE_OK) {
-            write_loop(&x->out, mesh, loop, &halfedges);
+            api_record_write(out, &api_loop_record, &loop);
         }
     }
-    api_out_array_end(&x->out);
+    api_out_array_end(out);
     he_ids_clear(&halfedges);
-    he_boundaries_clear(&boundaries);
-    return status == HE_OK || api_fail_core(x, &err);
 }
+
+static const api_field boundaries_fields[] = {
+    API_FIELD("revision", "count", shown_boundaries, revision, .required = true),
+    API_FIELD_MADE("loops", "*#loop", write_loops, .required = true),
+};
+const api_record api_boundaries_record = {"boundaries", boundaries_fields,
+                                          sizeof boundaries_fields / sizeof *boundaries_fields};
 
 void api_boundaries_get(api_exchange *x)
 {
-    answer(x, write_boundaries);
+    he_boundaries found = {0};
+    he_error err = {0};
+    if (he_boundaries_find(x->content, &found, &err) == HE_OK) {
+        const shown_boundaries shown = {x->info.revision, x->content, &found, &err};
+        api_record_write(&x->out, &api_boundaries_record, &shown);
+    }
+    he_boundaries_clear(&found);
+    if (err.status == HE_OK) {
+        api_answer_json(x, 200);
+    } else {
+        api_fail_core(x, &err);
+    }
 }
 
 /* --- GET .../components --- */
 
-static bool write_components(api_exchange *x, const he_mesh *mesh)
+static const api_field component_fields[] = {
+    API_FIELD("faces", "count", he_component, faces, .required = true),
+    API_FIELD("vertices", "count", he_component, vertices, .required = true),
+    API_FIELD("face", "id", he_component, face, .required = true, .doc = "One of its faces."),
+};
+const api_record api_component_record = {"component", component_fields,
+                                         sizeof component_fields / sizeof *component_fields};
+
+/* The components of a mesh, from which the JSON members of an answer are written. */
+typedef struct shown_components {
+    uint64_t revision;
+    const char *by;
+    const he_components *found;
+} shown_components;
+
+static void write_components(api_out *out, const void *value)
 {
-    bool by_vertex = api_param_has_choice(x, "by", "vertex");
-    he_components found = {0};
-    he_error err = {0};
-    if (he_components_find(mesh, by_vertex ? HE_JOINED_BY_VERTEX : HE_JOINED_BY_EDGE, &found,
-                           &err) != HE_OK) {
-        return api_fail_core(x, &err);
+    const he_components *found = ((const shown_components *)value)->found;
+    api_out_array_begin(out);
+    for (size_t i = 0; i < found->count; i++) {
+        api_record_write(out, &api_component_record, &found->components[i]);
     }
-    api_out_key_string(&x->out, "by", by_vertex ? "vertex" : "edge");
-    api_out_key(&x->out, "components");
-    api_out_array_begin(&x->out);
-    for (size_t i = 0; i < found.count; i++) {
-        const he_component *component = &found.components[i];
-        api_out_object_begin(&x->out);
-        api_out_key_u64(&x->out, "faces", component->faces);
-        api_out_key_u64(&x->out, "vertices", component->vertices);
-        api_out_key_id(&x->out, "face", component->face);
-        api_out_object_end(&x->out);
-    }
-    api_out_array_end(&x->out);
-    he_components_clear(&found);
-    return true;
+    api_out_array_end(out);
 }
+
+static const api_field components_fields[] = {
+    API_FIELD("revision", "count", shown_components, revision, .required = true),
+    API_FIELD("by", "#connection", shown_components, by, .required = true),
+    API_FIELD_MADE("components", "*#component", write_components, .required = true),
+};
+const api_record api_components_record = {"components", components_fields,
+                                          sizeof components_fields / sizeof *components_fields};
 
 void api_components_get(api_exchange *x)
 {
-    answer(x, write_components);
+    const bool by_vertex = api_param_has_choice(x, "by", "vertex");
+    he_components found = {0};
+    he_error err = {0};
+    if (he_components_find(x->content, by_vertex ? HE_JOINED_BY_VERTEX : HE_JOINED_BY_EDGE, &found,
+                           &err) != HE_OK) {
+        api_fail_core(x, &err);
+        return;
+    }
+    api_record_write(&x->out, &api_components_record,
+                     &(shown_components){x->info.revision, by_vertex ? "vertex" : "edge", &found});
+    he_components_clear(&found);
+    api_answer_json(x, 200);
 }
