@@ -40,133 +40,202 @@ static const char *param_type(const he_param *param)
     return "";
 }
 
-/* Writes the member "default": the value that a parameter has if it is not given. */
-static void write_default(api_out *out, const he_param *param)
+/* A parameter has a default value if it need not be given and nothing else determines its value. */
+static bool has_default(const he_param *param)
 {
-    if (param->flags & (HE_REQUIRED | HE_DERIVED)) {
-        return;
-    }
+    return (param->flags & (HE_REQUIRED | HE_DERIVED)) == 0 &&
+           (param->type == HE_PARAM_NUMBER || param->type == HE_PARAM_FLAG ||
+            param->type == HE_PARAM_CHOICE);
+}
+
+static void write_default(api_out *out, const void *value)
+{
+    const he_param *param = value;
     if (param->type == HE_PARAM_NUMBER) {
-        api_out_key_number(out, "default", param->fallback);
+        api_out_number(out, param->fallback);
     } else if (param->type == HE_PARAM_FLAG) {
-        api_out_key_bool(out, "default", param->fallback > 0);
-    } else if (param->type == HE_PARAM_CHOICE) {
-        api_out_key_string(out, "default", param->choices[(size_t)param->fallback]);
+        api_out_bool(out, param->fallback > 0);
+    } else {
+        api_out_string(out, param->choices[(size_t)param->fallback]);
     }
 }
+
+/* Writes the text to which `doc` points, or "" if there is none. */
+static void write_doc(api_out *out, const void *doc)
+{
+    const char *text = *(const char *const *)doc;
+    api_out_string(out, text == NULL ? "" : text);
+}
+
+/* A parameter with the values of its JSON members that are not in he_param. */
+typedef struct shown_param {
+    he_param param;
+    const char *type;
+    char group[2];
+    bool required, set, nullable, has_default, has_range, exclusive;
+} shown_param;
+
+static const api_field param_fields[] = {
+    API_FIELD("name", "text", shown_param, param.name, .required = true),
+    API_FIELD("plural", "text", shown_param, param.plural,
+              .doc = "The name of the parameter that takes a list of ids instead of one id."),
+    API_FIELD("set", "flag", shown_param, set, .zero_is_none = true,
+              .doc = "True if a set such as {\"selected\":true} may be given instead of a list of "
+                     "ids."),
+    API_FIELD("type", "text", shown_param, type, .required = true),
+    API_FIELD("required", "flag", shown_param, required, .required = true),
+    API_FIELD("nullable", "flag", shown_param, nullable, .zero_is_none = true),
+    API_FIELD("group", "text", shown_param, group, .zero_is_none = true,
+              .doc = "Exactly one of the parameters with the same group must be given."),
+    API_FIELD_MADE_OF("default", "#scalar", shown_param, param, write_default,
+                      .known = API_KNOWN(shown_param, has_default)),
+    API_FIELD("min", "number", shown_param, param.min, .known = API_KNOWN(shown_param, has_range)),
+    API_FIELD("max", "number", shown_param, param.max, .known = API_KNOWN(shown_param, has_range)),
+    API_FIELD("exclusive", "flag", shown_param, exclusive, .zero_is_none = true,
+              .doc = "True if min and max themselves are not allowed."),
+    API_FIELD("choices", "*text", shown_param, param.choices, .required = false),
+    API_FIELD_MADE_OF("doc", "text", shown_param, param.doc, write_doc, .required = true),
+};
+const api_record api_parameter_record = {"parameter", param_fields,
+                                         sizeof param_fields / sizeof *param_fields};
 
 static void write_param(api_out *out, const he_param *param)
 {
-    api_out_object_begin(out);
-    api_out_key_string(out, "name", param->name);
-    if (param->plural != NULL) {
-        api_out_key_string(out, "plural", param->plural);
-        api_out_key_bool(out, "set", true);
-    }
-    api_out_key_string(out, "type", param_type(param));
-    api_out_key_bool(out, "required", (param->flags & HE_REQUIRED) != 0);
-    if (param->flags & HE_NULLABLE) {
-        api_out_key_bool(out, "nullable", true);
-    }
-    if (param->group != 0) {
-        char group[2] = {param->group, '\0'};
-        api_out_key_string(out, "group", group);
-    }
-    write_default(out, param);
-    if (param->flags & HE_RANGE) {
-        api_out_key_number(out, "min", param->min);
-        api_out_key_number(out, "max", param->max);
-        if (param->flags & HE_EXCLUSIVE) {
-            api_out_key_bool(out, "exclusive", true);
-        }
-    }
-    if (param->choices != NULL) {
-        api_schema_choices(out, "choices", param->choices);
-    }
-    api_out_key_string(out, "doc", param->doc == NULL ? "" : param->doc);
-    api_out_object_end(out);
+    const bool has_range = (param->flags & HE_RANGE) != 0;
+    const shown_param shown = {.param = *param,
+                               .type = param_type(param),
+                               .group = {param->group, '\0'},
+                               .required = (param->flags & HE_REQUIRED) != 0,
+                               .set = param->plural != NULL,
+                               .nullable = (param->flags & HE_NULLABLE) != 0,
+                               .has_default = has_default(param),
+                               .has_range = has_range,
+                               .exclusive = has_range && (param->flags & HE_EXCLUSIVE) != 0};
+    api_record_write(out, &api_parameter_record, &shown);
 }
 
-static void write_result(api_out *out, const he_result_row *result)
+static const char *result_type(const he_result_row *result)
 {
-    const char *type = "";
     switch (result->type) {
     case HE_RESULT_ELEMENT:
-        type = he_kind_name(result->kind);
-        break;
+        return he_kind_name(result->kind);
     case HE_RESULT_ELEMENTS:
-        type = he_kind_plural(result->kind);
-        break;
+        return he_kind_plural(result->kind);
     case HE_RESULT_NUMBER:
-        type = "number";
-        break;
+        return "number";
     case HE_RESULT_CHOICE:
-        type = "choice";
-        break;
+        return "choice";
     case HE_RESULT_MAP:
-        type = "map";
-        break;
+        return "map";
     case HE_RESULT_COUNTS:
-        type = "counts";
-        break;
+        return "counts";
     }
-    api_out_object_begin(out);
-    api_out_key_string(out, "name", result->name);
-    api_out_key_string(out, "type", type);
-    if (result->choices != NULL) {
-        api_schema_choices(out, "choices", result->choices);
-    }
-    api_out_key_string(out, "doc", result->doc == NULL ? "" : result->doc);
-    api_out_object_end(out);
+    return "";
 }
 
-static void write_op(api_out *out, const he_op *op)
+static void write_result_type(api_out *out, const void *row)
 {
-    api_out_object_begin(out);
-    api_out_key_string(out, "name", op->name);
-    api_out_key_string(out, "doc", op->doc);
-    api_out_key_string(out, "size", op->size == HE_OP_LOCAL ? "local" : "whole");
-    api_out_key(out, "params");
+    api_out_string(out, result_type(row));
+}
+
+static const api_field result_fields[] = {
+    API_FIELD("name", "text", he_result_row, name, .required = true),
+    API_FIELD_MADE("type", "text", write_result_type, .required = true),
+    API_FIELD("choices", "*text", he_result_row, choices,
+              .doc = "The possible values, if the type is choice."),
+    API_FIELD_MADE_OF("doc", "text", he_result_row, doc, write_doc, .required = true),
+};
+const api_record api_result_record = {"result", result_fields,
+                                      sizeof result_fields / sizeof *result_fields};
+
+static void write_size(api_out *out, const void *size)
+{
+    api_out_string(out, *(const he_op_size *)size == HE_OP_LOCAL ? "local" : "whole");
+}
+
+static void write_params(api_out *out, const void *value)
+{
+    const he_op *op = value;
     api_out_array_begin(out);
     for (size_t i = 0; i < he_op_params(op); i++) {
         write_param(out, &op->params[i]);
     }
     api_out_array_end(out);
-    api_out_key(out, "results");
+}
+
+static void write_results(api_out *out, const void *value)
+{
+    const he_op *op = value;
     api_out_array_begin(out);
     for (size_t i = 0; i < he_op_results(op); i++) {
-        write_result(out, &op->results[i]);
+        api_record_write(out, &api_result_record, &op->results[i]);
     }
     api_out_array_end(out);
-    api_out_key(out, "refusals");
+}
+
+static void write_refusals(api_out *out, const void *value)
+{
+    const he_op *op = value;
     api_out_array_begin(out);
     for (size_t i = 0; i < HE_OP_REFUSALS && op->refusals[i] != HE_OK; i++) {
         api_out_string(out, he_status_slug(op->refusals[i]));
     }
     api_out_array_end(out);
-    api_out_key(out, "change");
+}
+
+static void write_change(api_out *out, const void *value)
+{
+    const he_op *op = value;
     if (op->change[0] == HE_VARIES || op->change[1] == HE_VARIES || op->change[2] == HE_VARIES) {
         api_out_null(out);
-    } else {
-        api_out_array_begin(out);
-        for (int i = 0; i < 3; i++) {
-            api_out_i64(out, op->change[i]);
-        }
-        api_out_array_end(out);
+        return;
     }
-    api_out_object_end(out);
+    api_out_array_begin(out);
+    for (int i = 0; i < 3; i++) {
+        api_out_i64(out, op->change[i]);
+    }
+    api_out_array_end(out);
 }
+
+static const api_field op_fields[] = {
+    API_FIELD("name", "text", he_op, name, .required = true),
+    API_FIELD("doc", "text", he_op, doc, .required = true),
+    API_FIELD_MADE_OF("size", "#op_size", he_op, size, write_size, .required = true,
+                      .doc = "local: the edit touches a few elements. whole: it may touch all of "
+                             "the mesh."),
+    API_FIELD_MADE("params", "*#parameter", write_params, .required = true),
+    API_FIELD_MADE("results", "*#result", write_results, .required = true),
+    API_FIELD_MADE("refusals", "*text", write_refusals, .required = true),
+    API_FIELD_MADE("change", "#triple?", write_change, .required = true,
+                   .doc = "Change in the numbers of vertices, edges and faces; null if it varies."),
+};
+const api_record api_operation_row_record = {"operation_row", op_fields,
+                                             sizeof op_fields / sizeof *op_fields};
+
+/* The table of operations, from which the JSON members of the answer are written. */
+typedef struct op_table {
+    size_t count;
+} op_table;
+
+static void write_ops(api_out *out, const void *value)
+{
+    const op_table *table = value;
+    api_out_array_begin(out);
+    for (size_t i = 0; i < table->count; i++) {
+        api_record_write(out, &api_operation_row_record, he_op_at(i));
+    }
+    api_out_array_end(out);
+}
+
+static const api_field operations_fields[] = {
+    API_FIELD_MADE("operations", "*#operation_row", write_ops, .required = true),
+};
+const api_record api_operations_record = {"operations", operations_fields,
+                                          sizeof operations_fields / sizeof *operations_fields};
 
 void api_operations_write(api_out *out)
 {
-    api_out_object_begin(out);
-    api_out_key(out, "operations");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < he_op_count(); i++) {
-        write_op(out, he_op_at(i));
-    }
-    api_out_array_end(out);
-    api_out_object_end(out);
+    api_record_write(out, &api_operations_record, &(op_table){he_op_count()});
 }
 
 /* --- schemas of operations --- */
@@ -185,6 +254,14 @@ static const struct {
     {"dry_run", "{\"type\":\"boolean\",\"description\":\"Only outside a list of operations: true: "
                 "answer without changing anything.\"}"},
 };
+
+static void write_default_member(api_out *out, const he_param *param)
+{
+    if (has_default(param)) {
+        api_out_key(out, "default");
+        write_default(out, param);
+    }
+}
 
 /* The functions from write_list_schema to write_value_schema write the members of a schema into an
  * object that the caller has begun. */
@@ -207,7 +284,7 @@ static void write_number_schema(api_out *out, const he_param *param)
         api_out_key_number(out, exclusive ? "exclusiveMinimum" : "minimum", param->min);
         api_out_key_number(out, exclusive ? "exclusiveMaximum" : "maximum", param->max);
     }
-    write_default(out, param);
+    write_default_member(out, param);
 }
 
 static void write_element_schema(api_out *out, const he_param *param)
@@ -244,12 +321,12 @@ static void write_value_schema(api_out *out, const he_param *param)
         break;
     case HE_PARAM_FLAG:
         api_out_key_string(out, "type", "boolean");
-        write_default(out, param);
+        write_default_member(out, param);
         break;
     case HE_PARAM_CHOICE:
         api_out_key_string(out, "type", "string");
         api_schema_choices(out, "enum", param->choices);
-        write_default(out, param);
+        write_default_member(out, param);
         break;
     case HE_PARAM_MATRIX:
         api_schema_reference(out, "matrix");

@@ -3,7 +3,12 @@
 #ifndef HE_API_DESCRIBE_OPERATIONS_H
 #define HE_API_DESCRIBE_OPERATIONS_H
 
-#include "api/json/json_out.h"
+#include "api/json/record.h"
+
+/* The members of the body of GET /v1/operations, and of the objects in it: an operation, a
+ * parameter and a result. */
+extern const api_record api_operations_record, api_operation_row_record, api_parameter_record,
+    api_result_record;
 
 /* Writes the body of GET /v1/operations. */
 void api_operations_write(api_out *out);

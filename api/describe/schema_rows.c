@@ -1,6 +1,7 @@
 #include "api/describe/schema_rows.h"
 
 #include "api/ask/records.h"
+#include "api/describe/operations.h"
 #include "api/describe/page_records.h"
 #include "api/document/summary.h"
 #include "api/document/upload.h"
@@ -57,6 +58,10 @@ static const api_record *const records[] = {
     &api_boundaries_record,
     &api_component_record,
     &api_components_record,
+    &api_operation_row_record,
+    &api_parameter_record,
+    &api_result_record,
+    &api_operations_record,
     &api_mesh_page_record,
     &api_job_page_record,
     &api_page_records[HE_VERTEX],
@@ -460,40 +465,13 @@ const api_member api_answer_members[] = {
     {"job_event_bye", "event", "=bye", REQUIRED, NULL},
     {"job_event_bye", "data", "#bye", REQUIRED, "The stream ends."},
 
-    {"parameter", "name", "text", REQUIRED, NULL},
-    {"parameter", "plural", "text", OPTIONAL,
-     "The name of the parameter that takes a list of ids instead of one id."},
-    {"parameter", "set", "flag", OPTIONAL,
-     "True if a set such as {\"selected\":true} may be given instead of a list of ids."},
-    {"parameter", "type", "text", REQUIRED, NULL},
-    {"parameter", "required", "flag", REQUIRED, NULL},
-    {"parameter", "nullable", "flag", OPTIONAL, NULL},
-    {"parameter", "group", "text", OPTIONAL,
-     "Exactly one of the parameters with the same group must be given."},
-    {"parameter", "default", "#scalar", OPTIONAL, NULL},
-    {"parameter", "min", "number", OPTIONAL, NULL},
-    {"parameter", "max", "number", OPTIONAL, NULL},
-    {"parameter", "exclusive", "flag", OPTIONAL,
-     "True if the value must lie between min and max and may not be min or max itself."},
-    {"parameter", "choices", "*text", OPTIONAL, NULL},
-    {"parameter", "doc", "text", REQUIRED, NULL},
+    {"parameter", NULL, NULL, REQUIRED, NULL},
 
-    {"result", "name", "text", REQUIRED, NULL},
-    {"result", "type", "text", REQUIRED, NULL},
-    {"result", "choices", "*text", OPTIONAL, "The possible values, if the type is choice."},
-    {"result", "doc", "text", REQUIRED, NULL},
+    {"result", NULL, NULL, REQUIRED, NULL},
 
-    {"operation_row", "name", "text", REQUIRED, NULL},
-    {"operation_row", "doc", "text", REQUIRED, NULL},
-    {"operation_row", "size", "#op_size", REQUIRED,
-     "local: the edit touches a few elements. whole: it may touch all of the mesh."},
-    {"operation_row", "params", "*#parameter", REQUIRED, NULL},
-    {"operation_row", "results", "*#result", REQUIRED, NULL},
-    {"operation_row", "refusals", "*text", REQUIRED, NULL},
-    {"operation_row", "change", "#triple?", REQUIRED,
-     "Change in the numbers of vertices, edges and faces; null if it varies."},
+    {"operation_row", NULL, NULL, REQUIRED, NULL},
 
-    {"operations", "operations", "*#operation_row", REQUIRED, NULL},
+    {"operations", NULL, NULL, REQUIRED, NULL},
 
     {"token", NULL, NULL, REQUIRED, NULL},
 

@@ -327,9 +327,10 @@ typedef struct shown_problem {
     const char *title;
     int status;
     const char *detail, *code, *pointer, *role;
-    bool has_element, has_report, has_repairs, has_revision, has_supported;
+    bool has_element, has_report, has_repairs, has_revision;
     shown_element element;
     uint64_t total, revision;
+    const char *const *supported;
     const char *request_id;
 } shown_problem;
 
@@ -366,16 +367,6 @@ static void write_repairs(api_out *out, const void *value)
     api_out_array_end(out);
 }
 
-static void write_supported(api_out *out, const void *value)
-{
-    const char *const *name = ((const shown_problem *)value)->problem->supported;
-    api_out_array_begin(out);
-    for (; *name != NULL; name++) {
-        api_out_string(out, *name);
-    }
-    api_out_array_end(out);
-}
-
 static const api_field problem_fields[] = {
     API_FIELD("type", "text", shown_problem, type, .required = true,
               .doc = "The path of a page of this server that explains the code."),
@@ -401,9 +392,8 @@ static const api_field problem_fields[] = {
     API_FIELD("revision", "count", shown_problem, revision,
               .known = API_KNOWN(shown_problem, has_revision),
               .doc = "With 412: the present revision."),
-    API_FIELD_MADE("supported", "*text", write_supported,
-                   .known = API_KNOWN(shown_problem, has_supported),
-                   .doc = "With 406 and 415: the supported media types or codings."),
+    API_FIELD("supported", "*text", shown_problem, supported,
+              .doc = "With 406 and 415: the supported media types or codings."),
     API_FIELD("request_id", "text", shown_problem, request_id, .required = false),
 };
 const api_record api_problem_record = {"problem", problem_fields,
@@ -425,7 +415,7 @@ void api_problem_write(const api_problem *problem, const char *request_id, api_t
                            .has_report = problem->report != NULL,
                            .has_repairs = problem->repairs != 0,
                            .has_revision = problem->has_revision,
-                           .has_supported = problem->supported != NULL,
+                           .supported = problem->supported,
                            .total = problem->report == NULL ? 0 : problem->report->total,
                            .revision = problem->revision,
                            .request_id = request_id};

@@ -27,6 +27,7 @@ static bool is_zero(const api_field *field, const void *at)
 {
     switch (field->form) {
     case API_FORM_NONE:
+    case API_FORM_TEXTS:
     case API_FORM_VEC3:
         return false;
     case API_FORM_BOOL:
@@ -58,7 +59,19 @@ static bool has_value(const api_field *field, const char *value)
     if (field->form == API_FORM_TEXT && *(const char *const *)at == NULL) {
         return false;
     }
+    if (field->form == API_FORM_TEXTS && *(const char *const *const *)at == NULL) {
+        return false;
+    }
     return !field->zero_is_none || !is_zero(field, at);
+}
+
+static void write_texts(api_out *out, const char *const *texts)
+{
+    api_out_array_begin(out);
+    for (; *texts != NULL; texts++) {
+        api_out_string(out, *texts);
+    }
+    api_out_array_end(out);
 }
 
 static void write_value(api_out *out, const api_field *field, const char *value)
@@ -103,6 +116,9 @@ static void write_value(api_out *out, const api_field *field, const char *value)
         break;
     case API_FORM_CHARS:
         api_out_string(out, at);
+        break;
+    case API_FORM_TEXTS:
+        write_texts(out, *(const char *const *const *)at);
         break;
     case API_FORM_VEC3:
         api_out_vec3(out, *(const he_vec3 *)at);
@@ -162,6 +178,8 @@ bool api_field_fits(const api_field *field)
     case API_FORM_TEXT:
     case API_FORM_CHARS:
         return is_type(field, "text") || field->type[0] == '#'; /* a name of an enumeration */
+    case API_FORM_TEXTS:
+        return is_type(field, "*text");
     case API_FORM_VEC3:
         return is_type(field, "point");
     }

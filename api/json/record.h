@@ -34,6 +34,7 @@ typedef enum api_form {
     API_FORM_DOUBLE,
     API_FORM_TEXT,  /* a const char *; NULL means that there is no value */
     API_FORM_CHARS, /* an array of char */
+    API_FORM_TEXTS, /* a list of texts that ends in NULL; NULL means that there is no list */
     API_FORM_VEC3
 } api_form;
 
@@ -74,6 +75,7 @@ struct api_record {
         double: API_FORM_DOUBLE,                                                                   \
         const char *: API_FORM_TEXT,                                                               \
         char *: API_FORM_CHARS,                                                                    \
+        const char *const *: API_FORM_TEXTS,                                                       \
         he_vec3: API_FORM_VEC3)
 /* Makes a row of a table whose value is a member of a struct. */
 #define API_FIELD(name_, type_, struct_, member_, ...)                          \

@@ -26,6 +26,7 @@ typedef struct thing {
     he_vec3 point;
     size size;
     int letter;
+    const char *const *names;
 } thing;
 
 static void write_twice(api_out *out, const void *value)
@@ -59,6 +60,7 @@ static const api_field fields[] = {
     API_FIELD_RECORD("size", "#size?", thing, size, &size_record,
                      .known = API_KNOWN(thing, has_status)),
     API_FIELD_MADE_OF("letter", "#letter", thing, letter, write_letter, .required = true),
+    API_FIELD("names", "*text", thing, names, .required = false),
 };
 static const api_record record = {"thing", fields, sizeof fields / sizeof *fields};
 
@@ -90,12 +92,13 @@ static void each_type_is_written_as_json_has_it(void **state)
                          .ended = 1767268800,
                          .point = {1, 2, 3},
                          .size = {0.25},
-                         .letter = 2};
+                         .letter = 2,
+                         .names = (const char *const[]){"x", "y", NULL}};
     expect(&value,
            "{\"id\":\"a\",\"title\":\"A \\\"b\\\"\",\"vertex\":7,\"edges\":3,\"halfedges\":6,"
            "\"bytes\":1099511627776,\"euler\":-2,\"status\":201,\"open\":true,\"area\":0.5,"
            "\"ended\":\"2026-01-01T12:00:00.000Z\",\"point\":[1,2,3],\"size\":{\"width\":0.25},"
-           "\"letter\":\"c\"}");
+           "\"letter\":\"c\",\"names\":[\"x\",\"y\"]}");
 }
 
 static void a_member_without_a_value_is_null_or_left_out(void **state)
@@ -126,6 +129,8 @@ static void a_value_of_another_type_is_refused(void **state)
         API_FIELD_RECORD("size", "size", thing, size, &size_record, .required = true),
         {.name = "size", .type = "#size", .record = &size_record, .write = write_twice},
         {.name = "size", .type = "#size"},
+        API_FIELD("names", "text", thing, names, .required = false),
+        API_FIELD("title", "*text", thing, title, .required = false),
     };
     for (size_t i = 0; i < record.count; i++) {
         assert_true(api_field_fits(&fields[i]));
