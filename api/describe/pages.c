@@ -15,53 +15,65 @@ static const char viewer_policy[] =
 static const char text_policy[] =
     "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/* The values of the JSON members of all answers in this file. Each answer is written from one of
- * the tables below. */
-typedef struct facts {
-    const char *status, *store, *memory;
-    const char *name, *version, *meshes, *jobs, *operations, *openapi, *docs;
-} facts;
+/* The struct before each table has the values of the JSON members of one answer. */
+
+typedef struct shown_health {
+    const char *status;
+} shown_health;
 
 static const api_field health_fields[] = {
-    API_FIELD("status", "#health_name", facts, status, .required = true),
+    API_FIELD("status", "#health_name", shown_health, status, .required = true),
 };
 const api_record api_health_record = {"health", health_fields,
                                       sizeof health_fields / sizeof *health_fields};
 
+typedef struct shown_readiness {
+    const char *status, *store, *memory;
+} shown_readiness;
+
 static const api_field readiness_fields[] = {
-    API_FIELD("status", "#health_name", facts, status, .required = true),
-    API_FIELD("store", "#store_name", facts, store, .required = true,
+    API_FIELD("status", "#health_name", shown_readiness, status, .required = true),
+    API_FIELD("store", "#store_name", shown_readiness, store, .required = true,
               .doc = "full: the disk is full, and only deletions are accepted."),
-    API_FIELD("memory", "#memory_name", facts, memory, .required = true,
+    API_FIELD("memory", "#memory_name", shown_readiness, memory, .required = true,
               .doc = "full: requests that need much memory are refused."),
 };
 const api_record api_readiness_record = {"readiness", readiness_fields,
                                          sizeof readiness_fields / sizeof *readiness_fields};
 
+typedef struct shown_version {
+    const char *name, *version;
+} shown_version;
+
 static const api_field version_fields[] = {
-    API_FIELD("name", "text", facts, name, .required = true),
-    API_FIELD("version", "text", facts, version, .required = true),
+    API_FIELD("name", "text", shown_version, name, .required = true),
+    API_FIELD("version", "text", shown_version, version, .required = true),
 };
 const api_record api_version_record = {"version", version_fields,
                                        sizeof version_fields / sizeof *version_fields};
 
+typedef struct shown_index {
+    const char *name, *version, *meshes, *jobs, *operations, *openapi, *docs;
+} shown_index;
+
 static const api_field index_fields[] = {
-    API_FIELD("name", "text", facts, name, .required = true),
-    API_FIELD("version", "text", facts, version, .required = true),
-    API_FIELD("meshes", "text", facts, meshes, .required = true,
+    API_FIELD("name", "text", shown_index, name, .required = true),
+    API_FIELD("version", "text", shown_index, version, .required = true),
+    API_FIELD("meshes", "text", shown_index, meshes, .required = true,
               .doc = "The path of the list of meshes."),
-    API_FIELD("jobs", "text", facts, jobs, .required = true,
+    API_FIELD("jobs", "text", shown_index, jobs, .required = true,
               .doc = "The path of the list of jobs."),
-    API_FIELD("operations", "text", facts, operations, .required = true,
+    API_FIELD("operations", "text", shown_index, operations, .required = true,
               .doc = "The path of the table of operations."),
-    API_FIELD("openapi", "text", facts, openapi, .required = true,
+    API_FIELD("openapi", "text", shown_index, openapi, .required = true,
               .doc = "The path of the OpenAPI document."),
-    API_FIELD("docs", "text", facts, docs, .required = true, .doc = "The path of the manual."),
+    API_FIELD("docs", "text", shown_index, docs, .required = true,
+              .doc = "The path of the manual."),
 };
 const api_record api_index_record = {"index", index_fields,
                                      sizeof index_fields / sizeof *index_fields};
 
-static void answer(api_exchange *x, const api_record *record, const facts *value)
+static void answer(api_exchange *x, const api_record *record, const void *value)
 {
     api_record_write(&x->out, record, value);
     api_answer_json(x, 200);
@@ -69,7 +81,7 @@ static void answer(api_exchange *x, const api_record *record, const facts *value
 
 void api_live_get(api_exchange *x)
 {
-    answer(x, &api_health_record, &(facts){.status = "alive"});
+    answer(x, &api_health_record, &(shown_health){"alive"});
 }
 
 void api_ready_get(api_exchange *x)
@@ -88,27 +100,26 @@ void api_ready_get(api_exchange *x)
     }
     const bool full = options->is_full != NULL && options->is_full(options->ready_context);
     answer(x, &api_readiness_record,
-           &(facts){.status = "ready",
-                    .store = health.status == ST_FULL ? "full" : "writable",
-                    .memory = full ? "full" : "free"});
+           &(shown_readiness){.status = "ready",
+                              .store = health.status == ST_FULL ? "full" : "writable",
+                              .memory = full ? "full" : "free"});
 }
 
 void api_version_get(api_exchange *x)
 {
-    answer(x, &api_version_record,
-           &(facts){.name = "hedged", .version = x->service->options.version});
+    answer(x, &api_version_record, &(shown_version){"hedged", x->service->options.version});
 }
 
 void api_index_get(api_exchange *x)
 {
     answer(x, &api_index_record,
-           &(facts){.name = "hedged",
-                    .version = x->service->options.version,
-                    .meshes = "/v1/meshes",
-                    .jobs = "/v1/jobs",
-                    .operations = "/v1/operations",
-                    .openapi = "/v1/openapi.json",
-                    .docs = "/docs"});
+           &(shown_index){.name = "hedged",
+                          .version = x->service->options.version,
+                          .meshes = "/v1/meshes",
+                          .jobs = "/v1/jobs",
+                          .operations = "/v1/operations",
+                          .openapi = "/v1/openapi.json",
+                          .docs = "/docs"});
 }
 
 void api_page_get(api_exchange *x)
