@@ -90,6 +90,9 @@ const api_record *api_record_find(const char *schema)
     return i < RECORDS ? records[i] : NULL;
 }
 
+/* A schema whose members are listed here, and not in a table of the list above, is that of an
+ * answer that is written by hand. The comment before its rows, or before the first of a group of
+ * schemas, says why. */
 const api_member api_answer_members[] = {
     {"counts", NULL, NULL, REQUIRED, NULL},
 
@@ -111,6 +114,7 @@ const api_member api_answer_members[] = {
 
     {"warning", NULL, NULL, REQUIRED, NULL},
 
+    /* Which members there are, and their order, depend on the repair. */
     {"repair", "repair", "#repair_name", REQUIRED, NULL},
     {"repair", "count", "count", REQUIRED,
      "How many vertices or faces the repair removed, how many faces it turned, or how many "
@@ -143,9 +147,10 @@ const api_member api_answer_members[] = {
      "different ones."},
     {"repair", "hole_edges", "count", OPTIONAL, "fill: the parameter `hole_edges` that was used."},
 
-    {"imported", "import", "#import", REQUIRED,
-     "What the server read from the body, and what it repaired."},
+    /* The only member is added to the members of a summary (api_answer_stored). */
+    {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
 
+    /* A page may have thousands of one of these four, so they are written without a table. */
     {"vertex", "id", "id", REQUIRED, NULL},
     {"vertex", "position", "point", REQUIRED, NULL},
     {"vertex", "halfedge", "id?", REQUIRED,
@@ -201,6 +206,7 @@ const api_member api_answer_members[] = {
 
     {"attribute_values", NULL, NULL, REQUIRED, NULL},
 
+    /* The revision is filled in when the rest has been written and committed. */
     {"attribute_written", "revision", "count", REQUIRED, NULL},
     {"attribute_written", "dry_run", "flag", OPTIONAL, "Nothing was changed."},
     {"attribute_written", "attribute", "#attribute_info", OPTIONAL,
@@ -223,6 +229,7 @@ const api_member api_answer_members[] = {
 
     {"face_page", NULL, NULL, REQUIRED, NULL},
 
+    /* One answer may have thousands of these, and `dense` has ids for each element of the mesh. */
     {"adjacency", "revision", "count", OPTIONAL,
      "The revision; missing if the answer is one of several in `results`, which all have one "
      "revision."},
@@ -251,6 +258,7 @@ const api_member api_answer_members[] = {
 
     {"check", NULL, NULL, REQUIRED, NULL},
 
+    /* The members have names from the table of kinds and are written by loops (change_json.c). */
     {"sets", "vertices", "*id", REQUIRED, NULL},
     {"sets", "edges", "*id", REQUIRED, "Edges; the half-edges of edge e are 2e and 2e + 1."},
     {"sets", "faces", "*id", REQUIRED, NULL},
@@ -266,6 +274,7 @@ const api_member api_answer_members[] = {
     {"merged", "edges", "*#pair", OPTIONAL, NULL},
     {"merged", "faces", "*#pair", OPTIONAL, NULL},
 
+    /* The revision is filled in when the rest has been written and committed. */
     {"edited", "revision", "count", REQUIRED, NULL},
     {"edited", "dry_run", "flag", OPTIONAL,
      "True for a dry run: nothing was changed, and the answer shows the revision and the ids that "
@@ -295,6 +304,8 @@ const api_member api_answer_members[] = {
 
     {"history", NULL, NULL, REQUIRED, NULL},
 
+    /* The schemas from here to walked_edge_ring are those of answers to questions. One request asks
+     * up to 10000, and each answer is written by the function that has computed it. */
     {"found", "halfedge", "id?", OPTIONAL, "The half-edge from the first vertex to the second."},
     {"found", "edge", "id?", OPTIONAL, "The edge between the two vertices."},
     {"found", "faces", "*id", OPTIONAL,
@@ -404,6 +415,8 @@ const api_member api_answer_members[] = {
     {"walked_edge_ring", "closed", "flag", REQUIRED,
      "True if the ring is closed: the last edge leads back to the first."},
 
+    /* The values are written until the text reaches its maximum; then the event is written anew
+     * with `stale`. */
     {"delta", "base", "count", REQUIRED, "The revision before the change."},
     {"delta", "revision", "count", REQUIRED, NULL},
     {"delta", "stale", "flag", OPTIONAL,
@@ -427,6 +440,7 @@ const api_member api_answer_members[] = {
 
     {"attribute_added", NULL, NULL, REQUIRED, NULL},
 
+    /* The members are lists of any length, which end early when the text reaches its maximum. */
     {"delta_values", "vertices", "*#vertex_row", REQUIRED, NULL},
     {"delta_values", "halfedges", "*#halfedge_row", REQUIRED, NULL},
     {"delta_values", "faces", "*#face_row", REQUIRED, NULL},
@@ -440,6 +454,7 @@ const api_member api_answer_members[] = {
 
     {"job_state_told", NULL, NULL, REQUIRED, NULL},
 
+    /* Events are not written as JSON objects: their members are the fields of text/event-stream. */
     {"mesh_event_edit", "event", "=edit", REQUIRED, NULL},
     {"mesh_event_edit", "id", "text", REQUIRED,
      "The id to send in Last-Event-ID when the client connects again."},
