@@ -99,8 +99,7 @@ static const api_field broken_fields[] = {
     API_FIELD("id", "id", he_problem, id, .required = true),
     API_FIELD("detail", "text", he_problem, text, .required = true),
 };
-const api_record api_broken_record = {"broken", broken_fields,
-                                      sizeof broken_fields / sizeof *broken_fields};
+const api_record api_broken_record = API_RECORD("broken", broken_fields);
 
 static void write_problems(api_out *out, const void *value)
 {
@@ -133,8 +132,7 @@ static const api_field defect_fields[] = {
               .known = API_KNOWN(shown_defect, has_value),
               .doc = "The measured distance, length, width, diagonal or volume."),
 };
-const api_record api_defect_record = {"defect", defect_fields,
-                                      sizeof defect_fields / sizeof *defect_fields};
+const api_record api_defect_record = API_RECORD("defect", defect_fields);
 
 /* Writes one sentence about a defect into `text`. Returns true if the report also shows the value
  * of the defect. */
@@ -214,8 +212,7 @@ static const api_field thresholds_fields[] = {
     API_FIELD("flat", "number", he_thresholds, flat, .required = true),
     API_FIELD("small", "number", he_thresholds, small, .required = true),
 };
-const api_record api_thresholds_record = {"thresholds", thresholds_fields,
-                                          sizeof thresholds_fields / sizeof *thresholds_fields};
+const api_record api_thresholds_record = API_RECORD("thresholds", thresholds_fields);
 
 static const api_field check_fields[] = {
     API_FIELD("revision", "count", report, revision, .required = true),
@@ -236,8 +233,7 @@ static const api_field check_fields[] = {
               .doc = "False if the search stopped at 1048576 pairs of intersecting faces, so that "
                      "there may be more."),
 };
-const api_record api_check_record = {"check", check_fields,
-                                     sizeof check_fields / sizeof *check_fields};
+const api_record api_check_record = API_RECORD("check", check_fields);
 
 /* --- the handler of the route --- */
 

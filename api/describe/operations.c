@@ -96,8 +96,7 @@ static const api_field param_fields[] = {
     API_FIELD("choices", "*text", shown_param, param.choices, .required = false),
     API_FIELD_MADE_OF("doc", "text", shown_param, param.doc, write_doc, .required = true),
 };
-const api_record api_parameter_record = {"parameter", param_fields,
-                                         sizeof param_fields / sizeof *param_fields};
+const api_record api_parameter_record = API_RECORD("parameter", param_fields);
 
 static void write_param(api_out *out, const he_param *param)
 {
@@ -145,8 +144,7 @@ static const api_field result_fields[] = {
               .doc = "The possible values, if the type is choice."),
     API_FIELD_MADE_OF("doc", "text", he_result_row, doc, write_doc, .required = true),
 };
-const api_record api_result_record = {"result", result_fields,
-                                      sizeof result_fields / sizeof *result_fields};
+const api_record api_result_record = API_RECORD("result", result_fields);
 
 static void write_size(api_out *out, const void *size)
 {
@@ -209,8 +207,7 @@ static const api_field op_fields[] = {
     API_FIELD_MADE("change", "#triple?", write_change, .required = true,
                    .doc = "Change in the numbers of vertices, edges and faces; null if it varies."),
 };
-const api_record api_operation_row_record = {"operation_row", op_fields,
-                                             sizeof op_fields / sizeof *op_fields};
+const api_record api_operation_row_record = API_RECORD("operation_row", op_fields);
 
 /* The table of operations, from which the JSON members of the answer are written. */
 typedef struct op_table {
@@ -230,8 +227,7 @@ static void write_ops(api_out *out, const void *value)
 static const api_field operations_fields[] = {
     API_FIELD_MADE("operations", "*#operation_row", write_ops, .required = true),
 };
-const api_record api_operations_record = {"operations", operations_fields,
-                                          sizeof operations_fields / sizeof *operations_fields};
+const api_record api_operations_record = API_RECORD("operations", operations_fields);
 
 void api_operations_write(api_out *out)
 {

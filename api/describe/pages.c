@@ -24,8 +24,7 @@ typedef struct shown_health {
 static const api_field health_fields[] = {
     API_FIELD("status", "#health_name", shown_health, status, .required = true),
 };
-const api_record api_health_record = {"health", health_fields,
-                                      sizeof health_fields / sizeof *health_fields};
+const api_record api_health_record = API_RECORD("health", health_fields);
 
 typedef struct shown_readiness {
     const char *status, *store, *memory;
@@ -38,8 +37,7 @@ static const api_field readiness_fields[] = {
     API_FIELD("memory", "#memory_name", shown_readiness, memory, .required = true,
               .doc = "full: requests that need much memory are refused."),
 };
-const api_record api_readiness_record = {"readiness", readiness_fields,
-                                         sizeof readiness_fields / sizeof *readiness_fields};
+const api_record api_readiness_record = API_RECORD("readiness", readiness_fields);
 
 typedef struct shown_version {
     const char *name, *version;
@@ -49,8 +47,7 @@ static const api_field version_fields[] = {
     API_FIELD("name", "text", shown_version, name, .required = true),
     API_FIELD("version", "text", shown_version, version, .required = true),
 };
-const api_record api_version_record = {"version", version_fields,
-                                       sizeof version_fields / sizeof *version_fields};
+const api_record api_version_record = API_RECORD("version", version_fields);
 
 typedef struct shown_index {
     const char *name, *version, *meshes, *jobs, *operations, *openapi, *docs;
@@ -70,8 +67,7 @@ static const api_field index_fields[] = {
     API_FIELD("docs", "text", shown_index, docs, .required = true,
               .doc = "The path of the manual."),
 };
-const api_record api_index_record = {"index", index_fields,
-                                     sizeof index_fields / sizeof *index_fields};
+const api_record api_index_record = API_RECORD("index", index_fields);
 
 static void answer(api_exchange *x, const api_record *record, const void *value)
 {

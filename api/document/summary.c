@@ -60,14 +60,13 @@ static const api_field count_fields[] = {
               .known = API_KNOWN(counts, computed),
               .doc = "How many components there are if faces are connected by shared edges only."),
 };
-const api_record api_counts_record = {"counts", count_fields,
-                                      sizeof count_fields / sizeof *count_fields};
+const api_record api_counts_record = API_RECORD("counts", count_fields);
 
 static const api_field box_fields[] = {
     API_FIELD("min", "point", he_box, min, .required = true),
     API_FIELD("max", "point", he_box, max, .required = true),
 };
-const api_record api_box_record = {"box", box_fields, sizeof box_fields / sizeof *box_fields};
+const api_record api_box_record = API_RECORD("box", box_fields);
 
 static void write_brief_counts(api_out *out, const void *value)
 {
@@ -88,8 +87,7 @@ static const api_field item_fields[] = {
               .doc = "Present only if the mesh is damaged: says what is damaged on the disk. The "
                      "mesh can only be deleted or replaced."),
 };
-const api_record api_mesh_item_record = {"mesh_item", item_fields,
-                                         sizeof item_fields / sizeof *item_fields};
+const api_record api_mesh_item_record = API_RECORD("mesh_item", item_fields);
 
 /* A mesh and its summary, from which the members of an answer are written. */
 typedef struct whole {
@@ -164,8 +162,7 @@ static const api_field summary_fields[] = {
     API_FIELD("created", "time", whole, created, .required = true),
     API_FIELD("modified", "time", whole, modified, .required = true),
 };
-const api_record api_summary_record = {"summary", summary_fields,
-                                       sizeof summary_fields / sizeof *summary_fields};
+const api_record api_summary_record = API_RECORD("summary", summary_fields);
 
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary)
 {

@@ -640,8 +640,7 @@ static const api_field warning_fields[] = {
                    .doc = "For the warnings bowtie and isolated_vertices: the first 100 vertices "
                           "that they are about."),
 };
-const api_record api_warning_record = {"warning", warning_fields,
-                                       sizeof warning_fields / sizeof *warning_fields};
+const api_record api_warning_record = API_RECORD("warning", warning_fields);
 
 static void write_warning(api_out *out, const he_warnings *warnings, size_t i)
 {
@@ -756,8 +755,7 @@ static const api_field import_fields[] = {
     API_FIELD("more_warnings", "count", report, more, .zero_is_none = true,
               .doc = "How many warnings are not listed."),
 };
-const api_record api_import_record = {"import", import_fields,
-                                      sizeof import_fields / sizeof *import_fields};
+const api_record api_import_record = API_RECORD("import", import_fields);
 
 void api_upload_write_report(api_exchange *x)
 {

@@ -52,8 +52,7 @@ static const api_field resync_fields[] = {
               .doc = "The present revision; the client must fetch the mesh again."),
     API_FIELD("reason", "#resync_reason", resync, reason, .required = true),
 };
-const api_record api_resync_record = {"resync", resync_fields,
-                                      sizeof resync_fields / sizeof *resync_fields};
+const api_record api_resync_record = API_RECORD("resync", resync_fields);
 
 void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, const char *reason)
 {
@@ -64,8 +63,7 @@ void api_event_resync(api_text *text, uint64_t incarnation, uint64_t revision, c
 static const api_field metadata_fields[] = {
     API_FIELD("name", "text", st_mesh_info, name, .required = true, .doc = "The new name."),
 };
-const api_record api_metadata_record = {"metadata", metadata_fields,
-                                        sizeof metadata_fields / sizeof *metadata_fields};
+const api_record api_metadata_record = API_RECORD("metadata", metadata_fields);
 
 void api_event_metadata(api_text *text, const st_mesh_info *info)
 {
@@ -79,7 +77,7 @@ typedef struct bye {
 static const api_field bye_fields[] = {
     API_FIELD("reason", "#bye_reason", bye, reason, .required = true),
 };
-const api_record api_bye_record = {"bye", bye_fields, sizeof bye_fields / sizeof *bye_fields};
+const api_record api_bye_record = API_RECORD("bye", bye_fields);
 
 void api_event_bye(api_text *text, const char *reason)
 {

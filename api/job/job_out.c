@@ -79,7 +79,7 @@ static const api_field job_fields[] = {
     API_FIELD_MADE("problem", "#problem?", write_body, .known = API_KNOWN(shown, has_problem),
                    .doc = "The problem, if the job failed."),
 };
-const api_record api_job_record = {"job", job_fields, sizeof job_fields / sizeof *job_fields};
+const api_record api_job_record = API_RECORD("job", job_fields);
 
 static const api_field state_fields[] = {
     API_FIELD("id", "text", shown, job.id, .required = true),
@@ -87,8 +87,7 @@ static const api_field state_fields[] = {
     API_FIELD("progress", "number", shown, progress, .required = true,
               .doc = "How much of the work is done, from 0 to 1."),
 };
-const api_record api_job_state_record = {"job_state_told", state_fields,
-                                         sizeof state_fields / sizeof *state_fields};
+const api_record api_job_state_record = API_RECORD("job_state_told", state_fields);
 
 /* Computes the values of a job's JSON members; `whole` includes the body of the answer. */
 static void show(const api_job *job, bool whole, shown *out)

@@ -121,8 +121,7 @@ static const api_field added_fields[] = {
                    .known = API_KNOWN(api_shown_column, has_labels),
                    .doc = "The texts to which the values are indices."),
 };
-const api_record api_attribute_added_record = {"attribute_added", added_fields,
-                                               sizeof added_fields / sizeof *added_fields};
+const api_record api_attribute_added_record = API_RECORD("attribute_added", added_fields);
 /* The first two rows, which identify an attribute. */
 const api_record api_attribute_read_record = {"attribute_read", added_fields, 2};
 
@@ -134,8 +133,7 @@ static const api_field info_fields[] = {
         "labels", "*text", write_labels, .known = API_KNOWN(api_shown_column, has_labels),
         .doc = "Only in the list of attributes: the texts to which the values are indices."),
 };
-const api_record api_attribute_info_record = {"attribute_info", info_fields,
-                                              sizeof info_fields / sizeof *info_fields};
+const api_record api_attribute_info_record = API_RECORD("attribute_info", info_fields);
 #undef HEAD_FIELDS
 
 uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id)

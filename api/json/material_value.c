@@ -32,8 +32,7 @@ static const api_field material_fields[] = {
                       .required = true),
     API_FIELD("two_sided", "flag", he_material, look.two_sided, .required = true),
 };
-const api_record api_material_record = {"material_row", material_fields,
-                                        sizeof material_fields / sizeof *material_fields};
+const api_record api_material_record = API_RECORD("material_row", material_fields);
 
 void api_write_materials(api_out *out, const he_materials *materials)
 {

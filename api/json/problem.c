@@ -317,8 +317,7 @@ static const api_field element_fields[] = {
     API_FIELD("detail", "text", shown_element, detail, .required = false),
     API_FIELD("pointer", "text", shown_element, pointer, .required = false),
 };
-const api_record api_problem_element_record = {"problem_element", element_fields,
-                                               sizeof element_fields / sizeof *element_fields};
+const api_record api_problem_element_record = API_RECORD("problem_element", element_fields);
 
 /* The values of the JSON members of a problem. */
 typedef struct shown_problem {
@@ -396,8 +395,7 @@ static const api_field problem_fields[] = {
               .doc = "With 406 and 415: the supported media types or codings."),
     API_FIELD("request_id", "text", shown_problem, request_id, .required = false),
 };
-const api_record api_problem_record = {"problem", problem_fields,
-                                       sizeof problem_fields / sizeof *problem_fields};
+const api_record api_problem_record = API_RECORD("problem", problem_fields);
 
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text)
 {

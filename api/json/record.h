@@ -11,7 +11,7 @@
  *         API_FIELD_MADE_OF("action", "#action", st_entry, action, write_action, .required = true),
  *         API_FIELD_RECORD("created", "#counted", st_entry, tally.created, &api_counted_record),
  *     };
- *     const api_record api_entry_record = {"entry", fields, sizeof fields / sizeof *fields};
+ *     const api_record api_entry_record = API_RECORD("entry", fields);
  *
  * The members are written in the order of the rows. A member without a value is null if it is
  * required, else it is left out. */
@@ -99,6 +99,11 @@ struct api_record {
     {                                                                           \
         .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), \
         .record = (record_), __VA_ARGS__                                        \
+    }
+/* A table of all rows of an array. */
+#define API_RECORD(schema_, fields_)                              \
+    {                                                             \
+        (schema_), (fields_), sizeof(fields_) / sizeof *(fields_) \
     }
 #define API_KNOWN(struct_, member_) (offsetof(struct_, member_) + 1)
 

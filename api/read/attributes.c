@@ -33,8 +33,7 @@ static const api_field list_fields[] = {
     API_FIELD("revision", "count", list, revision, .required = true),
     API_FIELD_MADE("attributes", "*#attribute_info", write_attributes, .required = true),
 };
-const api_record api_attribute_list_record = {"attribute_list", list_fields,
-                                              sizeof list_fields / sizeof *list_fields};
+const api_record api_attribute_list_record = API_RECORD("attribute_list", list_fields);
 
 void api_attributes_list(api_exchange *x)
 {
@@ -130,8 +129,7 @@ static const api_field values_fields[] = {
     API_FIELD("next", "text?", page, next, .required = true, .zero_is_none = true,
               .doc = "The cursor of the next page."),
 };
-const api_record api_attribute_values_record = {"attribute_values", values_fields,
-                                                sizeof values_fields / sizeof *values_fields};
+const api_record api_attribute_values_record = API_RECORD("attribute_values", values_fields);
 
 static void answer_values(api_exchange *x, const page *p)
 {

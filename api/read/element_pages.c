@@ -68,11 +68,10 @@ static const api_field face_fields[] = {PAGE_FIELDS("*#face")};
 #undef PAGE_FIELDS
 
 const api_record api_page_records[] = {
-    [HE_VERTEX] = {"vertex_page", vertex_fields, sizeof vertex_fields / sizeof *vertex_fields},
-    [HE_HALFEDGE] = {"halfedge_page", halfedge_fields,
-                     sizeof halfedge_fields / sizeof *halfedge_fields},
-    [HE_EDGE] = {"edge_page", edge_fields, sizeof edge_fields / sizeof *edge_fields},
-    [HE_FACE] = {"face_page", face_fields, sizeof face_fields / sizeof *face_fields},
+    [HE_VERTEX] = API_RECORD("vertex_page", vertex_fields),
+    [HE_HALFEDGE] = API_RECORD("halfedge_page", halfedge_fields),
+    [HE_EDGE] = API_RECORD("edge_page", edge_fields),
+    [HE_FACE] = API_RECORD("face_page", face_fields),
 };
 
 static void write_page(api_exchange *x, uint64_t from)

@@ -37,8 +37,7 @@ static const api_field counted_fields[] = {
     API_FIELD("edges", "count", counted, edges, .required = true),
     API_FIELD("faces", "count", counted, faces, .required = true),
 };
-const api_record api_counted_record = {"counted", counted_fields,
-                                       sizeof counted_fields / sizeof *counted_fields};
+const api_record api_counted_record = API_RECORD("counted", counted_fields);
 
 static const api_field entry_fields[] = {
     API_FIELD("revision", "count", st_entry, revision, .required = true),
@@ -60,8 +59,7 @@ static const api_field entry_fields[] = {
               .doc = "Bytes of memory that are kept to undo the edit."),
     API_FIELD("time", "time", st_entry, time, .required = true),
 };
-const api_record api_entry_record = {"entry", entry_fields,
-                                     sizeof entry_fields / sizeof *entry_fields};
+const api_record api_entry_record = API_RECORD("entry", entry_fields);
 
 /* A page of the history, newest entry first: at most `limit` entries from revision `first` down to
  * `last` + 1. */
@@ -118,8 +116,7 @@ static const api_field history_fields[] = {
     API_FIELD("next", "text?", answer, next, .required = true, .zero_is_none = true,
               .doc = "The cursor of the next page."),
 };
-const api_record api_history_record = {"history", history_fields,
-                                       sizeof history_fields / sizeof *history_fields};
+const api_record api_history_record = API_RECORD("history", history_fields);
 
 /* Writes the cursor of the next page, or "" if there is none. The cursor contains a revision
  * number, so edits that are made between two requests do not change the pages. */

@@ -176,8 +176,7 @@ static const api_field page_fields[] = {
     API_FIELD_MADE("next", "text?", write_next, .required = true,
                    .doc = "The cursor of the next page."),
 };
-const api_record api_job_page_record = {"job_page", page_fields,
-                                        sizeof page_fields / sizeof *page_fields};
+const api_record api_job_page_record = API_RECORD("job_page", page_fields);
 
 /* Reads the cursor of a page: the number of the last job, after a letter that keeps clients from
  * using a job's number as a cursor. */

@@ -21,8 +21,7 @@ static const api_field list_fields[] = {
     API_FIELD_MADE("materials", "*#material_row", write_materials, .required = true,
                    .doc = "The materials, the oldest first."),
 };
-const api_record api_material_list_record = {"material_list", list_fields,
-                                             sizeof list_fields / sizeof *list_fields};
+const api_record api_material_list_record = API_RECORD("material_list", list_fields);
 
 void api_materials_list(api_exchange *x)
 {

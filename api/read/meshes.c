@@ -161,8 +161,7 @@ static const api_field page_fields[] = {
               .known = API_KNOWN(shown_page, shows_memory),
               .doc = "Memory that the server may use; 0: no limit."),
 };
-const api_record api_mesh_page_record = {"mesh_page", page_fields,
-                                         sizeof page_fields / sizeof *page_fields};
+const api_record api_mesh_page_record = API_RECORD("mesh_page", page_fields);
 
 /* Finds the totals of the whole server. They are not shown to a token with prefixes, because they
  * include meshes that it cannot see. */

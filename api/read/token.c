@@ -39,8 +39,7 @@ static const api_field token_fields[] = {
               .known = API_KNOWN(rights, ends),
               .doc = "When the token expires; null if it never does."),
 };
-const api_record api_token_record = {"token", token_fields,
-                                     sizeof token_fields / sizeof *token_fields};
+const api_record api_token_record = API_RECORD("token", token_fields);
 
 typedef struct ticket {
     const char *path;
@@ -52,8 +51,7 @@ static const api_field ticket_fields[] = {
               .doc = "The path of the request, with the ticket added at its end."),
     API_FIELD("expires", "time", ticket, expires, .required = true),
 };
-const api_record api_ticket_record = {"ticket", ticket_fields,
-                                      sizeof ticket_fields / sizeof *ticket_fields};
+const api_record api_ticket_record = API_RECORD("ticket", ticket_fields);
 
 typedef struct reloaded {
     bool needs_tokens;
@@ -66,8 +64,7 @@ static const api_field reloaded_fields[] = {
               .doc = "How many tokens are accepted after the file was read again; null if the "
                      "server needs no tokens."),
 };
-const api_record api_reloaded_record = {"reloaded", reloaded_fields,
-                                        sizeof reloaded_fields / sizeof *reloaded_fields};
+const api_record api_reloaded_record = API_RECORD("reloaded", reloaded_fields);
 
 /* Answers with the rights of the request's token. On a server without tokens every client is an
  * admin. */

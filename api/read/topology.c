@@ -40,7 +40,7 @@ static const api_field loop_fields[] = {
     API_FIELD_MADE("vertices", "*id", write_origins, .required = true,
                    .doc = "Origins of the half-edges."),
 };
-const api_record api_loop_record = {"loop", loop_fields, sizeof loop_fields / sizeof *loop_fields};
+const api_record api_loop_record = API_RECORD("loop", loop_fields);
 
 /* The boundary loops of a mesh, from which the JSON members of an answer are written. */
 typedef struct shown_boundaries {
@@ -73,8 +73,7 @@ static const api_field boundaries_fields[] = {
     API_FIELD("revision", "count", shown_boundaries, revision, .required = true),
     API_FIELD_MADE("loops", "*#loop", write_loops, .required = true),
 };
-const api_record api_boundaries_record = {"boundaries", boundaries_fields,
-                                          sizeof boundaries_fields / sizeof *boundaries_fields};
+const api_record api_boundaries_record = API_RECORD("boundaries", boundaries_fields);
 
 void api_boundaries_get(api_exchange *x)
 {
@@ -99,8 +98,7 @@ static const api_field component_fields[] = {
     API_FIELD("vertices", "count", he_component, vertices, .required = true),
     API_FIELD("face", "id", he_component, face, .required = true, .doc = "One of its faces."),
 };
-const api_record api_component_record = {"component", component_fields,
-                                         sizeof component_fields / sizeof *component_fields};
+const api_record api_component_record = API_RECORD("component", component_fields);
 
 /* The components of a mesh, from which the JSON members of an answer are written. */
 typedef struct shown_components {
@@ -124,8 +122,7 @@ static const api_field components_fields[] = {
     API_FIELD("by", "#connection", shown_components, by, .required = true),
     API_FIELD_MADE("components", "*#component", write_components, .required = true),
 };
-const api_record api_components_record = {"components", components_fields,
-                                          sizeof components_fields / sizeof *components_fields};
+const api_record api_components_record = API_RECORD("components", components_fields);
 
 void api_components_get(api_exchange *x)
 {

@@ -62,7 +62,7 @@ static const api_field fields[] = {
     API_FIELD_MADE_OF("letter", "#letter", thing, letter, write_letter, .required = true),
     API_FIELD("names", "*text", thing, names, .required = false),
 };
-static const api_record record = {"thing", fields, sizeof fields / sizeof *fields};
+static const api_record record = API_RECORD("thing", fields);
 
 static void expect(const thing *value, const char *json)
 {
