@@ -5,7 +5,7 @@
 
 #include "api/json/record.h"
 
-/* The members of the answer of GET .../check, and of the objects in it: a broken invariant, a
+/* The JSON members of the answer of GET .../check, and of the objects in it: a broken invariant, a
  * defect and the thresholds. */
 extern const api_record api_check_record, api_broken_record, api_defect_record,
     api_thresholds_record;

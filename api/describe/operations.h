@@ -5,7 +5,7 @@
 
 #include "api/json/record.h"
 
-/* The members of the body of GET /v1/operations, and of the objects in it: an operation, a
+/* The JSON members of the body of GET /v1/operations, and of the objects in it: an operation, a
  * parameter and a result. */
 extern const api_record api_operations_record, api_operation_row_record, api_parameter_record,
     api_result_record;

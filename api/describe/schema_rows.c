@@ -90,9 +90,8 @@ const api_record *api_record_find(const char *schema)
     return i < RECORDS ? records[i] : NULL;
 }
 
-/* A schema whose members are listed here, and not in a table of the list above, is that of an
- * answer that is written by hand. The comment before its rows, or before the first of a group of
- * schemas, says why. */
+/* A schema whose members are listed here belongs to an answer that functions write without a table.
+ * The comment before its rows, or before the first schema of a group, says why. */
 const api_member api_answer_members[] = {
     {"counts", NULL, NULL, REQUIRED, NULL},
 
@@ -147,10 +146,11 @@ const api_member api_answer_members[] = {
      "different ones."},
     {"repair", "hole_edges", "count", OPTIONAL, "fill: the parameter `hole_edges` that was used."},
 
-    /* The only member is added to the members of a summary (api_answer_stored). */
+    /* The only member is written after the members of a summary (api_answer_stored). */
     {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
 
-    /* A page may have thousands of one of these four, so they are written without a table. */
+    /* The next four schemas are those of elements. A page may have thousands of elements, so the
+     * functions that write them do not look each member up in a table. */
     {"vertex", "id", "id", REQUIRED, NULL},
     {"vertex", "position", "point", REQUIRED, NULL},
     {"vertex", "halfedge", "id?", REQUIRED,
@@ -229,7 +229,8 @@ const api_member api_answer_members[] = {
 
     {"face_page", NULL, NULL, REQUIRED, NULL},
 
-    /* One answer may have thousands of these, and `dense` has ids for each element of the mesh. */
+    /* One answer may have thousands of adjacencies, and `dense` has ids for each element of the
+     * mesh. */
     {"adjacency", "revision", "count", OPTIONAL,
      "The revision; missing if the answer is one of several in `results`, which all have one "
      "revision."},

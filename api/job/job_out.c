@@ -121,11 +121,11 @@ void api_event_job_state(api_text *text, const api_job *job)
 
 void api_event_job(api_text *text, const api_job *job, bool bye)
 {
-    shown value;
     if (bye) {
         api_event_bye(text, job->state >= API_JOB_DONE ? "ended" : "stopping");
         return;
     }
+    shown value;
     show(job, job->length <= API_MAX_EVENT, &value);
     api_event_record(text, "job", &api_job_record, &value);
 }

@@ -32,16 +32,17 @@ typedef struct api_shown_column {
     const he_column *column;
     const char *domain, *name, *type, *rule;
     uint32_t components;
-    bool has_labels; /* the labels are written; cleared by a caller that does not want the list */
+    bool has_labels; /* true if the labels are written: the list may be long */
     uint64_t bytes;  /* size of all values */
 } api_shown_column;
 
+/* Returns a column of the mesh with these values; `has_labels` is true if the column has labels. */
 api_shown_column api_show_column(const he_mesh *mesh, const he_column *column);
-/* The JSON members of an api_shown_column: "domain" and "name" (api_attribute_read_record), those
- * from "domain" to "default" and "labels" (api_attribute_added_record), and these and "bytes". */
+/* The JSON members of an api_shown_column. The first of the three tables has "domain" and "name"
+ * only, the second all members but "bytes", the third all. */
 extern const api_record api_attribute_read_record, api_attribute_added_record,
     api_attribute_info_record;
-/* Writes the default value of an api_shown_column; a function for rows of tables. */
+/* Writes the default value of the api_shown_column at `shown`, as the row of a table requires. */
 void api_write_default(api_out *out, const void *shown);
 
 /* Writes the member "attributes" of an element, if the mesh has attributes in its domain. Returns

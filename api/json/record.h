@@ -24,7 +24,8 @@
 
 /* The C type of a value in the struct. The macro API_FORM determines it. */
 typedef enum api_form {
-    /* The value is not a simple one: the row's function `write` or its table `record` writes it. */
+    /* The value is not a simple one: the row's function `write` writes it, or its table `record`
+     * describes it. */
     API_FORM_NONE,
     API_FORM_BOOL,
     API_FORM_INT,
@@ -51,10 +52,10 @@ typedef struct api_field {
     /* 1 + the offset of a bool in the struct that says whether there is a value (API_KNOWN); 0:
      * there always is one */
     size_t known;
-    /* Writes, after the member's name, a value that must be computed from what lies at the offset;
-     * NULL if no function is needed. */
+    /* Computes the value from what lies at the offset, and writes it after the member's name; NULL
+     * if no function is needed. */
     void (*write)(api_out *out, const void *at);
-    /* The table from which the struct at the offset is written as an object, or NULL. */
+    /* The table that describes the struct at the offset, which is written as an object; or NULL. */
     const api_record *record;
 } api_field;
 
@@ -88,19 +89,21 @@ struct api_record {
     {                                                                    \
         .name = (name_), .type = (type_), .write = (write_), __VA_ARGS__ \
     }
-/* A row whose value a function writes, which is given a pointer to the member of the struct. */
+/* Makes a row of a table whose value a function computes and writes from one member of the struct;
+ * the function gets a pointer to that member. */
 #define API_FIELD_MADE_OF(name_, type_, struct_, member_, write_, ...)                             \
     {                                                                                              \
         .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), .write = (write_), \
         __VA_ARGS__                                                                                \
     }
-/* A row whose value is an object that is written from a member of the struct by another table. */
+/* Makes a row of a table whose value is an object: the member of the struct is a struct itself, and
+ * another table describes it. */
 #define API_FIELD_RECORD(name_, type_, struct_, member_, record_, ...)          \
     {                                                                           \
         .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), \
         .record = (record_), __VA_ARGS__                                        \
     }
-/* A table of all rows of an array. */
+/* Makes a table of all rows of an array. */
 #define API_RECORD(schema_, fields_)                              \
     {                                                             \
         (schema_), (fields_), sizeof(fields_) / sizeof *(fields_) \
