@@ -91,8 +91,9 @@ static const api_field param_fields[] = {
                       .known = API_KNOWN(shown_param, has_default)),
     API_FIELD("min", "number", shown_param, param.min, .known = API_KNOWN(shown_param, has_range)),
     API_FIELD("max", "number", shown_param, param.max, .known = API_KNOWN(shown_param, has_range)),
-    API_FIELD("exclusive", "flag", shown_param, exclusive, .zero_is_none = true,
-              .doc = "True if min and max themselves are not allowed."),
+    API_FIELD(
+        "exclusive", "flag", shown_param, exclusive, .zero_is_none = true,
+        .doc = "True if the value must lie between min and max and may not be min or max itself."),
     API_FIELD("choices", "*text", shown_param, param.choices, .required = false),
     API_FIELD_MADE_OF("doc", "text", shown_param, param.doc, write_doc, .required = true),
 };

@@ -147,7 +147,8 @@ const api_member api_answer_members[] = {
     {"repair", "hole_edges", "count", OPTIONAL, "fill: the parameter `hole_edges` that was used."},
 
     /* The only member is written after the members of a summary (api_answer_stored). */
-    {"imported", "import", "#import", REQUIRED, "What was read and repaired."},
+    {"imported", "import", "#import", REQUIRED,
+     "What the server read from the body, and what it repaired."},
 
     /* The next four schemas are those of elements. A page may have thousands of elements, so the
      * functions that write them do not look each member up in a table. */

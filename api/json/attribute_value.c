@@ -119,7 +119,7 @@ static const api_field added_fields[] = {
     HEAD_FIELDS,
     API_FIELD_MADE("labels", "*text", write_labels,
                    .known = API_KNOWN(api_shown_column, has_labels),
-                   .doc = "The texts to which the values are indices."),
+                   .doc = "The texts of the attribute: its values are indices into this list."),
 };
 const api_record api_attribute_added_record = API_RECORD("attribute_added", added_fields);
 /* The first two rows, which identify an attribute. */
@@ -129,9 +129,10 @@ static const api_field info_fields[] = {
     HEAD_FIELDS,
     API_FIELD("bytes", "count", api_shown_column, bytes, .required = true,
               .doc = "Size of the values as application/octet-stream."),
-    API_FIELD_MADE(
-        "labels", "*text", write_labels, .known = API_KNOWN(api_shown_column, has_labels),
-        .doc = "Only in the list of attributes: the texts to which the values are indices."),
+    API_FIELD_MADE("labels", "*text", write_labels,
+                   .known = API_KNOWN(api_shown_column, has_labels),
+                   .doc = "Only in the list of attributes: the texts of the attribute, whose "
+                          "values are indices into this list."),
 };
 const api_record api_attribute_info_record = API_RECORD("attribute_info", info_fields);
 #undef HEAD_FIELDS

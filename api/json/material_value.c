@@ -23,7 +23,7 @@ static void write_color_alpha(api_out *out, const void *color)
 
 static const api_field material_fields[] = {
     API_FIELD("name", "#material_name", he_material, name, .required = true,
-              .doc = "The name; no two materials have the same."),
+              .doc = "The name of the material, which differs from the names of other materials."),
     API_FIELD_MADE_OF("base_color", "#color_alpha", he_material, look.base_color, write_color_alpha,
                       .required = true, .doc = "Colour and opacity."),
     API_FIELD("metallic", "#fraction", he_material, look.metallic, .required = true),

@@ -382,17 +382,19 @@ static const api_field problem_fields[] = {
                      &api_problem_element_record, .known = API_KNOWN(shown_problem, has_element)),
     API_FIELD_MADE("elements", "*#problem_element", write_elements,
                    .known = API_KNOWN(shown_problem, has_report),
-                   .doc = "The elements that the problem is about, at most the first 100."),
+                   .doc =
+                       "The elements that the problem is about; at most the first 100 are listed."),
     API_FIELD("total", "count", shown_problem, total, .known = API_KNOWN(shown_problem, has_report),
               .doc = "The number of elements that the problem is about."),
     API_FIELD_MADE("repair", "*#repair_name", write_repairs,
                    .known = API_KNOWN(shown_problem, has_repairs),
-                   .doc = "The repairs with which the server would accept the body."),
+                   .doc = "The repairs with which the server would accept the body, as values of "
+                          "the parameter `repair`."),
     API_FIELD("revision", "count", shown_problem, revision,
               .known = API_KNOWN(shown_problem, has_revision),
-              .doc = "With 412: the present revision."),
+              .doc = "The present revision of the mesh, if the status is 412."),
     API_FIELD("supported", "*text", shown_problem, supported,
-              .doc = "With 406 and 415: the supported media types or codings."),
+              .doc = "The supported media types or content codings, if the status is 406 or 415."),
     API_FIELD("request_id", "text", shown_problem, request_id, .required = false),
 };
 const api_record api_problem_record = API_RECORD("problem", problem_fields);

@@ -152,8 +152,9 @@ static const api_field page_fields[] = {
                    .doc = "The cursor of the next page."),
     API_FIELD("listeners", "count", shown_page, listeners,
               .known = API_KNOWN(shown_page, shows_listeners),
-              .doc = "How many clients of the whole server listen to events of meshes. This member "
-                     "and the next two are missing for tokens with prefixes."),
+              .doc = "How many clients of the whole server listen to events of meshes. The members "
+                     "`listeners`, `memory_bytes` and `memory_budget` are missing for tokens with "
+                     "prefixes."),
     API_FIELD("memory_bytes", "count", shown_page, used,
               .known = API_KNOWN(shown_page, shows_memory),
               .doc = "Memory that the whole server uses."),

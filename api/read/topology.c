@@ -96,7 +96,8 @@ void api_boundaries_get(api_exchange *x)
 static const api_field component_fields[] = {
     API_FIELD("faces", "count", he_component, faces, .required = true),
     API_FIELD("vertices", "count", he_component, vertices, .required = true),
-    API_FIELD("face", "id", he_component, face, .required = true, .doc = "One of its faces."),
+    API_FIELD("face", "id", he_component, face, .required = true,
+              .doc = "The id of a face of the component."),
 };
 const api_record api_component_record = API_RECORD("component", component_fields);
 
