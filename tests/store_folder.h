@@ -30,8 +30,10 @@ typedef struct told_journal {
     st_loss loss; /* the latest loss reported */
 } told_journal;
 
+/* Registers as the listener of an open journal: from now on `told` keeps the position up to which
+ * records are durable or lost, and the losses, as the journal reports them. */
 void told_begin(told_journal *told, const st_journal *journal);
-/* Opens the journal of the store in a folder and listens to it. */
+/* Opens the journal of the store in a folder, and calls told_begin(). */
 void told_open(told_journal *told, const char *folder);
 /* Waits until the journal has reported this position as durable or lost. */
 void told_wait(told_journal *told, uint64_t position);

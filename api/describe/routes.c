@@ -146,7 +146,7 @@ static const api_route routes[] = {
      .summary = "Export a mesh",
      .doc =
          "The file has the format that `format` or Accept names. What the format cannot hold is "
-         "listed in the header Export-Warnings, in at most 1000 bytes; the rest is counted, as in "
+         "listed in the header Export-Warnings, in at most 2000 bytes; the rest is counted, as in "
          "\"and 3 more\". A position too large for a float is an error for glb and binary stl. A "
          "mesh holds texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (in glTF v "
          "runs down), and colours `color` from 0 to 1, which are bytes in PLY; reading and writing "

@@ -497,13 +497,12 @@ static void note_edges(upload *u, const he_mesh *mesh)
     const he_import *import = &u->import;
     if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
-        he_warnings_add(
-            &u->import.warnings,
-            &(he_occurrence){
-                .code = "edge_count",
-                .text = "the number of edges in the header of the file is wrong, and is ignored",
-                .place = HE_PLACE_LINE,
-                .at = import->edges_line});
+        he_warnings_add(&u->import.warnings,
+                        &(he_occurrence){.code = "edge_count",
+                                         .text = "the number of edges in the header of the file is "
+                                                 "ignored, because the mesh has a different number",
+                                         .place = HE_PLACE_LINE,
+                                         .at = import->edges_line});
     }
 }
 
@@ -644,7 +643,7 @@ const api_record api_warning_record = API_RECORD("warning", warning_fields);
 
 static void write_warning(api_out *out, const he_warnings *warnings, size_t i)
 {
-    char text[HE_ERROR_TEXT];
+    char text[HE_WARNING_TEXT];
     const he_warning *warning = &warnings->items[i];
     const bool many = warning->count != 1;
     he_warning_text(warning, text, sizeof text);

@@ -76,18 +76,20 @@ static bool choose(api_exchange *x, const he_format **format)
     return true;
 }
 
-/* The maximum size of the header that lists warnings, and of the words "and N more" at its end. */
-enum { MOST_WARNINGS = 1000, MORE_WARNINGS = 40 };
+/* The maximum size of the header that lists warnings, and of the words "and N more" at its end. The
+ * size allows for reverse proxies that have 4 KiB for all headers of an answer, as nginx by
+ * default. */
+enum { MOST_WARNINGS = 2000, MORE_WARNINGS = 40 };
 
 /* Adds a header that lists what the file format cannot represent, so that the client knows what is
  * lost. */
 static void answer_losses(api_exchange *x, const he_warnings *warnings)
 {
-    char list[MOST_WARNINGS] = "", text[HE_ERROR_TEXT], more[MORE_WARNINGS] = "";
+    char list[MOST_WARNINGS + 1] = "", text[HE_WARNING_TEXT];
     size_t length = 0, said = 0;
     for (; said < warnings->count; said++) {
         size_t size = he_warning_text(&warnings->items[said], text, sizeof text);
-        if (length + sizeof "; " + size + sizeof more > sizeof list) {
+        if (length + strlen("; ") + size + MORE_WARNINGS > MOST_WARNINGS) {
             break;
         }
         length += (size_t)snprintf(list + length, sizeof list - length, "%s%s",
@@ -95,10 +97,10 @@ static void answer_losses(api_exchange *x, const he_warnings *warnings)
     }
     uint64_t left = warnings->count - said + warnings->more;
     if (left > 0) {
-        snprintf(more, sizeof more, "; and %llu more", (unsigned long long)left);
+        snprintf(list + length, sizeof list - length, "; and %llu more", (unsigned long long)left);
     }
     if (warnings->count > 0) {
-        api_answer_header_format(x, "Export-Warnings", "%s%s", list, more);
+        api_answer_header(x, "Export-Warnings", list);
     }
 }
 

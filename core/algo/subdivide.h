@@ -9,20 +9,20 @@
  *                     Topological Meshes, 1978
  *     linear          triangles become 4, other faces quads, and no vertex moves: the mesh keeps
  *                     its shape
- *     sqrt3           a triangle becomes 3 around a vertex in it, and the old edges are flipped:
- *                     they join it with the new vertices of the adjacent faces, d, e and k
+ *     sqrt3           a triangle becomes 3 around a new vertex c in it, and the old edges are
+ *                     flipped: they join c with the new vertices x, y and z in the adjacent faces
  *                     Kobbelt, Sqrt(3)-Subdivision, 2000
  *
  *         v1                    v1                      v1
- *         o                     o                       o                   d     v1
+ *         o                     o                       o                   x     v1
  *        / \                   / \                     / \                  o-----o
  *       /   \                 /g1 \                   /   \                / \   / \
  *      /     \     --->   m0 o-----o m1   or      m0 o  g1 o m1   or      / f \ /g1 \
- *     /       \             / \g3 / \               / `.o.' \         v0 o-----c-----o e
+ *     /       \             / \g3 / \               / `.o.' \         v0 o-----c-----o y
  *    /         \           / f \ /g2 \             / f  |  g2\            \   / \   /
  *   o-----------o         o-----o-----o           o-----o-----o            \ /g2 \ /
  *   v0          v2        v0    m2    v2          v0    m2    v2            o-----o
- *                                                                           k     v2
+ *                                                                           z     v2
  *                             loop                catmull_clark             sqrt3
  *
  * WHO SURVIVES. All old vertices. An edge that is cut in halves keeps its id in the half with the

@@ -286,10 +286,11 @@ static void note_unused(he_import *import)
         if (!file->used) {
             he_warnings_add(
                 &import->warnings,
-                &(he_occurrence){.code = "ignored_file",
-                                 .text = "ignored, because no other file refers to it: the file",
-                                 .subject = file->name,
-                                 .length = strlen(file->name)});
+                &(he_occurrence){
+                    .code = "ignored_file",
+                    .text = "file % is ignored, because no other file of the request refers to it",
+                    .subject = file->name,
+                    .length = strlen(file->name)});
         }
     }
 }

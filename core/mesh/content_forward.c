@@ -47,12 +47,13 @@ static void marks_after(const he_content *c, const he_delta *delta, span s,
     }
 }
 
-static he_status refuse(size_t i, size_t *refused, const char *what, he_error *err)
+/* Refuses record i of the delta; `why` is a sentence. */
+static he_status refuse(size_t i, size_t *refused, const char *why, he_error *err)
 {
     if (refused != NULL) {
         *refused = i;
     }
-    return he_fail_plain(err, HE_CORRUPT, "change %zu %s", i, what);
+    return he_fail_plain(err, HE_CORRUPT, "change %zu cannot be applied: %s", i, why);
 }
 
 /* Adds a free entry at the end of the array of attribute columns. */
@@ -80,11 +81,13 @@ static he_status ready_column(he_content *c, const he_delta *delta, size_t i, vo
     he_column *column = objects[r->before];
     he_status status = HE_OK;
     if (column == NULL) {
-        return refuse(i, refused, "should add an attribute, but the stored edit holds none for it",
-                      err);
+        return refuse(i, refused,
+                      "the stored edit does not hold the attribute that the change adds", err);
     }
     if (r->row > c->column_count) {
-        return refuse(i, refused, "adds an attribute, but not in the first free slot", err);
+        return refuse(
+            i, refused,
+            "the attribute that the change adds would get a slot after the first free one", err);
     }
     size_t rows = he_content_issued(c, column->domain);
     if (column->rows < rows) {
@@ -100,7 +103,8 @@ static he_status ready_material(he_content *c, const he_delta *delta, size_t i, 
     uint32_t slot = delta->records[i].row;
     if (slot > c->materials.count || slot >= HE_MATERIALS) {
         return refuse(i, refused,
-                      "sets a material in a slot that is out of range or is not the first free one",
+                      "the material that the change sets would get a slot that is out of range or "
+                      "after the first free one",
                       err);
     }
     if (slot < c->materials.count) {
@@ -249,7 +253,8 @@ he_status he_content_forward(he_content *c, const he_delta *delta, void **object
     for (size_t i = 0; i < delta->count && status == HE_OK; i++) {
         if (!holds(c, objects, &delta->records[i])) {
             he_content_apply(c, delta, i, 0, objects);
-            status = refuse(i, refused, "replaces a value that the mesh does not have", err);
+            status = refuse(i, refused, "the mesh does not have the value that the change replaces",
+                            err);
         } else {
             he_content_apply(c, delta, i, i + 1, objects);
         }

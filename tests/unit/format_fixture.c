@@ -76,7 +76,7 @@ void expect_same_imports(const he_import *a, const he_import *b)
     assert_int_equal(a->warnings.count, b->warnings.count);
     assert_int_equal(a->warnings.more, b->warnings.more);
     for (size_t i = 0; i < a->warnings.count; i++) {
-        char x[256], y[256];
+        char x[HE_WARNING_TEXT], y[HE_WARNING_TEXT];
         he_warning_text(&a->warnings.items[i], x, sizeof x);
         he_warning_text(&b->warnings.items[i], y, sizeof y);
         assert_string_equal(x, y);

@@ -283,12 +283,48 @@ static void lines_that_are_passed_over(void **state)
     expect_warning(&import, "ignored_keyword", "call", 1, 11);
     expect_warning(&import, "unknown_keyword", "xyz", 2, 10);
     expect_warning(&import, "ignored_keyword", "t", 1, 13);
-    char text[100];
+    char text[HE_WARNING_TEXT];
     he_warning_text(find_warning(&import.warnings, "unknown_keyword", "xyz"), text, sizeof text);
-    assert_string_equal(text, "ignored: unknown keyword 'xyz', 2 times, first on line 10");
+    assert_string_equal(
+        text, "a line with the unknown keyword 'xyz' is ignored, 2 times, first on line 10");
     he_warning_text(find_warning(&import.warnings, "ignored_keyword", "p"), text, sizeof text);
-    assert_string_equal(text, "ignored: lines that begin with 'p', on line 7");
+    assert_string_equal(text, "a line that begins with 'p' is ignored, because a mesh cannot hold "
+                              "what it describes, on line 7");
     he_import_clear(&import);
+}
+
+static void the_subject_of_a_warning_stands_in_its_sentence(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *subject, *expected;
+        uint64_t count;
+        he_place place;
+    } rows[] = {
+        {"keyword % is ignored", "a%sb", "keyword 'a%sb' is ignored, on line 7", 1, HE_PLACE_LINE},
+        {"keyword %", "xyz", "keyword 'xyz', 3 times, first at byte 7", 3, HE_PLACE_BYTE},
+        {"% is ignored", "", "(unnamed) is ignored", 1, HE_PLACE_NONE},
+        {"a face is ignored", NULL, "a face is ignored, 2 times", 2, HE_PLACE_NONE},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        he_warnings warnings = {0};
+        const char *subject = rows[i].subject;
+        char text[HE_WARNING_TEXT], cut[8];
+        for (uint64_t k = 0; k < rows[i].count; k++) {
+            he_warnings_add(&warnings,
+                            &(he_occurrence){.code = "code",
+                                             .text = rows[i].text,
+                                             .subject = subject,
+                                             .length = subject == NULL ? 0 : strlen(subject),
+                                             .place = rows[i].place,
+                                             .at = 7 + k});
+        }
+        size_t length = he_warning_text(&warnings.items[0], text, sizeof text);
+        assert_string_equal(text, rows[i].expected);
+        assert_int_equal(length, strlen(text));
+        assert_int_equal(he_warning_text(&warnings.items[0], cut, sizeof cut), sizeof cut - 1);
+        assert_memory_equal(cut, text, sizeof cut - 1);
+    }
 }
 
 static void notes_have_an_end(void **state)
@@ -605,6 +641,7 @@ int main(void)
         cmocka_unit_test(names_and_smoothing),
         cmocka_unit_test(names_are_utf8),
         cmocka_unit_test(lines_that_are_passed_over),
+        cmocka_unit_test(the_subject_of_a_warning_stands_in_its_sentence),
         cmocka_unit_test(notes_have_an_end),
         cmocka_unit_test(wrong_indices_name_their_line),
         cmocka_unit_test(wrong_values_cost_the_corner_its_value),

@@ -268,10 +268,11 @@ static void what_is_lost_is_named(void **state)
         find_warning(&warnings, "attribute_lost", "vertex color"));
     assert_non_null(find_warning(&warnings, "attribute_lost", "face group"));
     assert_non_null(find_warning(&warnings, "attribute_lost", "edge weight"));
-    char sentence[100];
+    char sentence[HE_WARNING_TEXT];
     he_warning_text(find_warning(&warnings, "attribute_lost", "edge weight"), sentence,
                     sizeof sentence);
-    assert_string_equal(sentence, "not written: attribute 'edge weight'");
+    assert_string_equal(
+        sentence, "attribute 'edge weight' is not written, because the format cannot hold it");
     free(text);
     he_mesh_free(mesh);
 }

@@ -513,7 +513,9 @@ static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
         HE_CORRUPT);
     /* The change is refused at offset 2, where the run of changes that contains it begins; before
      * that are the version and the number of runs. */
-    expect_text(&err, HE_CORRUPT, 2, "change 0 replaces a value that the mesh does not have");
+    expect_text(
+        &err, HE_CORRUPT, 2,
+        "change 0 cannot be applied: the mesh does not have the value that the change replaces");
     run.issued[HE_EDGE] += 1000;
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),

@@ -247,8 +247,8 @@ static he_status make(finding *f, he_warnings *warnings, he_error *err)
     for (size_t tries = 0; !found && tries < 2; tries++) {
         he_warnings_add(warnings,
                         &(he_occurrence){.code = "not_apart",
-                                         .text = "too many to be stored as separate parts for "
-                                                 "other programs, and therefore merged:",
+                                         .text = "faces are not separated by % for other programs, "
+                                                 "because there would be more than 4096 primitives",
                                          .subject = told[tries],
                                          .length = strlen(told[tries])});
         g->names[HE_GLB_OBJECT] = g->names[HE_GLB_GROUP] = NULL;

@@ -257,7 +257,8 @@ static void add_words(he_glb_parts *g, const he_column *column, he_warnings *war
     }
     he_warnings_add(warnings,
                     &(he_occurrence){.code = "in_extras",
-                                     .text = "stored in a form that only hedge reads: attribute",
+                                     .text = "attribute % is stored in extras, which only hedge "
+                                             "reads, because no attribute of glTF can hold it",
                                      .subject = subject,
                                      .length = (size_t)length});
 }
@@ -416,14 +417,15 @@ static void note_geometry(const he_glb_parts *g, he_warnings *warnings)
 {
     he_warnings_add_count(
         warnings, "triangulated",
-        "cut into triangles for other programs, and also stored whole for hedge: a face",
+        "a face is cut into triangles for other programs, and also stored whole for hedge",
         g->cuts.polygons);
     he_warnings_add_count(warnings, "split_vertices",
-                          "duplicated for other programs because values of its corners differ, and "
-                          "merged again when hedge reads the file: a vertex",
+                          "a vertex is duplicated for other programs, because values of its "
+                          "corners differ, and hedge merges the copies when it reads the file",
                           g->splits.copies.count);
     he_warnings_add_count(warnings, "turned_triangles",
-                          "cut into triangles of which some have no area or are reversed: a face",
+                          "a face is cut into triangles of which some have no area or are "
+                          "reversed, because no better cut was found",
                           g->cuts.turned);
 }
 

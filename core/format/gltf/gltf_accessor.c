@@ -139,9 +139,10 @@ static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span
             (unsigned long long)length);
     }
     if ((part.start + offset) % alignment != 0 || stride % alignment != 0) {
-        he_gltf_note(asset, "misaligned",
-                     "accepted, although they are not aligned as glTF requires: numbers", HE_NONE,
-                     object);
+        he_gltf_note(
+            asset, "misaligned",
+            "the numbers of an accessor are read, although they are not aligned as glTF requires",
+            HE_NONE, object);
     }
     *out = (span){part.bytes + offset, (size_t)stride,
                   part.place == HE_GLTF_NOWHERE ? part.place : part.place + offset};

@@ -11,7 +11,7 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
     he_warnings_add(&asset->into->warnings,
                     &(he_occurrence){.code = code,
                                      .text = text,
-                                     .subject = name,
+                                     .subject = subject == HE_NONE ? NULL : name,
                                      .length = length,
                                      .place = HE_PLACE_BYTE,
                                      .at = he_json_place(&asset->json, place)});
@@ -31,10 +31,10 @@ void he_gltf_note_text(he_gltf *asset, const char *code, const char *text, const
 
 void he_gltf_note_stale(he_gltf *asset, uint32_t place)
 {
-    he_gltf_note(
-        asset, "stale_extras",
-        "ignored, because they do not fit the geometry: the data that hedge stored in extras",
-        HE_NONE, place);
+    he_gltf_note(asset, "stale_extras",
+                 "data that hedge stored in extras of the file is ignored, because it does not fit "
+                 "the geometry",
+                 HE_NONE, place);
 }
 
 /* Reports progress. The number of steps that reading will take is not known, so the fraction
@@ -200,7 +200,8 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
         if (he_json_is(json, i, "KHR_mesh_quantization")) {
             asset->quantized = true;
         } else if (!he_json_is(json, i, HE_GLTF_MESHOPT)) {
-            he_gltf_note(asset, "ignored_extension", "ignored: extension", i, i);
+            he_gltf_note(asset, "ignored_extension",
+                         "extension % is ignored, because hedge does not read it", i, i);
         }
     }
     return HE_OK;
@@ -221,7 +222,10 @@ static void note_images(he_gltf *asset)
             (void)he_beside_find_uri(asset->into->beside, text, length);
             name = uri;
         }
-        he_gltf_note(asset, "ignored_images", "not kept: the image", name, i);
+        he_gltf_note(asset, "ignored_images",
+                     name == HE_NONE ? "an image is not kept, because a mesh stores no images"
+                                     : "image % is not kept, because a mesh stores no images",
+                     name, i);
     }
 }
 
@@ -230,9 +234,10 @@ static void note_rest(he_gltf *asset)
 {
     static const struct {
         const char *name, *code, *text;
-    } parts[] = {
-        {"animations", "ignored_animations", "ignored: animations"},
-        {"skins", "ignored_skins", "ignored, so each mesh is placed by its node alone: skins"}};
+    } parts[] = {{"animations", "ignored_animations",
+                  "the animations of the file are ignored, because a mesh stores none"},
+                 {"skins", "ignored_skins",
+                  "the skins of the file are ignored, so each mesh is placed by its node alone"}};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         uint32_t list = he_json_find(&asset->json, 0, parts[i].name);
         if (he_json_first(&asset->json, list) != HE_NONE) {

@@ -94,7 +94,7 @@ HE_NODISCARD he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_g
 /* Lists the objects in the array `name`, which is a member of the outermost object of the JSON. */
 HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err);
 /* Adds a warning about the JSON value `place`. The subject of the warning is the JSON string
- * `subject`, unless `subject` is HE_NONE. */
+ * `subject`; if `subject` is HE_NONE, the warning has none, and no % in its text. */
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
 /* Adds a warning about the JSON value `place`, with a subject that is text. */

@@ -133,13 +133,13 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
         if (!(fabs(value) <= (double)FLT_MAX) && fraction) {
             he_warnings_add(
                 &s->asset->into->warnings,
-                &(he_occurrence){.code = "not_finite",
-                                 .text =
-                                     "set to 0, because they are not finite: values of attribute",
-                                 .subject = column->name,
-                                 .length = strlen(column->name),
-                                 .place = HE_PLACE_BYTE,
-                                 .at = place});
+                &(he_occurrence){
+                    .code = "not_finite",
+                    .text = "a value of attribute % is read as 0, because it is not finite",
+                    .subject = column->name,
+                    .length = strlen(column->name),
+                    .place = HE_PLACE_BYTE,
+                    .at = place});
             value = 0;
         }
         if (column->type == HE_FLOAT) {
@@ -227,7 +227,10 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     if (!name_attribute(semantic, name, &out->known) || (a->matrix && a->type != HE_GLTF_FLOAT) ||
         (out->known != NULL &&
          (a->components < out->known->least || a->components > out->known->most || a->matrix))) {
-        he_gltf_note_text(s->asset, "ignored_attribute", "ignored: attribute", semantic, value);
+        he_gltf_note_text(
+            s->asset, "ignored_attribute",
+            "attribute % is ignored, because hedge reads no attribute of this name and type",
+            semantic, value);
         return HE_OK;
     }
     he_status status = check_type(s->asset, a, out->known, err);
@@ -244,15 +247,18 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     }
     if (column != NULL && column->rows > p->first_vertex) {
         if (!p->exact) {
-            he_gltf_note_text(s->asset, "ignored_attribute", "ignored: attribute", semantic, value);
+            he_gltf_note_text(s->asset, "ignored_attribute",
+                              "attribute % is ignored, because another attribute of its primitive "
+                              "becomes the same attribute of the mesh",
+                              semantic, value);
         }
         return HE_OK;
     }
     if (column != NULL && (column->type != type || column->components != a->components)) {
-        he_gltf_note_text(
-            s->asset, "attribute_types",
-            "ignored, because an earlier part of the file gives it another type: attribute",
-            semantic, value);
+        he_gltf_note_text(s->asset, "attribute_types",
+                          "attribute % of a primitive is ignored, because an earlier primitive "
+                          "gives it another type",
+                          semantic, value);
         return HE_OK;
     }
     if (column == NULL && soup->column_count == HE_GLTF_ATTRIBUTES) {
@@ -325,11 +331,14 @@ void he_gltf_note_attributes(he_gltf_surface *surface)
             continue;
         }
         size_t before = into->warnings.count;
-        he_warnings_add(&into->warnings,
-                        &(he_occurrence){.code = "vertices_without",
-                                         .text = "set to 0 at vertices without a value: attribute",
-                                         .subject = column->name,
-                                         .length = strlen(column->name)});
+        he_warnings_add(
+            &into->warnings,
+            &(he_occurrence){
+                .code = "vertices_without",
+                .text =
+                    "attribute % is set to 0 at a vertex, because the file gives it no value there",
+                .subject = column->name,
+                .length = strlen(column->name)});
         if (into->warnings.count > before) {
             into->warnings.items[before].count = all - given;
         }

@@ -150,7 +150,9 @@ static he_status find_bytes(he_gltf *asset, size_t i, uint32_t value, const he_g
     *buffer = (he_gltf_buffer){.bytes = bin->bytes, .length = bin->length, .place = bin->place};
     if (bin->length > length && bin->length - length > 3) {
         he_gltf_note(asset, "bin_longer",
-                     "ignored: bytes of the BIN chunk after the end of its buffer", HE_NONE, value);
+                     "bytes at the end of the BIN chunk are ignored, because the buffer in it is "
+                     "shorter than the chunk",
+                     HE_NONE, value);
     }
     return HE_OK;
 }

@@ -21,10 +21,10 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
     memcpy(name, own, strlen(own) + 1);
     for (unsigned number = 2; he_labels_find(names, name, strlen(name), &index); number++) {
         if (number == 2) {
-            he_gltf_note_text(
-                asset, "material_renamed",
-                "renamed by adding a number, because another material has that name: material", own,
-                value);
+            he_gltf_note_text(asset, "material_renamed",
+                              "material % is renamed by adding a number, because an earlier "
+                              "material has its name",
+                              own, value);
         }
         /* After a few tries the next number is i + 1, which in most files no name has. */
         number = number > FEW && number <= i ? (unsigned)i + 1 : number;
@@ -84,14 +84,17 @@ static void read_opacity(reading *r, uint32_t value, he_look *look)
     he_json_string(json, he_json_find(json, value, "name"), name, sizeof name);
     if (mode == HE_NONE || he_json_is(json, mode, "OPAQUE")) {
         if (look->base_color[3] < 1) {
-            he_gltf_note_text(r->asset, "opaque",
-                              "set to 1, because alphaMode is OPAQUE: the opacity of material",
-                              name, value);
+            he_gltf_note_text(
+                r->asset, "opaque",
+                "the opacity of material % is set to 1, because its alphaMode is OPAQUE", name,
+                value);
         }
         look->base_color[3] = 1;
     } else if (he_json_is(json, mode, "MASK")) {
-        he_gltf_note_text(r->asset, "ignored_mask", "ignored: the alphaCutoff of material", name,
-                          value);
+        he_gltf_note_text(
+            r->asset, "ignored_mask",
+            "the alphaCutoff of material % is ignored, because the materials of a mesh have none",
+            name, value);
     }
 }
 
@@ -137,23 +140,23 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
         return HE_OK; /* hedge wrote this material for its name alone: the table gets no row */
     }
     if (table->count == HE_MATERIALS) {
-        he_gltf_note_text(asset, "material_limit",
-                          "left out, because a mesh has at most 4096 materials: further materials",
-                          "", value);
+        he_gltf_note(asset, "material_limit",
+                     "a material is left out, because a mesh has at most 4096 materials", HE_NONE,
+                     value);
         return HE_OK;
     }
     he_look look = read_look(&r, value);
     r.odd |= he_look_clamp(&look);
     if (r.odd) {
-        he_gltf_note_text(
-            asset, "material_range",
-            "replaced by the default or the nearest allowed value: an invalid number of material",
-            name, value);
+        he_gltf_note_text(asset, "material_range",
+                          "an invalid number of material % is replaced by its default or the "
+                          "nearest allowed value",
+                          name, value);
     }
     he_status status = he_material_new(name, strlen(name), &look, &row, err);
     if (status == HE_BAD_VALUE) { /* the name has a control character: the material is left out */
         he_gltf_note_text(asset, "material_name",
-                          "left out, because its name has a control character: material", name,
+                          "material % is left out, because its name has a control character", name,
                           value);
         return HE_OK;
     }

@@ -139,12 +139,12 @@ static he_status take_chunk(glb *g, he_error *err)
                           (unsigned long long)g->left, (unsigned long long)(g->length - g->offset));
     }
     if (g->left % 4 != 0) {
-        he_warnings_add(&g->into->warnings,
-                        &(he_occurrence){
-                            .code = "unaligned_chunk",
-                            .text = "accepted, although its length is not a multiple of 4: a chunk",
-                            .place = HE_PLACE_BYTE,
-                            .at = at});
+        he_warnings_add(
+            &g->into->warnings,
+            &(he_occurrence){.code = "unaligned_chunk",
+                             .text = "a chunk is read, although its length is not a multiple of 4",
+                             .place = HE_PLACE_BYTE,
+                             .at = at});
         g->padding = 4 - g->left % 4;
     }
     if ((type == JSON_CHUNK) != (number == 0)) {
@@ -161,11 +161,12 @@ static he_status take_chunk(glb *g, he_error *err)
     if (g->chunk != NULL) {
         g->chunk->place = g->offset;
     } else {
-        he_warnings_add(&g->into->warnings,
-                        &(he_occurrence){.code = "ignored_chunk",
-                                         .text = "ignored: a chunk of another type",
-                                         .place = HE_PLACE_BYTE,
-                                         .at = at});
+        he_warnings_add(
+            &g->into->warnings,
+            &(he_occurrence){.code = "ignored_chunk",
+                             .text = "a chunk is ignored, because it is neither JSON nor BIN",
+                             .place = HE_PLACE_BYTE,
+                             .at = at});
     }
     return HE_OK;
 }

@@ -86,8 +86,10 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     }
     double length = sqrt(sum) * largest;
     if (fabs(length - 1) > UNIT) {
-        he_gltf_note(asset, "rotation_made_unit",
-                     "normalized to length 1: the quaternion of a rotation", HE_NONE, node);
+        he_gltf_note(
+            asset, "rotation_made_unit",
+            "the quaternion of a rotation is scaled to length 1, because it has another length",
+            HE_NONE, node);
     }
     for (int i = 0; i < 4; i++) {
         q[i] = q[i] / largest / sqrt(sum);
@@ -138,7 +140,8 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
     }
     if (composed) {
         he_gltf_note(asset, "matrix_and_more",
-                     "ignored: the translation, rotation or scale of a node that also has a matrix",
+                     "the translation, rotation or scale of a node is ignored, because the node "
+                     "also has a matrix",
                      HE_NONE, node);
     }
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
@@ -282,7 +285,9 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
         *out = scenes.ids[0];
     }
     if (status == HE_OK && scenes.count > 1) {
-        he_gltf_note(asset, "other_scenes", "ignored: all scenes but one", HE_NONE, list);
+        he_gltf_note(asset, "other_scenes",
+                     "all scenes but one are ignored, because a mesh is made of one scene", HE_NONE,
+                     list);
     }
     he_ids_clear(&scenes);
     return status;
@@ -390,8 +395,8 @@ static void note_meshes(const scene *s)
         unused += he_bits_get(s->used, i) == 0;
     }
     he_warnings_add_count(warnings, "unused_meshes",
-                          "left out, because no node of the scene uses it: a mesh", unused);
-    he_warnings_add_count(warnings, "instances", "copied, because several nodes use it: a mesh",
+                          "a mesh is left out, because no node of the scene uses it", unused);
+    he_warnings_add_count(warnings, "instances", "a mesh is copied, because several nodes use it",
                           s->instances);
 }
 

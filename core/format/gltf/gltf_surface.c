@@ -313,8 +313,8 @@ he_status he_gltf_add_primitive(he_gltf_surface *s, uint32_t value, uint32_t nam
     uint32_t positions = he_json_find(json, p.attributes, "POSITION");
     uint32_t indices = he_json_find(json, value, "indices");
     if (status == HE_OK && positions == HE_NONE) {
-        he_gltf_note(asset, "no_positions", "skipped: a primitive without positions", HE_NONE,
-                     value);
+        he_gltf_note(asset, "no_positions", "a primitive is skipped, because it has no positions",
+                     HE_NONE, value);
         return HE_OK;
     }
     if (status == HE_OK) {
@@ -331,14 +331,16 @@ he_status he_gltf_add_primitive(he_gltf_surface *s, uint32_t value, uint32_t nam
     }
     if (p.mode < TRIANGLES && !(p.mode == POINTS && he_gltf_has_private(asset, value))) {
         he_gltf_note(asset, p.mode == POINTS ? "skipped_points" : "skipped_lines",
-                     p.mode == POINTS ? "skipped: a primitive of points"
-                                      : "skipped: a primitive of lines",
+                     p.mode == POINTS
+                         ? "a primitive of points is skipped, because a mesh is made of faces"
+                         : "a primitive of lines is skipped, because a mesh is made of faces",
                      HE_NONE, value);
         return HE_OK;
     }
     if (he_json_first(json, he_json_find(json, value, "targets")) != HE_NONE) {
-        he_gltf_note(asset, "ignored_targets", "ignored: morph targets of a primitive", HE_NONE,
-                     value);
+        he_gltf_note(asset, "ignored_targets",
+                     "the morph targets of a primitive are ignored, because a mesh stores none",
+                     HE_NONE, value);
     }
     p.vertices = p.positions.count;
     status = he_gltf_has_private(asset, value) ? he_gltf_open_private(s, &p, err) : HE_OK;
@@ -400,14 +402,12 @@ static he_status finish_names(he_gltf_surface *surface, he_face_groups *groups, 
         return he_face_groups_merge(groups, soup->face_count, column, own, err);
     }
     if (groups->changes.count > 0) {
-        he_warnings_add(
-            &into->warnings,
-            &(he_occurrence){
-                .code = "attribute_types",
-                .text =
-                    "ignored, because an earlier part of the file gives it another type: attribute",
-                .subject = name,
-                .length = strlen(name)});
+        he_warnings_add(&into->warnings,
+                        &(he_occurrence){.code = "attribute_types",
+                                         .text = "names in the file are not stored as attribute %, "
+                                                 "because the file also gives it numbers",
+                                         .subject = name,
+                                         .length = strlen(name)});
     }
     return HE_OK;
 }
@@ -416,7 +416,7 @@ he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err)
 {
     he_import *into = surface->asset->into;
     he_warnings_add_count(&into->warnings, "mirrored",
-                          "reversed, because its node mirrors it: a face", surface->mirrored);
+                          "a face is reversed, because its node mirrors it", surface->mirrored);
     he_gltf_note_attributes(surface);
     he_status status =
         finish_names(surface, &surface->object, &surface->own_objects, "object", err);

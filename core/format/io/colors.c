@@ -82,8 +82,8 @@ he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_warnings *
     }
     if (above) {
         he_warnings_add_count(warnings, "byte_colors",
-                              "read as numbers from 0 to 255, because they are whole numbers and "
-                              "some are above 1: colours",
+                              "a colour is read as numbers from 0 to 255, because all colours are "
+                              "whole numbers and some are above 1",
                               colors->given);
     }
     return HE_OK;

@@ -50,8 +50,10 @@ he_status he_narrowed_finish(const he_narrowed *narrowed, he_warnings *warnings,
                        "vertex %u has a coordinate too large for the floats of this format%s",
                        narrowed->first, more);
     }
-    he_warnings_add_count(warnings, "rounded", "rounded to 32-bit floats: a position",
-                          narrowed->rounded);
+    he_warnings_add_count(
+        warnings, "rounded",
+        "a position is rounded to 32-bit floats, because the format stores positions so",
+        narrowed->rounded);
     return HE_OK;
 }
 
@@ -106,7 +108,7 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
                     warnings,
                     &(he_occurrence){
                         .code = "not_finite",
-                        .text = "written as 0, because they are not finite: values of attribute",
+                        .text = "a value of attribute % is written as 0, because it is not finite",
                         .subject = name,
                         .length = strlen(name)});
             }
@@ -128,10 +130,13 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
             char subject[HE_COLUMN_NAME + 16];
             int length = snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain),
                                   column->name);
-            he_warnings_add(warnings, &(he_occurrence){.code = "attribute_lost",
-                                                       .text = "not written: attribute",
-                                                       .subject = subject,
-                                                       .length = (size_t)length});
+            he_warnings_add(
+                warnings,
+                &(he_occurrence){
+                    .code = "attribute_lost",
+                    .text = "attribute % is not written, because the format cannot hold it",
+                    .subject = subject,
+                    .length = (size_t)length});
         }
     }
 }
@@ -139,7 +144,8 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
 void he_export_note_materials(const he_mesh *mesh, he_warnings *warnings)
 {
     he_warnings_add_count(warnings, "materials_lost",
-                          "not written: the colours and other properties of a material",
+                          "the colours and other properties of a material are not written, because "
+                          "the format cannot hold them",
                           he_materials_count(he_mesh_materials(mesh)));
 }
 

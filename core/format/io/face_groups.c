@@ -107,13 +107,14 @@ he_status he_line_name(const he_line *line, const char *p, he_warnings *warnings
     const char *text = name;
     if (!he_is_utf8(name, length)) {
         if (warnings != NULL) {
-            he_warnings_add(warnings,
-                            &(he_occurrence){.code = "not_utf8",
-                                             .text = "read as Latin-1: a name that is not UTF-8",
-                                             .subject = name,
-                                             .length = length,
-                                             .place = HE_PLACE_LINE,
-                                             .at = line->number});
+            he_warnings_add(
+                warnings,
+                &(he_occurrence){.code = "not_utf8",
+                                 .text = "name % is read as Latin-1, because it is not UTF-8",
+                                 .subject = name,
+                                 .length = length,
+                                 .place = HE_PLACE_LINE,
+                                 .at = line->number});
         }
         length = widen(name, length, name + room);
         text = name + room;

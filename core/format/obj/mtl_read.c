@@ -55,14 +55,17 @@ static he_status add_row(library *l, uint32_t number, bool fresh, he_error *err)
     uint32_t slot = l->slots.ids[number];
     if (!fresh) {
         if (slot == HE_NONE || !he_material_equal(table->rows[slot], row)) {
-            note(l, "material_twice", "ignored: a second material called", l->name, l->length);
+            note(l, "material_twice",
+                 "a second material called % is ignored, because it differs from the first of that "
+                 "name",
+                 l->name, l->length);
         }
         he_material_release(row);
         return HE_OK;
     }
     if (table->count == HE_MATERIALS) {
         note(l, "material_limit",
-             "left out, because a mesh has at most 4096 materials: further materials", NULL, 0);
+             "a material is left out, because a mesh has at most 4096 materials", NULL, 0);
         he_material_release(row);
         return HE_OK;
     }
@@ -85,13 +88,13 @@ static he_status end_material(library *l, he_error *err)
         return HE_OK;
     }
     if (l->length > HE_MATERIAL_NAME) {
-        note(l, "material_name", "left out, because its name is too long: material", l->name,
+        note(l, "material_name", "material % is left out, because its name is too long", l->name,
              l->length);
         return HE_OK;
     }
     if (he_look_clamp(&l->look)) {
         note(l, "material_range",
-             "replaced by the nearest allowed value: an invalid number of material", l->name,
+             "an invalid number of material % is replaced by the nearest allowed value", l->name,
              l->length);
     }
     he_status status = number_name(l, l->name, l->length, &number, &fresh, err);
@@ -117,7 +120,7 @@ static he_status begin_material(library *l, const he_line *line, const char *p, 
     }
     if (status == HE_OK) {
         if (name.text != name.own) {
-            note(l, "not_utf8", "read as Latin-1: a name that is not UTF-8", name.text,
+            note(l, "not_utf8", "name % is read as Latin-1, because it is not UTF-8", name.text,
                  name.length);
         }
         memcpy(l->name, name.text, name.length);
@@ -126,7 +129,7 @@ static he_status begin_material(library *l, const he_line *line, const char *p, 
         l->look = he_plain_look;
         l->has_opacity = false;
         if (name.length == 0) {
-            note(l, "material_name", "left out, because it has no name: a material", NULL, 0);
+            note(l, "material_name", "a material is left out, because it has no name", NULL, 0);
         }
     }
     he_mem_free(name.own);
@@ -143,7 +146,8 @@ static he_status read_color(library *l, const he_line *line, const char *keyword
     p = he_skip_blanks(p, line->end);
     const char *end = he_token_end(p, line->end);
     if (end - p > 2 && (memcmp(p, "spectral", 3) == 0 || memcmp(p, "xyz", 3) == 0)) {
-        note(l, "ignored_color", "ignored: a colour that is not given as red, green and blue",
+        note(l, "ignored_color",
+             "colour % of a material is ignored, because it is not given as red, green and blue",
              keyword, 2);
         return HE_OK;
     }
@@ -226,7 +230,9 @@ static void note_texture(library *l, const he_line *line, const char *keyword)
         last--;
     }
     (void)he_beside_find(l->into->beside, last, (size_t)(end - last));
-    note(l, "ignored_texture", "ignored: the texture", keyword, (size_t)(end - keyword));
+    note(l, "ignored_texture",
+         "the texture of the line % is ignored, because a mesh stores no images", keyword,
+         (size_t)(end - keyword));
 }
 
 /* Keywords of the format whose values a material of a mesh cannot store. */
@@ -259,12 +265,15 @@ static he_status read_keyword(library *l, const he_line *line, const char *p, si
     if (is_texture(p, length)) {
         note_texture(l, line, p);
     } else if (is_any(p, length, passed_over)) {
-        note(l, "ignored_keyword", "ignored: lines of the material library that begin with", p,
-             length);
+        note(l, "ignored_keyword",
+             "a line of the material library that begins with % is ignored, because the materials "
+             "of a mesh have no such property",
+             p, length);
     } else if (!is(p, length, "illum")) {
         l->understood--;
         l->first = l->first == 0 ? line->number : l->first;
-        note(l, "unknown_keyword", "ignored: unknown keyword of the material library", p, length);
+        note(l, "unknown_keyword",
+             "a line of the material library with the unknown keyword % is ignored", p, length);
     }
     return HE_OK;
 }

@@ -64,10 +64,12 @@ static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_progress *pro
         }
         he_obj_note_name(row->name, warnings);
         if (row->look.two_sided) {
-            he_warnings_add(warnings, &(he_occurrence){.code = "two_sided_lost",
-                                                       .text = "not written: two_sided of material",
-                                                       .subject = row->name,
-                                                       .length = row->length});
+            he_warnings_add(warnings,
+                            &(he_occurrence){.code = "two_sided_lost",
+                                             .text = "two_sided of material % is not written, "
+                                                     "because a material library cannot hold it",
+                                             .subject = row->name,
+                                             .length = row->length});
         }
     }
     *state = w;

@@ -7,12 +7,11 @@ void he_obj_note_name(const char *name, he_warnings *warnings)
     for (const char *p = name; *p != '\0'; p++) {
         if (he_obj_printable(p, p == name) != *p) {
             he_warnings_add(
-                warnings,
-                &(he_occurrence){
-                    .code = "names_changed",
-                    .text = "changed, because it has a character that a line cannot hold: a name",
-                    .subject = name,
-                    .length = strlen(name)});
+                warnings, &(he_occurrence){.code = "names_changed",
+                                           .text = "name % is written with '_' in place of a "
+                                                   "character that a line of the file cannot hold",
+                                           .subject = name,
+                                           .length = strlen(name)});
             break;
         }
     }

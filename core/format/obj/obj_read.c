@@ -57,8 +57,9 @@ static he_status read_numbers(obj *o, const he_line *line, const char *p, number
         }
         if (!is_finite) {
             note(o, line,
-                 (he_occurrence){.code = "not_finite",
-                                 .text = "set to 0: a value that is not finite"});
+                 (he_occurrence){
+                     .code = "not_finite",
+                     .text = "a number of the file is read as 0, because it is not finite"});
         }
         if (n < most) {
             values[n] = value;
@@ -72,7 +73,9 @@ static he_status read_numbers(obj *o, const he_line *line, const char *p, number
 static void note_extra(obj *o, const he_line *line)
 {
     note(o, line,
-         (he_occurrence){.code = "extra_numbers", .text = "ignored: extra numbers on a line"});
+         (he_occurrence){.code = "extra_numbers",
+                         .text = "numbers at the end of a line are ignored, because the format "
+                                 "gives them no meaning"});
 }
 
 static he_status read_vertex(obj *o, const he_line *line, const char *p, he_error *err)
@@ -103,7 +106,10 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     }
     if (count == 4 && n[3] != 1) {
         note(o, line,
-             (he_occurrence){.code = "vertex_weight", .text = "ignored: the weight of a vertex"});
+             (he_occurrence){
+                 .code = "vertex_weight",
+                 .text =
+                     "the weight of a vertex is ignored, because a mesh stores only x, y and z"});
     }
     return he_line_locate(status, line, err);
 }
@@ -166,14 +172,14 @@ static void note_no_value(obj *o, const he_corner_pool *pool, uint64_t at)
 {
     he_warnings_add(
         &o->into->warnings,
-        &(he_occurrence){
-            .code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
-            .text = pool == &o->uv
-                        ? "set to 0, because the file does not have it: the texture coordinate of "
-                          "a corner"
-                        : "set to 0, because the file does not have it: the normal of a corner",
-            .place = HE_PLACE_LINE,
-            .at = at});
+        &(he_occurrence){.code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
+                         .text = pool == &o->uv
+                                     ? "the texture coordinates of a corner are set to 0, because "
+                                       "the file has none with the index that the corner names"
+                                     : "the normal of a corner is set to 0, because the file has "
+                                       "none with the index that the corner names",
+                         .place = HE_PLACE_LINE,
+                         .at = at});
 }
 
 static he_status read_value(obj *o, const he_line *line, const char **p, he_corner_pool *pool,
@@ -348,7 +354,8 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
             memcmp(p, passed_over[i], length) == 0) {
             note(o, line,
                  (he_occurrence){.code = "ignored_keyword",
-                                 .text = "ignored: lines that begin with",
+                                 .text = "a line that begins with % is ignored, because a mesh "
+                                         "cannot hold what it describes",
                                  .subject = p,
                                  .length = length});
             return HE_OK;
@@ -358,7 +365,7 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
     o->unknown = o->unknown == 0 ? line->number : o->unknown;
     note(o, line,
          (he_occurrence){.code = "unknown_keyword",
-                         .text = "ignored: unknown keyword",
+                         .text = "a line with the unknown keyword % is ignored",
                          .subject = p,
                          .length = length});
     return HE_OK;
@@ -375,10 +382,11 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     }
     if (*p == '$') { /* some programs begin comments with '$' */
         note(o, line,
-             (he_occurrence){.code = "ignored_keyword",
-                             .text = "ignored: lines that begin with",
-                             .subject = p,
-                             .length = 1});
+             (he_occurrence){
+                 .code = "ignored_keyword",
+                 .text = "a line that begins with % is ignored, because it is read as a comment",
+                 .subject = p,
+                 .length = 1});
         return HE_OK;
     }
     if (*p == 'v' && he_token_ends(p + 1, end)) {
@@ -478,9 +486,10 @@ static he_status note_unused(obj *o, he_error *err)
     }
     if (status == HE_OK) {
         he_warnings_add_count(&o->into->warnings, "unused_uv",
-                              "ignored: texture coordinates that no corner uses", uvs);
+                              "a pair of texture coordinates is ignored, because no corner uses it",
+                              uvs);
         he_warnings_add_count(&o->into->warnings, "unused_normal",
-                              "ignored: normals that no corner uses", normals);
+                              "a normal is ignored, because no corner uses it", normals);
     }
     return status;
 }
@@ -501,8 +510,8 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
         he_warnings_add(
             &o->into->warnings,
             &(he_occurrence){.code = "library_missing",
-                             .text = "not sent with the file (send both as multipart/form-data): "
-                                     "the material library",
+                             .text = "material library % is not read, because it was not sent with "
+                                     "the file (send both as multipart/form-data)",
                              .subject = name,
                              .length = length,
                              .place = HE_PLACE_LINE,
@@ -549,7 +558,8 @@ static he_status keep_libraries(obj *o, he_error *err)
     he_column *column = NULL;
     if (count > HE_COLUMN_COMPONENTS) {
         he_warnings_add_count(&o->into->warnings, "libraries",
-                              "left out: the name of a material library",
+                              "the name of a material library is left out, because a mesh keeps at "
+                              "most 16 such names",
                               count - HE_COLUMN_COMPONENTS);
         count = HE_COLUMN_COMPONENTS;
     }
@@ -590,11 +600,11 @@ static he_status obj_finish(void *state, he_error *err)
                           "not an OBJ file: no line of it is a vertex");
     }
     note_partial(o, o->uv.named, soup->corner_count, "corners_without_uv",
-                 "set to 0: corners without a texture coordinate");
+                 "a corner gets texture coordinates of 0, because the file gives it none");
     note_partial(o, o->normal.named, soup->corner_count, "corners_without_normal",
-                 "set to 0: corners without a normal");
+                 "a corner gets a normal of 0, because the file gives it none");
     note_partial(o, o->colors.given, soup->vertex_count, "vertices_without_color",
-                 "set to 0: vertices without a colour");
+                 "a vertex gets a colour of 0, because the file gives it none");
     status = note_unused(o, err);
     if (status == HE_OK) {
         status = he_corner_pool_finish(&o->uv, soup, "uv", 2, err);

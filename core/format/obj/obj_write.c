@@ -82,13 +82,13 @@ static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 static void note_unnamed(const obj_writer *w, he_warnings *warnings)
 {
     he_warnings_add_count(warnings, "unnamed_uv",
-                          "written as vt lines that no face uses: texture coordinates of vertices "
-                          "without faces",
+                          "the texture coordinates of a vertex will be lost when the file is read, "
+                          "because OBJ files give them to corners and the vertex has no face",
                           count_unnamed(&w->uv, w->mesh));
-    he_warnings_add_count(
-        warnings, "unnamed_normal",
-        "written as vn lines that no face uses: normals of vertices without faces",
-        count_unnamed(&w->normal, w->mesh));
+    he_warnings_add_count(warnings, "unnamed_normal",
+                          "the normal of a vertex will be lost when the file is read, because OBJ "
+                          "files give normals to corners and the vertex has no face",
+                          count_unnamed(&w->normal, w->mesh));
 }
 
 /* Finds the names of the material libraries. Returns the attribute that has them, or NULL. */
@@ -99,10 +99,11 @@ static const he_column *find_libraries(obj_writer *w, he_warnings *warnings)
         he_obj_note_name(w->libraries[i], warnings);
     }
     if (he_materials_count(he_mesh_materials(w->mesh)) > 0) {
-        he_warnings_add(
-            warnings, &(he_occurrence){
-                          .code = "in_library",
-                          .text = "written to the material library (format=mtl) only: materials"});
+        he_warnings_add(warnings,
+                        &(he_occurrence){
+                            .code = "in_library",
+                            .text = "the colours and other properties of materials are not written "
+                                    "to this file, but to the material library (format=mtl)"});
     }
     return he_mesh_find_column(w->mesh, HE_MESH_KIND, HE_OBJ_LIBRARY);
 }
@@ -142,10 +143,12 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     }
     w->color = he_colors_find(mesh, HE_VERTEX, warnings);
     if (w->color != NULL && w->color->components == 4) {
-        he_warnings_add(warnings, &(he_occurrence){.code = "alpha_lost",
-                                                   .text = "not written: the fourth component of",
-                                                   .subject = "vertex color",
-                                                   .length = strlen("vertex color")});
+        he_warnings_add(warnings, &(he_occurrence){
+                                      .code = "alpha_lost",
+                                      .text = "the fourth component of attribute % is not written, "
+                                              "because OBJ files hold only red, green and blue",
+                                      .subject = "vertex color",
+                                      .length = strlen("vertex color")});
     }
     const he_column *used[GROUPS + 4] = {w->color, w->uv.column, w->normal.column};
     used[GROUPS + 3] = find_libraries(w, warnings);

@@ -22,7 +22,8 @@ void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned h
     he_source_map_init(&values->into->faces, HE_PLACE_BYTE, SHORTEST_FACE);
     he_warnings_add(&values->into->warnings,
                     &(he_occurrence){.code = "binary_off",
-                                     .text = "read as big-endian binary: the body",
+                                     .text = "the body of the file is read as big-endian binary "
+                                             "numbers, because the header says BINARY",
                                      .place = HE_PLACE_BYTE,
                                      .at = offset});
 }
@@ -46,11 +47,12 @@ static double value_at(const he_off_binary *b, const unsigned char *p, uint64_t 
     float value;
     memcpy(&value, &bits, sizeof value);
     if (!isfinite(value)) {
-        he_warnings_add(&b->values->into->warnings,
-                        &(he_occurrence){.code = "not_finite",
-                                         .text = "set to 0: a value that is not finite",
-                                         .place = HE_PLACE_BYTE,
-                                         .at = at});
+        he_warnings_add(
+            &b->values->into->warnings,
+            &(he_occurrence){.code = "not_finite",
+                             .text = "a number of the file is read as 0, because it is not finite",
+                             .place = HE_PLACE_BYTE,
+                             .at = at});
         return 0;
     }
     return (double)value;
@@ -171,12 +173,12 @@ static he_status take_color_count(he_off_binary *b, const unsigned char *p, he_e
     uint64_t count = 0, at = begin_of(b, WORD);
     he_status status = take_count(p, "numbers of a colour", 0, at, &count, err);
     if (status == HE_OK && count != 0 && count != 3 && count != 4) {
-        he_warnings_add(
-            &b->values->into->warnings,
-            &(he_occurrence){.code = "extra_numbers",
-                             .text = "ignored: numbers after a face that are not a colour",
-                             .place = HE_PLACE_BYTE,
-                             .at = at});
+        he_warnings_add(&b->values->into->warnings,
+                        &(he_occurrence){.code = "extra_numbers",
+                                         .text = "numbers after the corners of a face are ignored, "
+                                                 "because a colour has 3 or 4 numbers",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = at});
     }
     b->left = b->color_count = (uint32_t)count;
     b->part = HE_OFF_COLOR;
@@ -247,7 +249,8 @@ static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
     if (b->trailing == 0) {
         he_warnings_add(&b->values->into->warnings,
                         &(he_occurrence){.code = "trailing_bytes",
-                                         .text = "ignored: bytes after the last face",
+                                         .text = "bytes after the last face are ignored, because "
+                                                 "the header declares no more faces",
                                          .place = HE_PLACE_BYTE,
                                          .at = b->offset});
     }

@@ -273,14 +273,19 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
         status = he_off_add_uv(&o->values, n + color_at + p.color, err);
     }
     if (p.color == 1) {
-        note(o, "color_index", "ignored: an index into a colour map", line);
+        note(o, "color_index",
+             "a colour given by its index is ignored, because OFF files hold no colour map", line);
     }
     if (lacking) {
         note(o, "missing_numbers",
-             "accepted, although numbers that the header declares are missing: a vertex", line);
+             "a vertex has no normal, colour or texture coordinates, although the header declares "
+             "them, because its line is too short",
+             line);
     }
     if (count > end) {
-        note(o, "extra_numbers", "ignored, because the header does not declare them: numbers",
+        note(o, "extra_numbers",
+             "numbers at the end of the line of a vertex are ignored, because the header does not "
+             "declare them",
              line);
     }
     forget_numbers(o);
@@ -307,7 +312,8 @@ static he_status read_numbers(off *o, const he_line *line, const char **p, size_
             return status;
         }
         if (!is_finite) {
-            note(o, "not_finite", "set to 0: a value that is not finite", line);
+            note(o, "not_finite", "a number of the file is read as 0, because it is not finite",
+                 line);
         }
         if (o->number_count < VERTEX_NUMBERS) {
             o->numbers[o->number_count] = value;
@@ -352,9 +358,12 @@ static he_status read_face_color(off *o, const he_line *line, const char **p, he
     if (status == HE_OK && (count == 3 || count == 4)) {
         status = add_color(o, &o->values.face_colors, o->into->soup.face_count - 1, 0, count, err);
     } else if (count == 1) {
-        note(o, "color_index", "ignored: an index into a colour map", line);
+        note(o, "color_index",
+             "a colour given by its index is ignored, because OFF files hold no colour map", line);
     } else if (count > 0) {
-        note(o, "extra_numbers", "ignored: numbers after a face that are not a colour", line);
+        note(o, "extra_numbers",
+             "numbers after the corners of a face are ignored, because a colour has 3 or 4 numbers",
+             line);
     }
     forget_numbers(o);
     return status;

@@ -71,9 +71,9 @@ static void join_copies(he_import *into, size_t mark)
     } else if (soup->vertex_count > 0) {
         he_warnings_add(
             &into->warnings,
-            &(he_occurrence){
-                .code = "stale_copies",
-                .text = "not joined, because their positions differ: vertices marked as copies"});
+            &(he_occurrence){.code = "stale_copies",
+                             .text = "vertices that are marked as copies of others stay separate, "
+                                     "because the marks do not match the positions"});
     }
     soup->column_count--;
     memmove(soup->columns + mark, soup->columns + mark + 1,

@@ -124,7 +124,9 @@ static he_status read_row(ply *o, const he_line *line, const char *p, he_error *
             properties[k].list ? read_list(o, line, &p, k, err) : read_value(o, line, &p, k, err);
     }
     if (status == HE_OK && !he_at_end(he_skip_blanks(p, line->end), line->end)) {
-        note(o, "extra_numbers", "ignored: text after the last value of a row", line->number);
+        note(o, "extra_numbers",
+             "text at the end of a line is ignored, because the header declares no value for it",
+             line->number);
     }
     return status == HE_OK ? he_ply_rows_end(&o->rows, err) : status;
 }
@@ -168,7 +170,9 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     }
     rows->at = line->number;
     if (rows->element == NULL) {
-        note(o, "trailing_lines", "ignored: lines after the last row", line->number);
+        note(o, "trailing_lines",
+             "a line after the last row is ignored, because the header declares no more rows",
+             line->number);
         return HE_OK;
     }
     he_status status = HE_OK;
@@ -459,7 +463,9 @@ static he_status take_bytes(ply *o, const unsigned char *p, const unsigned char 
     }
     if (status == HE_OK && p < end) {
         if (!o->trailing) {
-            note(o, "trailing_bytes", "ignored: bytes after the last row", o->offset);
+            note(o, "trailing_bytes",
+                 "bytes after the last row are ignored, because the header declares no more rows",
+                 o->offset);
             o->trailing = true;
         }
         o->offset += (uint64_t)(end - p);

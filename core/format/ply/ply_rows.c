@@ -18,12 +18,16 @@ static he_status at_place(const he_ply_rows *rows, he_status status, he_error *e
 
 /* --- mapping properties to attributes --- */
 
-static void note_ignored(const he_ply_rows *rows, const he_ply_property *property)
+/* Warns that a property is ignored. `why` is the text of the warning if the property is no list. */
+static void note_ignored(const he_ply_rows *rows, const he_ply_property *property, const char *why)
 {
     he_warnings_add(
         &rows->into->warnings,
         &(he_occurrence){.code = property->list ? "ignored_list" : "ignored_property",
-                         .text = property->list ? "ignored: list property" : "ignored: property",
+                         .text = property->list
+                                     ? "list property % is ignored, because only lists of vertex "
+                                       "indices and texture coordinates are read"
+                                     : why,
                          .subject = property->name,
                          .length = strlen(property->name),
                          .place = HE_PLACE_LINE,
@@ -96,7 +100,10 @@ static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind do
             continue;
         }
         if (property->list || !property->nameable || has_column(soup, domain, property->name)) {
-            note_ignored(rows, property);
+            note_ignored(rows, property,
+                         property->nameable
+                             ? "property % is ignored, because another attribute has its name"
+                             : "property % is ignored, because no attribute can have this name");
             continue;
         }
         he_type type = he_ply_type_column(property->type);
@@ -151,15 +158,14 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
                           "property '%s' is not a list", property->name);
     }
     if (property->type >= HE_PLY_FLOAT) {
-        he_warnings_add(
-            &rows->into->warnings,
-            &(he_occurrence){
-                .code = "fraction_indices",
-                .text = "accepted, although it is not an integer type: vertex indices of type",
-                .subject = he_ply_type_name(property->type),
-                .length = strlen(he_ply_type_name(property->type)),
-                .place = HE_PLACE_LINE,
-                .at = property->line});
+        he_warnings_add(&rows->into->warnings,
+                        &(he_occurrence){.code = "fraction_indices",
+                                         .text = "vertex indices of type % are read, although "
+                                                 "indices should have an integer type",
+                                         .subject = he_ply_type_name(property->type),
+                                         .length = strlen(he_ply_type_name(property->type)),
+                                         .place = HE_PLACE_LINE,
+                                         .at = property->line});
     }
     rows->targets[e->first + k].role = role;
     return HE_OK;
@@ -201,18 +207,21 @@ static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_erro
         return status == HE_OK ? map_attributes(rows, e, HE_FACE, err) : status;
     }
     if (strcmp(e->name, "tristrips") != 0) {
-        he_warnings_add(&rows->into->warnings, &(he_occurrence){.code = "ignored_element",
-                                                                .text = "ignored: element",
-                                                                .subject = e->name,
-                                                                .length = strlen(e->name),
-                                                                .place = HE_PLACE_LINE,
-                                                                .at = e->line});
+        he_warnings_add(&rows->into->warnings,
+                        &(he_occurrence){.code = "ignored_element",
+                                         .text = "element % is ignored, because only vertices, "
+                                                 "faces and triangle strips are read",
+                                         .subject = e->name,
+                                         .length = strlen(e->name),
+                                         .place = HE_PLACE_LINE,
+                                         .at = e->line});
         return HE_OK;
     }
     status = map_corners(rows, e, HE_PLY_STRIP, err);
     for (size_t k = 0; k < e->properties && status == HE_OK; k++) {
         if (rows->targets[e->first + k].role == HE_PLY_IGNORED) {
-            note_ignored(rows, &rows->header->properties[e->first + k]);
+            note_ignored(rows, &rows->header->properties[e->first + k],
+                         "property % is ignored, because triangle strips have no attributes");
         }
     }
     return status;
@@ -343,14 +352,14 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
     he_column *column = target->column;
     bool whole = column->type == HE_INT32 || column->type == HE_UINT32;
     if (!whole && !(fabs(value) <= (column->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_warnings_add(
-            &rows->into->warnings,
-            &(he_occurrence){.code = "not_finite",
-                             .text = "set to 0, because they are not finite: values of attribute",
-                             .subject = column->name,
-                             .length = strlen(column->name),
-                             .place = rows->unit,
-                             .at = rows->at});
+        he_warnings_add(&rows->into->warnings,
+                        &(he_occurrence){
+                            .code = "not_finite",
+                            .text = "a value of attribute % is read as 0, because it is not finite",
+                            .subject = column->name,
+                            .length = strlen(column->name),
+                            .place = rows->unit,
+                            .at = rows->at});
         value = 0;
     }
     if (target->full != 1) {
@@ -503,14 +512,14 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
 {
     unsigned char *at = he_column_row(rows->uv, corner);
     if (!(fabs(value) <= (rows->uv->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_warnings_add(
-            &rows->into->warnings,
-            &(he_occurrence){.code = "not_finite",
-                             .text = "set to 0, because they are not finite: values of attribute",
-                             .subject = "uv",
-                             .length = strlen("uv"),
-                             .place = rows->unit,
-                             .at = rows->at});
+        he_warnings_add(&rows->into->warnings,
+                        &(he_occurrence){
+                            .code = "not_finite",
+                            .text = "a value of attribute % is read as 0, because it is not finite",
+                            .subject = "uv",
+                            .length = strlen("uv"),
+                            .place = rows->unit,
+                            .at = rows->at});
         value = 0;
     }
     float narrow = (float)value;
@@ -531,10 +540,10 @@ static he_status end_uvs(he_ply_rows *rows, he_error *err)
             &rows->into->warnings,
             &(he_occurrence){
                 .code = count == 0 ? "faces_without_uv" : "texcoord_count",
-                .text = count == 0
-                            ? "set to 0, because the file gives none: texture coordinates of a face"
-                            : "set to 0, because there are not two numbers for each corner: "
-                              "texture coordinates of a face",
+                .text = count == 0 ? "the texture coordinates of a face are set to 0, because the "
+                                     "file gives none for it"
+                                   : "the texture coordinates of a face are set to 0, because the "
+                                     "file does not give two numbers for each of its corners",
                 .place = rows->unit,
                 .at = rows->at});
         return HE_OK;

@@ -135,7 +135,9 @@ static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain,
     }
     if (column != NULL && group->color && !he_colors_are_bytes(w->mesh, column, &lost)) {
         he_warnings_add_count(warnings, "rounded_colors",
-                              "rounded to components of 8 bits: a colour", lost);
+                              "a colour is rounded to 8 bits per component, because PLY files are "
+                              "written with colours of bytes",
+                              lost);
     }
 }
 
@@ -200,8 +202,8 @@ static he_status split(ply_writer *w, he_progress *progress, he_warnings *warnin
         add(w, HE_PLY_VERTEX_MARK, NULL, 0, HE_PLY_UINT32);
         w->outputs[w->count - 1].own = true;
         he_warnings_add_count(warnings, "split_vertices",
-                              "duplicated for other programs because values of its corners differ, "
-                              "and merged again when hedge reads the file: a vertex",
+                              "a vertex is duplicated for other programs, because values of its "
+                              "corners differ, and hedge merges the copies when it reads the file",
                               w->splits.copies.count);
     }
     return status;

@@ -144,12 +144,14 @@ static he_status read_word(stl *o, const he_line *line, const char **p, he_error
     } else if (is(word, end, "endfacet")) {
         return end_facet(o, line, word, err);
     } else if (!is(word, end, "outer") && !is(word, end, "loop") && !is(word, end, "endloop")) {
-        he_warnings_add(&o->into->warnings, &(he_occurrence){.code = "unknown_keyword",
-                                                             .text = "ignored: unknown keyword",
-                                                             .subject = word,
-                                                             .length = (size_t)(end - word),
-                                                             .place = HE_PLACE_LINE,
-                                                             .at = line->number});
+        he_warnings_add(
+            &o->into->warnings,
+            &(he_occurrence){.code = "unknown_keyword",
+                             .text = "unknown keyword % is ignored, with the rest of its line",
+                             .subject = word,
+                             .length = (size_t)(end - word),
+                             .place = HE_PLACE_LINE,
+                             .at = line->number});
         o->unknown = o->unknown == 0 ? line->number : o->unknown;
         *p = line->end;
     }
@@ -193,11 +195,13 @@ static he_status finish_text(stl *o, he_error *err)
                           "not an STL file: it has no facets");
     }
     if (o->in_solid) {
-        he_warnings_add(&o->into->warnings,
-                        &(he_occurrence){.code = "no_endsolid",
-                                         .text = "the file ends before its last endsolid",
-                                         .place = HE_PLACE_LINE,
-                                         .at = last_line});
+        he_warnings_add(
+            &o->into->warnings,
+            &(he_occurrence){.code = "no_endsolid",
+                             .text =
+                                 "the last solid of the file is read, although it has no endsolid",
+                             .place = HE_PLACE_LINE,
+                             .at = last_line});
     }
     return he_face_groups_finish(&o->object, &o->into->soup, "object", err);
 }
@@ -263,7 +267,8 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
     if (p[0] != 0 || p[1] != 0) {
         he_warnings_add(&o->into->warnings,
                         &(he_occurrence){.code = "attribute_bytes",
-                                         .text = "ignored: attribute bytes of a facet",
+                                         .text = "the attribute bytes of a facet are ignored, "
+                                                 "because they have no standard meaning",
                                          .place = HE_PLACE_BYTE,
                                          .at = at});
     }
@@ -278,7 +283,8 @@ static he_status take_trailing(stl *o, size_t n, he_error *err)
     if (o->trailing == 0) {
         he_warnings_add(&o->into->warnings,
                         &(he_occurrence){.code = "trailing_bytes",
-                                         .text = "ignored: bytes after the last facet",
+                                         .text = "bytes after the last facet are ignored, because "
+                                                 "the header declares no more facets",
                                          .place = HE_PLACE_BYTE,
                                          .at = o->offset});
     }
@@ -427,7 +433,8 @@ static he_status stl_finish(void *state, he_error *err)
     }
     if (status == HE_OK) {
         he_warnings_add_count(&o->into->warnings, "welded",
-                              "merged with another at the same position: a corner",
+                              "a corner of a facet is merged with another at the same position, "
+                              "because STL files do not tell which facets are connected",
                               soup->corner_count - soup->vertex_count);
     }
     return status;

@@ -32,9 +32,12 @@ static void stl_close(void *state)
 
 static void note_cuts(const he_export_triangles *cuts, he_warnings *warnings)
 {
-    he_warnings_add_count(warnings, "triangulated", "cut into triangles: a face", cuts->polygons);
+    he_warnings_add_count(warnings, "triangulated",
+                          "a face is cut into triangles, because STL files hold only triangles",
+                          cuts->polygons);
     he_warnings_add_count(warnings, "turned_triangles",
-                          "cut into triangles of which some have no area or are reversed: a face",
+                          "a face is cut into triangles of which some have no area or are "
+                          "reversed, because no better cut was found",
                           cuts->turned);
 }
 
@@ -106,14 +109,17 @@ static he_status note_differences(const stl_writer *w, again *a, he_warnings *wa
     }
     if (status == HE_OK) {
         he_warnings_add_count(warnings, "isolated_vertices",
-                              "not written, because it belongs to no face: a vertex", a->isolated);
+                              "a vertex is not written, because it belongs to no face",
+                              a->isolated);
         he_warnings_add_count(warnings, "merged",
-                              "merged with another vertex when the file is read, because both have "
-                              "the same position: a vertex",
+                              "a vertex will be merged with another when the file is read, because "
+                              "both have the same position",
                               merged);
-        he_warnings_add_count(warnings, "no_mesh_again",
-                              "refused when the file is read without repairs: a facet or vertex",
-                              defects);
+        he_warnings_add_count(
+            warnings, "no_mesh_again",
+            "a facet or vertex will be refused when the file is read without repairs, because "
+            "merged vertices and cut faces leave no valid mesh there",
+            defects);
     }
     return status;
 }

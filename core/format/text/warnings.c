@@ -1,5 +1,7 @@
 #include "format/text/warnings.h"
 
+#include <assert.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,8 +21,17 @@ static void add_spot(he_warnings *warnings, size_t warning, const he_occurrence 
     }
 }
 
+/* Returns true if a text has the form that warnings.h describes. */
+static bool is_sentence(const char *text, bool has_subject)
+{
+    const char *mark = strchr(text, '%');
+    return strlen(text) < HE_WARNING_SENTENCE && strchr(text, ';') == NULL &&
+           (mark != NULL) == has_subject && (mark == NULL || strchr(mark + 1, '%') == NULL);
+}
+
 void he_warnings_add(he_warnings *warnings, const he_occurrence *seen)
 {
+    assert(is_sentence(seen->text, seen->subject != NULL));
     char name[HE_WARNING_SUBJECT];
     const char *subject = seen->subject;
     he_quote(subject, subject == NULL ? NULL : subject + seen->length, name, sizeof name);
@@ -59,8 +70,13 @@ void he_warnings_add_count(he_warnings *warnings, const char *code, const char *
 size_t he_warning_text(const he_warning *warning, char *text, size_t size)
 {
     char subject[HE_WARNING_SUBJECT + 4] = "", times[40] = "", where[48] = "";
-    if (warning->subject[0] != '\0') {
-        snprintf(subject, sizeof subject, " '%s'", warning->subject);
+    int before = (int)strcspn(warning->text, "%");
+    const char *after = warning->text + before;
+    if (*after == '%') {
+        const char *quote = warning->subject[0] != '\0' ? "'" : "";
+        const char *name = warning->subject[0] != '\0' ? warning->subject : "(unnamed)";
+        snprintf(subject, sizeof subject, "%s%s%s", quote, name, quote);
+        after++;
     }
     if (warning->count > 1) {
         snprintf(times, sizeof times, ", %llu times", (unsigned long long)warning->count);
@@ -70,6 +86,7 @@ size_t he_warning_text(const he_warning *warning, char *text, size_t size)
                  warning->place == HE_PLACE_LINE ? "on line" : "at byte",
                  (unsigned long long)warning->at);
     }
-    int length = snprintf(text, size, "%s%s%s%s", warning->text, subject, times, where);
+    int length =
+        snprintf(text, size, "%.*s%s%s%s%s", before, warning->text, subject, after, times, where);
     return length < 0 ? 0 : (size_t)length < size ? (size_t)length : size - 1;
 }
