@@ -282,14 +282,15 @@ const he_op he_face_rows[] = {
                                                .doc =
                                                    "The faces to cut. In each face, the triangle "
                                                    "at its stored half-edge keeps the id."}},
-        .results = {[FACE_TRIANGULATE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                                    "The diagonals."},
-                    [FACE_TRIANGULATE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                                    "The new faces."},
-                    [FACE_TRIANGULATE_OUT_DEGENERATE] =
-                        {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
-                         "The faces in which a triangle has no area or is turned over, as seen in "
-                         "the plane of the face."}},
+        .results =
+            {[FACE_TRIANGULATE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                             "The diagonals."},
+             [FACE_TRIANGULATE_OUT_FACES] = {"faces",
+                                             HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
+             [FACE_TRIANGULATE_OUT_DEGENERATE] =
+                 {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
+                  "The faces in which a triangle has no area or is turned over, as seen in "
+                  "the plane of the face."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .pace = 40,
