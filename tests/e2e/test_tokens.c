@@ -72,7 +72,7 @@ static void a_daemon_asks_for_tokens_and_reads_its_file_again(void **state)
     assert_int_equal(l->status, 200);
     write_file("wrong", boss.line);
     assert_int_equal(kill(daemon_pid(d), SIGHUP), 0);
-    char *log = daemon_wait_log(d, "line 2: the line is not NAME ROLE", 1);
+    char *log = daemon_wait_log(d, "line 2: the line does not have the form NAME ROLE", 1);
     assert_null(strstr(log, alice.token));
     free(log);
     r = reply_expect(409, ask(c, &boss, "POST", "/v1/admin/reload", NULL));
