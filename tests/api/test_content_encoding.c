@@ -387,7 +387,7 @@ static void what_unfolds_counts_against_the_limits(void **state)
                 send_json(b, "POST", "/v1/meshes", both[c], text));
         memset(text, ' ', 8 << 20);
         text[8 << 20] = '\0';
-        refused(413, "body_too_large", "is more than 100 times its compressed size",
+        refused(413, "body_too_large", "larger than the allowed 100 times its compressed size",
                 send_json(b, "POST", "/v1/meshes", both[c], text));
         refused(400, "unexpected_body", "a request with the method GET must not have a body",
                 bench_send(b, "GET", "/livez", HEADERS("Content-Encoding", both[c]), "x"));

@@ -506,7 +506,7 @@ KNOWN = [
      'it is no valid glTF, also where the reference looks away'),
     ('glb', 'reference', 'unaligned-chunk', 'it is read, with a note'),
     ('ply', 'daemon', 'no properties|name of two|given twice|is an extra word', 'a header that is wrong'),
-    ('ply', 'daemon', 'rows that is more than a mesh can have', 'of rows without properties the reference reads any'),
+    ('ply', 'daemon', 'rows larger than a mesh can have', 'of rows without properties the reference reads any'),
 ]
 
 

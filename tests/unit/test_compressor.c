@@ -527,9 +527,12 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
             add(&named, bomb.data, bomb.length);
         }
         add(&after, bomb.data, bomb.length);
-        expect_refused(both[c], &named, 30000, API_BODY_TOO_LARGE, "more than 100 times");
-        expect_refused(both[c], &named, named.length, API_BODY_TOO_LARGE, "more than 100 times");
-        expect_refused(both[c], &after, 30000, API_BODY_TOO_LARGE, "more than 100 times");
+        expect_refused(both[c], &named, 30000, API_BODY_TOO_LARGE,
+                       "larger than the allowed 100 times");
+        expect_refused(both[c], &named, named.length, API_BODY_TOO_LARGE,
+                       "larger than the allowed 100 times");
+        expect_refused(both[c], &after, 30000, API_BODY_TOO_LARGE,
+                       "larger than the allowed 100 times");
         free(noise.data);
         free(bomb.data);
         free(named.data);
@@ -542,7 +545,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
         for (size_t i = 0; i < 20; i++) {
             add(&coded, part.data, part.length);
         }
-        expect_refused(both[c], &coded, 1000, API_BODY_TOO_LARGE, "more than 100 times");
+        expect_refused(both[c], &coded, 1000, API_BODY_TOO_LARGE,
+                       "larger than the allowed 100 times");
         free(part.data);
         free(coded.data);
     }

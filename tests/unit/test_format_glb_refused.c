@@ -98,7 +98,7 @@ static void json_to_the_letter(void **state)
         const char *words;
     } rows[] = {
         {"{\"asset\":{\"version\":\"2.0\"}", HE_SYNTAX, 26, "closing bracket"},
-        {"{\"asset\":{\"version\":\"2.0\"}},", HE_SYNTAX, 27, "there is more text after"},
+        {"{\"asset\":{\"version\":\"2.0\"}},", HE_SYNTAX, 27, "more text follows the JSON value"},
         {"\xEF\xBB\xBF{}", HE_SYNTAX, 0, "a value is expected"},
         {"{\"a\":1,}", HE_SYNTAX, 7, "a member's name"},
         {"{\"a\" 1}", HE_SYNTAX, 5, "':' is expected"},
@@ -334,8 +334,10 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
         /* A JSON value that should be a list but is none must be refused. If it were read like an
          * empty list, the mesh would be missing without an error. */
-        {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
-        {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
+        {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE,
+         "nodes/0/children: the value is not"},
+        {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE,
+         "nodes/0/children: the value is not"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0},{'children':'x'}]}", HE_BAD_VALUE,
          "nodes/1/children: the value is not an array"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0}],'scenes':-1}", HE_BAD_VALUE,

@@ -228,7 +228,7 @@ static void what_the_extension_forbids_is_refused(void **state)
         {CORNERS("'mode':'ATTRIBUTES','byteStride':16"), NULL, HE_BAD_VALUE, "'count' is missing"},
         {CORNERS("'count':4,'byteStride':16"), NULL, HE_BAD_VALUE, "'mode' is missing"},
         {CORNERS("'mode':'OTHER','count':4,'byteStride':16"), NULL, HE_UNSUPPORTED,
-         "/mode: this mode is not supported"},
+         "/mode: this value of \"mode\" is not supported"},
         {CORNERS("'mode':7,'count':4,'byteStride':16"), NULL, HE_UNSUPPORTED,
          "/mode: this mode is not"},
         {CORNERS("'mode':'ATTRIBUTES','filter':'COLOR','count':4,'byteStride':16"), NULL,

@@ -249,7 +249,7 @@ static void wrong_text_names_its_line(void **state)
         {"#\n4OFF\n3 1 3\n", HE_UNSUPPORTED, 2, "'4OFF' is not supported"},
         {"nOFF\n3 1 3\n", HE_UNSUPPORTED, 1, "'nOFF' is not supported"},
         {"STCN4nOFF\n3 1 3\n", HE_UNSUPPORTED, 1, "is not supported"},
-        {"OFF BINARY 3 1 3\n", HE_SYNTAX, 1, "'3' is not allowed after BINARY"},
+        {"OFF BINARY 3 1 3\n", HE_SYNTAX, 1, "'3' is not allowed on the line of the word BINARY"},
         {"OFF BINARYS\n", HE_SYNTAX, 1, "'BINARYS' is not a count"},
         {"OFF\n-3 1 3\n", HE_SYNTAX, 2, "'-3' is not a count"},
         {"OFF\n3.0 1 3\n", HE_SYNTAX, 2, "'3.0' is not a count"},

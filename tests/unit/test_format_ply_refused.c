@@ -34,9 +34,10 @@ static void wrong_text_names_its_line(void **state)
         {ASCII "element vertex -1\n", HE_SYNTAX, 3, "'-1' is not a count"},
         {ASCII "element vertex 1.5\n", HE_SYNTAX, 3, "'1.5' is not a count"},
         {ASCII "element vertex 4294967295\n", HE_BAD_VALUE, 3, "'4294967295' is a number of rows"},
-        {ASCII "element vertex 2147483647\n", HE_BAD_VALUE, 3, "more than a mesh can have"},
-        {ASCII "element face 18446744073709551616\n", HE_BAD_VALUE, 3, "more than a mesh can have"},
-        {ASCII "element x 281474976710657\n", HE_BAD_VALUE, 3, "more than a mesh can have"},
+        {ASCII "element vertex 2147483647\n", HE_BAD_VALUE, 3, "larger than a mesh can have"},
+        {ASCII "element face 18446744073709551616\n", HE_BAD_VALUE, 3,
+         "larger than a mesh can have"},
+        {ASCII "element x 281474976710657\n", HE_BAD_VALUE, 3, "larger than a mesh can have"},
         {ASCII "element vertex 1 2\n", HE_SYNTAX, 3, "an extra word"},
         {ASCII "element vertex 1\nelement vertex 1\n", HE_SYNTAX, 4, "the name of two elements"},
         {ASCII "property float x\n", HE_SYNTAX, 3, "before the first element"},
@@ -240,8 +241,11 @@ static void counts_are_not_believed(void **state)
         he_status status;
         const char *words;
     } rows[] = {
-        {"element vertex 4294967295\n" XYZ, {0, 0}, HE_BAD_VALUE, "more than a mesh can have"},
-        {"element vertex 18446744073709551616\n" XYZ, {0, 0}, HE_BAD_VALUE, "more than a mesh can"},
+        {"element vertex 4294967295\n" XYZ, {0, 0}, HE_BAD_VALUE, "larger than a mesh can have"},
+        {"element vertex 18446744073709551616\n" XYZ,
+         {0, 0},
+         HE_BAD_VALUE,
+         "larger than a mesh can"},
         {"element vertex 357913942\n" XYZ, {0, 0}, HE_SYNTAX, "after 0 of the 357913942 rows"},
         {"element vertex 2147483646\n" XYZ, {0, 0}, HE_SYNTAX, "after 0 of the 2147483646 rows"},
         {"element x 4000000000\nelement vertex 0\n" XYZ, {0, 0}, HE_SYNTAX, "no properties"},

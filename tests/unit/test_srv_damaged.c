@@ -60,8 +60,9 @@ static void make_damaged(kept_damage how)
 static void what_is_damaged_is_named(void **state)
 {
     (void)state;
-    static const char *const parts[] = {
-        [KEPT_CUT] = "record 6, byte", [KEPT_TURNED] = "record 6", [KEPT_SUM] = "its sum is wrong"};
+    static const char *const parts[] = {[KEPT_CUT] = "record 6, at its byte",
+                                        [KEPT_TURNED] = "record 6",
+                                        [KEPT_SUM] = "its sum is wrong"};
     for (int how = KEPT_CUT; how <= KEPT_SUM; how++) {
         make_damaged((kept_damage)how);
         for (int again = 0; again < 2; again++) {

@@ -477,10 +477,10 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 2 AND number = 3) "
          "WHERE mesh = 2 AND number = 4",
          "record 4 the store has a record with the number 3"},
-        {"UPDATE record SET bytes = x'00' WHERE mesh = 2 AND number = 2", "record 2, byte"},
+        {"UPDATE record SET bytes = x'00' WHERE mesh = 2 AND number = 2", "record 2, at its byte"},
         {"DELETE FROM part WHERE part = 0", "part 0 of the mesh data after record 7"},
         {"DELETE FROM part WHERE part = 2", "part 2 of the mesh data after record 7 has"},
-        {"UPDATE part SET bytes = x'0011223344556677' WHERE part = 1", "part 1 of the content"},
+        {"UPDATE part SET bytes = x'0011223344556677' WHERE part = 1", "part 1 of the mesh data"},
         {"DELETE FROM snapshot", "the mesh data of record 7 is missing"},
         {"UPDATE snapshot SET parts = parts - 1", "the snapshot of record 7 has a wrong checksum"},
         {"UPDATE mesh SET faces = faces + 1 WHERE id = 'bad'", "wrong checksum"},
