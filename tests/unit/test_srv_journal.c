@@ -477,7 +477,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         {"UPDATE record SET bytes = (SELECT bytes FROM record WHERE mesh = 2 AND number = 3) "
          "WHERE mesh = 2 AND number = 4",
          "record 4 the store has a record with the number 3"},
-        {"UPDATE record SET bytes = x'00' WHERE mesh = 2 AND number = 2", "record 2, at its byte"},
+        {"UPDATE record SET bytes = x'00' WHERE mesh = 2 AND number = 2", "record 2, byte"},
         {"DELETE FROM part WHERE part = 0", "part 0 of the mesh data after record 7"},
         {"DELETE FROM part WHERE part = 2", "part 2 of the mesh data after record 7 has"},
         {"UPDATE part SET bytes = x'0011223344556677' WHERE part = 1", "part 1 of the mesh data"},
