@@ -123,14 +123,18 @@ static int compare(const void *a, const void *b)
 static void no_id_is_given_twice(void **state)
 {
     (void)state;
-    enum { SPANS = 2000 };
-    static char ids[SPANS][SRV_SPAN_ID + 1];
-    for (size_t i = 0; i < SPANS; i++) {
-        srv_trace trace = read_values(&cases[0].value, 1);
-        memcpy(ids[i], trace.span_id, sizeof *ids);
+    enum { TRACES = 1000, IDS = 3 * TRACES };
+    static const char *const malformed = "";
+    static char ids[IDS][SRV_SPAN_ID + 1];
+    for (size_t i = 0; i < IDS; i += 3) {
+        srv_trace trace = read_values(&malformed, 1);
+        memcpy(ids[i], trace.span_id, SRV_SPAN_ID);
+        /* The id of a new trace consists of two ids of this kind. */
+        memcpy(ids[i + 1], trace.trace_id, SRV_SPAN_ID);
+        memcpy(ids[i + 2], trace.trace_id + SRV_SPAN_ID, SRV_SPAN_ID);
     }
-    qsort(ids, SPANS, sizeof *ids, compare);
-    for (size_t i = 1; i < SPANS; i++) {
+    qsort(ids, IDS, sizeof *ids, compare);
+    for (size_t i = 1; i < IDS; i++) {
         assert_string_not_equal(ids[i - 1], ids[i]);
     }
 }
