@@ -352,12 +352,6 @@ void api_out_key_u64(api_out *out, const char *key, uint64_t value)
     api_out_u64(out, value);
 }
 
-void api_out_key_i64(api_out *out, const char *key, int64_t value)
-{
-    api_out_key(out, key);
-    api_out_i64(out, value);
-}
-
 void api_out_key_number(api_out *out, const char *key, double value)
 {
     api_out_key(out, key);
@@ -386,12 +380,6 @@ void api_out_key_vec3(api_out *out, const char *key, he_vec3 value)
 {
     api_out_key(out, key);
     api_out_vec3(out, value);
-}
-
-void api_out_key_time(api_out *out, const char *key, double seconds)
-{
-    api_out_key(out, key);
-    api_out_time(out, seconds);
 }
 
 void api_out_key_null(api_out *out, const char *key)

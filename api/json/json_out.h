@@ -72,13 +72,11 @@ void api_out_raw(api_out *out, const char *json, size_t length);
 /* The api_out_key_* functions write a key and its value. */
 void api_out_key_bool(api_out *out, const char *key, bool value);
 void api_out_key_u64(api_out *out, const char *key, uint64_t value);
-void api_out_key_i64(api_out *out, const char *key, int64_t value);
 void api_out_key_number(api_out *out, const char *key, double value);
 void api_out_key_string(api_out *out, const char *key, const char *string);
 void api_out_key_id(api_out *out, const char *key, uint32_t id);
 void api_out_key_ids(api_out *out, const char *key, const uint32_t *ids, size_t count);
 void api_out_key_vec3(api_out *out, const char *key, he_vec3 value);
-void api_out_key_time(api_out *out, const char *key, double seconds);
 void api_out_key_null(api_out *out, const char *key);
 
 #endif

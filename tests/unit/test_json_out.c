@@ -39,7 +39,8 @@ static void values_are_separated(void **state)
     api_out_pairs(&out, (const uint32_t[]){30, 5, 31, 5}, 4);
     api_out_key_vec3(&out, "p", (he_vec3){0.1, -2, 1e300});
     api_out_key_u64(&out, "big", UINT64_MAX);
-    api_out_key_i64(&out, "small", INT64_MIN);
+    api_out_key(&out, "small");
+    api_out_i64(&out, INT64_MIN);
     api_out_object_end(&out);
     assert_text(&text, "{\"twin\":6,\"face\":null,\"boundary\":true,\"list\":[[],{},null],"
                        "\"ids\":[4294967293,null,0],\"none\":[],\"pairs\":[[30,5],[31,5]],"
@@ -155,7 +156,8 @@ static void write_much(api_text *text)
         api_out_key_string(&out, "name", "a \"long\" name that makes the text grow");
         api_out_key_ids(&out, "ids", &i, 1);
         api_out_key_vec3(&out, "p", (he_vec3){i, 0.1, 1});
-        api_out_key_time(&out, "time", i);
+        api_out_key(&out, "time");
+        api_out_time(&out, i);
         api_out_object_end(&out);
     }
     api_out_array_end(&out);
