@@ -174,9 +174,13 @@ const api_parameter api_parameter_small = {
     "Components count as small if the diagonal of their bounding box is at most this long. "
     "Default: 1e-2 of the diagonal of the bounding box of the edges."};
 const api_parameter api_parameter_dry_run = {
-    "dry_run", API_PARAM_FLAG,
-    0,         0,
-    NULL,      "The type of the numbers in the body, if the body is application/octet-stream."};
+    "dry_run",
+    API_PARAM_FLAG,
+    0,
+    0,
+    NULL,
+    "true: change nothing, and answer as if the change had been made. A body in JSON has "
+    "the member `dry_run` instead."};
 const api_parameter api_parameter_rule = {
     "rule",
     API_PARAM_CHOICE,
