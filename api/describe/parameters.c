@@ -139,6 +139,22 @@ const api_parameter api_parameter_ids = {"ids",       API_PARAM_TEXT, 1,
 const api_parameter api_parameter_type = {
     "type", API_PARAM_CHOICE, 0,
     0,      api_type_names,   "The type of the numbers, if the body is application/octet-stream."};
+const api_parameter api_parameter_type_out = {
+    "type",
+    API_PARAM_CHOICE,
+    0,
+    0,
+    api_type_names,
+    "The type of the numbers in an answer as application/octet-stream: the type of the attribute, "
+    "or float for one of doubles, or double for one of floats. Default: the attribute's type."};
+const api_parameter api_parameter_type_in = {
+    "type",
+    API_PARAM_CHOICE,
+    0,
+    0,
+    api_type_names,
+    "The type of the numbers, if the body is application/octet-stream: the type of the attribute, "
+    "or float for one of doubles, or double for one of floats. Default: the attribute's type."};
 const api_parameter api_parameter_components = {
     "components",
     API_PARAM_U64,

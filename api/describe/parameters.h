@@ -13,8 +13,8 @@ extern const api_parameter api_parameter_limit, api_parameter_cursor, api_parame
     api_parameter_turning, api_parameter_last_seen, api_parameter_format, api_parameter_format_out,
     api_parameter_encoding, api_parameter_compress, api_parameter_name, api_parameter_repair,
     api_parameter_tolerance, api_parameter_hole_edges, api_parameter_identity, api_parameter_by,
-    api_parameter_ids, api_parameter_type, api_parameter_components, api_parameter_meets,
-    api_parameter_merge, api_parameter_flat, api_parameter_small, api_parameter_dry_run,
-    api_parameter_rule;
+    api_parameter_ids, api_parameter_type, api_parameter_type_out, api_parameter_type_in,
+    api_parameter_components, api_parameter_meets, api_parameter_merge, api_parameter_flat,
+    api_parameter_small, api_parameter_dry_run, api_parameter_rule;
 
 #endif

@@ -268,15 +268,18 @@ static const api_route routes[] = {
      .flags = API_EXPENSIVE | API_LONG,
      .produces = octets_too,
      .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor,
-                    &api_parameter_ids},
+                    &api_parameter_ids, &api_parameter_type_out},
      .headers = {&next_page},
-     .statuses = {200, 202, 304, 410},
+     .statuses = {200, 202, 304, 410, 422},
      .response = "attribute_values",
      .summary = "Values of an attribute",
      .doc = "A page of elements in the order of ids, or the elements in `ids`. As "
-            "application/octet-stream: a value for each id that was ever given out, where deleted "
-            "elements have the default; a bool is one byte, the other types are 4 or 8 bytes, "
-            "little-endian, without gaps."},
+            "application/octet-stream: the values of the elements in `ids` in their order, or a "
+            "value for each id that was ever given out, where deleted elements have the default; a "
+            "bool is one byte, the other types are 4 or 8 bytes, little-endian, without gaps. "
+            "The path `/attributes/vertices/position` stands for the positions of the vertices, "
+            "which read like an attribute of 3 doubles. `attributes/vertices/position` as "
+            "application/octet-stream is the quickest way to an array of all points."},
     {.method = "PUT",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "replace_attribute",
@@ -300,7 +303,9 @@ static const api_route routes[] = {
      .doc = "Writes the whole attribute: values for all elements, one value for all, or the "
             "default. As application/octet-stream: values as GET gives them, described by the "
             "query parameters; the values of deleted elements are ignored. The change is one "
-            "revision, which can be undone."},
+            "revision, which can be undone. A PUT to `/attributes/vertices/position` moves all "
+            "vertices; there the default of `type` is double, and that of `components` is 3. "
+            "Vertices whose position stays the same are not written, so they may be locked."},
     {.method = "PATCH",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "update_attribute",
@@ -310,14 +315,17 @@ static const api_route routes[] = {
      .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_COSTLY | API_IDEMPOTENCY_KEY | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
-     .consumes = json,
+     .consumes = octets_too,
      .produces = json,
+     .parameters = {&api_parameter_type_in, &api_parameter_dry_run},
      .statuses = {200, 204, 409, 412, 413, 415, 422},
      .request = "attribute_patch",
      .response = "attribute_written",
      .summary = "Write values by ids",
-     .doc = "Writes a value for each id, or one value for all ids. The change is one revision, "
-            "which can be undone; there is no new revision if no value changes."},
+     .doc = "Writes a value for each id, or one value for all ids. As application/octet-stream: "
+            "all ids, of 4 bytes each, and then their values, little-endian, without gaps. The "
+            "change is one revision, which can be undone; there is no new revision if no value "
+            "changes. A PATCH of `/attributes/vertices/position` moves the vertices."},
     {.method = "DELETE",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "delete_attribute",
@@ -330,7 +338,8 @@ static const api_route routes[] = {
      .response = "attribute_written",
      .summary = "Delete an attribute",
      .doc =
-         "Deletes the attribute and its values. The change is one revision, which can be undone."},
+         "Deletes the attribute and its values. The change is one revision, which can be undone. "
+         "The positions of vertices cannot be deleted."},
 
     /* queries */
     {.method = "POST",

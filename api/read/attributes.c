@@ -4,6 +4,7 @@
 
 #include "api/document/attribute_path.h"
 #include "api/json/attribute_value.h"
+#include "api/read/attribute_octets.h"
 #include "api/read/records.h"
 #include "api/request/mesh_access.h"
 
@@ -44,17 +45,26 @@ void api_attributes_list(api_exchange *x)
     }
 }
 
+bool api_attribute_is_position(const api_exchange *x)
+{
+    return x->kind == HE_VERTEX && strcmp(x->attribute, API_POSITION) == 0;
+}
+
 const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
 {
+    if (api_attribute_is_position(x)) {
+        he_column *positions = api_arena_array(&x->arena, 1, sizeof *positions);
+        if (positions == NULL) {
+            api_fail_memory(x);
+        } else {
+            he_mesh_position_column(mesh, positions);
+        }
+        return positions;
+    }
     const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
     if (column == NULL) {
-        bool position = x->kind == HE_VERTEX && strcmp(x->attribute, API_POSITION) == 0;
-        api_fail(
-            x, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"%s", he_kind_plural(x->kind),
-            x->attribute,
-            position
-                ? ": the positions of vertices are not an attribute; read them with the vertices"
-                : "");
+        api_fail(x, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"",
+                 he_kind_plural(x->kind), x->attribute);
     }
     return column;
 }
@@ -243,55 +253,6 @@ static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *c
                              .count = chosen->count});
 }
 
-/* --- values as binary data --- */
-
-typedef struct rows {
-    const he_column *column;
-    uint64_t next, end; /* positions in bytes */
-} rows;
-
-static void free_rows(void *stream)
-{
-    he_mem_free(stream);
-}
-
-/* Writes all values of an attribute as binary data. Elements after the last value that is stored
- * have the default value. */
-static int64_t read_rows(void *stream, char *buffer, size_t size)
-{
-    rows *r = stream;
-    const he_column *column = r->column;
-    uint64_t stored = (uint64_t)column->rows * column->row_bytes, left = r->end - r->next;
-    size_t length = left < size ? (size_t)left : size;
-    if (r->next < stored) {
-        length = stored - r->next < length ? (size_t)(stored - r->next) : length;
-        memcpy(buffer, column->data + r->next, length);
-    } else {
-        for (size_t i = 0; i < length; i++) {
-            buffer[i] = (char)column->fallback[(r->next + i) % column->row_bytes];
-        }
-    }
-    r->next += length;
-    return (int64_t)length;
-}
-
-static void answer_octets(api_exchange *x)
-{
-    if (!api_keep_mesh(x)) {
-        return;
-    }
-    const he_column *column = api_attribute_find(x, x->content);
-    rows *r = he_mem_zero(1, sizeof *r);
-    if (r == NULL) {
-        api_fail_memory(x);
-        return;
-    }
-    *r = (rows){.column = column};
-    r->end = (uint64_t)he_mesh_issued(x->content, x->kind) * column->row_bytes;
-    const api_stream stream = {(int64_t)r->end, read_rows, r, free_rows};
-    api_answer_stream(x, 200, "application/octet-stream", &stream);
-}
-
 /* --- handlers --- */
 
 static bool wants_octets(const api_exchange *x)
@@ -308,16 +269,13 @@ bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     *chosen = (choice){.from = 0};
     x->state = chosen;
     x->reading.tag = wants_octets(x) ? "octets" : "values";
-    for (size_t i = 0; i < x->query.count && wants_octets(x); i++) {
-        if (strcmp(x->query.pairs[i].name, "revision") != 0) {
-            return api_fail(
-                x, API_BAD_PARAMETER,
-                "\"%s\" cannot be combined with application/octet-stream, which has all values",
-                x->query.pairs[i].name);
-        }
+    if (!wants_octets(x) && api_param_text(x, "type") != NULL) {
+        return api_fail(x, API_BAD_PARAMETER,
+                        "\"type\" is a parameter for application/octet-stream only");
     }
-    bool some = api_param_text(x, "ids") != NULL;
-    return api_attribute_find(x, mesh) != NULL &&
+    const bool some = api_param_text(x, "ids") != NULL;
+    const he_column *column = api_attribute_find(x, mesh);
+    return column != NULL && (!wants_octets(x) || api_attribute_octets_admit(x, column)) &&
            (some ? read_some(x, mesh, chosen) : read_page(x, chosen)) &&
            api_cost_of_mesh(x, mesh, out);
 }
@@ -325,12 +283,12 @@ bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 void api_attribute_get(api_exchange *x)
 {
     const choice *chosen = x->state;
+    const he_column *column = NULL;
     if (wants_octets(x)) {
-        answer_octets(x);
+        api_attribute_octets(x, chosen->of, chosen->count);
+    } else if ((column = api_attribute_find(x, x->content)) == NULL) {
         return;
-    }
-    const he_column *column = api_attribute_find(x, x->content);
-    if (chosen->of != NULL) {
+    } else if (chosen->of != NULL) {
         answer_some(x, x->content, column, chosen);
     } else {
         answer_page(x, x->content, column, chosen->from);

@@ -544,6 +544,9 @@ static bool parse_body(api_exchange *x)
     if (x->received == 0) {
         return kind == API_BODY_OPTION || api_refuse_empty(x);
     }
+    if (x->media_in != NULL && api_media_is(x->media_in, "application/octet-stream")) {
+        return true; /* the handler reads the bytes in x->body */
+    }
     api_in_options options = {.values = API_MAX_CONTROL_VALUES};
     if (kind == API_BODY_EDITS) {
         x->ops.name = "ops";

@@ -166,6 +166,19 @@ const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const 
     return NULL;
 }
 
+void he_mesh_position_column(const he_mesh *mesh, he_column *out)
+{
+    *out = (he_column){.name = "position",
+                       .domain = HE_VERTEX,
+                       .type = HE_DOUBLE,
+                       .rule = HE_INTERPOLATE,
+                       .components = 3,
+                       .row_bytes = sizeof(he_vec3),
+                       .data = (unsigned char *)mesh->c.position,
+                       .rows = mesh->c.vertices.issued,
+                       .capacity = mesh->c.vertices.issued};
+}
+
 size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column)
 {
     size_t slot = 0;

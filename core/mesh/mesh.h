@@ -151,6 +151,9 @@ size_t he_mesh_columns(const he_mesh *mesh);
 /* Returns the attribute column in slot (array entry) i; NULL if the column was dropped. */
 const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
 const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
+/* Describes the positions of the vertices as a column named "position", of three doubles for each
+ * issued id. The rows are the mesh's own memory; nothing may be written or freed through *out. */
+void he_mesh_position_column(const he_mesh *mesh, he_column *out);
 /* Returns the index of the slot in which the mesh holds an attribute column. */
 size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column);
 /* Returns the mesh's table of materials, which is valid until a material is added or removed. */

@@ -326,7 +326,8 @@ static const struct {
     int status;
     const char *code, *pointer, *body;
 } refusals[] = {
-    {"PUT", "vertices/position", 400, "reserved_name", NULL, "{\"type\":\"bool\"}"},
+    {"PUT", "vertices/position", 400, "bad_value", NULL, "{\"type\":\"bool\"}"},
+    {"PUT", "faces/position", 400, "reserved_name", NULL, "{\"type\":\"bool\"}"},
     {"PUT", "vertices/a", 400, "missing_member", "", "{}"},
     {"PUT", "vertices/a", 400, "bad_value", "/type", "{\"type\":\"byte\"}"},
     {"PUT", "vertices/a", 400, "bad_value", "/components", "{\"type\":\"bool\",\"components\":0}"},
@@ -378,7 +379,7 @@ static const struct {
     {"PATCH", "vertices/f", 412, "stale_revision", NULL,
      "{\"ids\":[0],\"value\":1,\"expected_revision\":1}"},
     {"DELETE", "vertices/none", 404, "no_such_attribute", NULL, NULL},
-    {"GET", "vertices/position", 404, "no_such_attribute", NULL, NULL},
+    {"GET", "edges/position", 404, "no_such_attribute", NULL, NULL},
     {"GET", "vertices/f?ids=1,,2", 400, "bad_parameter", NULL, NULL},
     {"GET", "vertices/f?ids=1,2&limit=1", 400, "bad_parameter", NULL, NULL},
     {"GET", "vertices/f?ids=99", 404, "no_such_element", NULL, NULL},

@@ -4,6 +4,7 @@
 #include "unit/fixture.h"
 
 #include "edit/whole/attribute.h"
+#include "edit/whole/positions.h"
 #include "mesh/delta.h"
 #include "tests/failing.h"
 
@@ -129,12 +130,42 @@ static void every_allocation_may_fail(void **state)
     }
 }
 
+static void positions_are_written_whole_or_not_at_all(void **state)
+{
+    (void)state;
+    const he_vec3 points[] = {{0, -1, 0.5}, {1, -1, 0.5}, {2, -1, 0.5}, {3, -1, 0.5}};
+    failing f = {0};
+    while (failing_next(&f)) {
+        failing_pause();
+        he_mesh *m = fixture_mesh("012,023");
+        he_mesh *before = copy_of(m);
+        he_delta *delta = he_delta_new();
+        he_mesh_record(m, delta);
+        he_savepoint mark = he_delta_mark(m);
+        failing_resume();
+        if (failing_status(&f, he_positions_write(m, NULL, 4, points, false, NULL))) {
+            for (uint32_t v = 0; v < 4; v++) {
+                const he_vec3 at = he_position(m, (he_vertex){v});
+                assert_memory_equal(&at, &points[v], sizeof at);
+            }
+            assert_int_equal(he_positions_write(m, NULL, 3, points, false, NULL), HE_BAD_VALUE);
+            he_delta_rollback(m, mark);
+        }
+        assert_true(he_mesh_equal(m, before));
+        he_mesh_record(m, NULL);
+        he_delta_free(delta);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_column_takes_the_place_of_its_namesake),
         cmocka_unit_test(what_is_refused_writes_nothing),
         cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(positions_are_written_whole_or_not_at_all),
     };
     return cmocka_run_group_tests_name("attribute", tests, NULL, NULL);
 }

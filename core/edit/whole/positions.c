@@ -1,0 +1,86 @@
+#include "edit/whole/positions.h"
+
+#include "edit/piece/list.h"
+#include "edit/piece/point.h"
+#include "mesh/marks.h"
+#include "mesh/write.h"
+
+#include <string.h>
+
+/* The vertices of one call, and their points. */
+typedef struct plan {
+    const uint32_t *ids; /* NULL: all ids */
+    size_t count;
+    const he_vec3 *points;
+    size_t step; /* 0 if there is one point for all vertices, else 1 */
+} plan;
+
+static he_vertex vertex_at(const plan *p, size_t i)
+{
+    return (he_vertex){p->ids != NULL ? p->ids[i] : (uint32_t)i};
+}
+
+/* Returns true if entry i of the plan is a live vertex that is not at its point, in every bit. */
+static bool moves(const he_mesh *m, const plan *p, size_t i)
+{
+    const he_vertex v = vertex_at(p, i);
+    const he_vec3 from = he_position(m, v), *to = &p->points[i * p->step];
+    return memcmp(&from, to, sizeof from) != 0 && he_vertex_is_live(m, v);
+}
+
+static he_status check(const he_mesh *m, const plan *p, uint64_t *moved, he_error *err)
+{
+    he_marks marks;
+    const bool marked = he_marks_find(m, &marks);
+    he_status status = he_progress_phase(m->progress, "checking", 0.5, err);
+    for (size_t i = 0; i < p->count && status == HE_OK; i++) {
+        status = he_progress_at(m->progress, i, p->count, err);
+        if (!moves(m, p, i)) {
+            continue;
+        }
+        const he_vertex v = vertex_at(p, i);
+        if (status == HE_OK && marked) {
+            status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
+        }
+        if (status == HE_OK && !he_point_is_finite(p->points[i * p->step])) {
+            status = he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
+                             "vertex %u would have a position that is not finite", v.i);
+        }
+        ++*moved;
+    }
+    return status;
+}
+
+he_status he_positions_write(he_mesh *m, const uint32_t *ids, size_t count, const he_vec3 *points,
+                             bool same, he_error *err)
+{
+    const plan p = {ids, count, points, same ? 0 : 1};
+    uint64_t moved = 0;
+    he_status status = HE_OK;
+    if (ids != NULL) {
+        status = he_list_require(m, HE_VERTEX, ids, count, HE_REPEATED_ELEMENT, err);
+    } else if (count != he_mesh_issued(m, HE_VERTEX)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "%zu points are given for the %u ids of vertices",
+                             count, he_mesh_issued(m, HE_VERTEX));
+    }
+    if (status == HE_OK) {
+        status = check(m, &p, &moved, err);
+    }
+    if (status == HE_OK) {
+        status = he_progress_phase(m->progress, "moving", 1, err);
+    }
+    if (status == HE_OK) {
+        status = he_reserve(m, (he_reservation){.positions = moved}, err);
+    }
+    if (status != HE_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
+    for (size_t i = 0; i < count; i++) {
+        he_progress_note(m->progress, i, count);
+        if (moves(m, &p, i)) {
+            he_set_position(m, vertex_at(&p, i), points[i * p.step]);
+        }
+    }
+    return HE_OK;
+}
