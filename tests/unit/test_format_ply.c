@@ -330,6 +330,12 @@ static void what_is_left_out_is_noted(void **state)
     expect_warning(&import, "trailing_lines", "", 2, 15);
     assert_int_equal(import.warnings.count, 5);
     he_import_clear(&import);
+    import = read_text("ply", ASCII "element vertex 1\n" XYZ
+                                    "property float position\nend_header\n0 0 0 7\n");
+    expect_warning(&import, "renamed_property", "position", 1, 7);
+    assert_int_equal(import.soup.column_count, 1);
+    assert_string_equal(import.soup.columns[0]->name, "position_1");
+    he_import_clear(&import);
     static const char trailing[] =
         LITTLE "element vertex 1\nproperty char x\nproperty char y\nproperty char z\nend_header\n"
                "\1\2\3\n\0\0";

@@ -34,6 +34,18 @@ static void note_ignored(const he_ply_rows *rows, const he_ply_property *propert
                          .at = property->line});
 }
 
+static void note_renamed(const he_ply_rows *rows, const he_ply_property *property)
+{
+    he_warnings_add(&rows->into->warnings,
+                    &(he_occurrence){.code = "renamed_property",
+                                     .text = "property % becomes an attribute named position_1, "
+                                             "because position is a reserved name",
+                                     .subject = property->name,
+                                     .length = strlen(property->name),
+                                     .place = HE_PLACE_LINE,
+                                     .at = property->line});
+}
+
 static bool has_column(const he_soup *soup, he_kind domain, const char *name)
 {
     for (size_t i = 0; i < soup->column_count; i++) {
@@ -89,7 +101,8 @@ static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind d
     return status;
 }
 
-/* Maps each property that is in no group to an attribute of its name. */
+/* Maps each property that is in no group to an attribute of its name. The name position is that of
+ * the positions of vertices in the API, so a property of this name is renamed. */
 static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind domain, he_error *err)
 {
     he_soup *soup = &rows->into->soup;
@@ -99,7 +112,9 @@ static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind do
         if (target->role != HE_PLY_IGNORED) {
             continue;
         }
-        if (property->list || !property->nameable || has_column(soup, domain, property->name)) {
+        const bool reserved = strcmp(property->name, "position") == 0;
+        const char *name = reserved ? "position_1" : property->name;
+        if (property->list || !property->nameable || has_column(soup, domain, name)) {
             note_ignored(rows, property,
                          property->nameable
                              ? "property % is ignored, because another attribute has its name"
@@ -108,10 +123,13 @@ static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind do
         }
         he_type type = he_ply_type_column(property->type);
         he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
-        he_status status = he_soup_column(
-            soup, &(he_column_schema){property->name, domain, type, 1, rule}, &target->column, err);
+        he_status status = he_soup_column(soup, &(he_column_schema){name, domain, type, 1, rule},
+                                          &target->column, err);
         if (status != HE_OK) {
             return status;
+        }
+        if (reserved) {
+            note_renamed(rows, property);
         }
         target->role = HE_PLY_ATTRIBUTE;
         target->full = 1;
