@@ -54,10 +54,13 @@ static api_bench *make(oracle *o)
     return b;
 }
 
-static void put_bytes(api_bench *b, int status, const char *method, const char *target,
-                      const void *bytes, size_t length)
+/* Sends binary data and requires the status `status`. `what` is the method and the target, such as
+ * "PUT /v1/...". */
+static void send_bytes(api_bench *b, int status, const char *what, const void *bytes, size_t length)
 {
     const char *const headers[] = {"Content-Type", OCTETS, NULL};
+    const char *target = strchr(what, ' ') + 1;
+    const char *method = target - what == sizeof "PUT" ? "PUT" : "PATCH";
     bench_done(bench_expect(
         status, bench_send_bytes(b, &(bench_request){method, target, headers, bytes, length})));
 }
@@ -122,9 +125,9 @@ static void write_all(api_bench *b, md_random *r, oracle *o)
         }
     }
     if (md_chance(r, 50)) {
-        put_bytes(b, 200, "PUT", PATH "?type=float", narrow, o->count * sizeof narrow[0]);
+        send_bytes(b, 200, "PUT " PATH "?type=float", narrow, o->count * sizeof narrow[0]);
     } else {
-        put_bytes(b, 200, "PUT", PATH, o->at, o->count * sizeof o->at[0]);
+        send_bytes(b, 200, "PUT " PATH, o->at, o->count * sizeof o->at[0]);
     }
     for (uint32_t i = 0; i < o->count; i++) {
         if (!o->live[i]) {
@@ -161,7 +164,7 @@ static void write_some(api_bench *b, md_random *r, oracle *o)
     }
     memcpy(bytes, ids, count * sizeof *ids);
     memcpy(bytes + count * sizeof *ids, values, count * sizeof *values);
-    put_bytes(b, 200, "PATCH", PATH, bytes, count * (sizeof *ids + sizeof *values));
+    send_bytes(b, 200, "PATCH " PATH, bytes, count * (sizeof *ids + sizeof *values));
 }
 
 /* Gives all vertices one position, or writes all by a list in JSON. */
@@ -281,28 +284,28 @@ static void octets_that_do_not_fit_are_refused(void **state)
     unsigned char bytes[200] = {0};
     oracle o;
     api_bench *b = make(&o);
-    put_bytes(b, 422, "PUT", PATH, bytes, 24);
-    put_bytes(b, 400, "PUT", PATH, bytes, 25);
-    put_bytes(b, 400, "PUT", PATH "?type=int32", bytes, 24);
-    put_bytes(b, 400, "PUT", PATH "?components=4", bytes, 24);
-    put_bytes(b, 400, "PATCH", PATH, bytes, 27);
-    put_bytes(b, 400, "PATCH", PATH "?type=bool", bytes, 28);
+    send_bytes(b, 422, "PUT " PATH, bytes, 24);
+    send_bytes(b, 400, "PUT " PATH, bytes, 25);
+    send_bytes(b, 400, "PUT " PATH "?type=int32", bytes, 24);
+    send_bytes(b, 400, "PUT " PATH "?components=4", bytes, 24);
+    send_bytes(b, 400, "PATCH " PATH, bytes, 27);
+    send_bytes(b, 400, "PATCH " PATH "?type=bool", bytes, 28);
     memcpy(bytes, gone, sizeof gone);
-    put_bytes(b, 422, "PATCH", PATH, bytes, 56);
+    send_bytes(b, 422, "PATCH " PATH, bytes, 56);
     memcpy(bytes, twice, sizeof twice);
-    put_bytes(b, 422, "PATCH", PATH, bytes, 56);
+    send_bytes(b, 422, "PATCH " PATH, bytes, 56);
     memcpy(bytes, &beyond, sizeof beyond);
-    put_bytes(b, 422, "PATCH", PATH, bytes, 28);
+    send_bytes(b, 422, "PATCH " PATH, bytes, 28);
     memset(bytes, 0, sizeof bytes);
     memcpy(bytes + 4, infinite, sizeof infinite);
-    put_bytes(b, 400, "PATCH", PATH, bytes, 28);
+    send_bytes(b, 400, "PATCH " PATH, bytes, 28);
     compare(b, &o);
 
     /* a double that a float cannot hold is refused when floats are asked for */
     memcpy(bytes + 4, huge, sizeof huge);
-    put_bytes(b, 200, "PATCH", PATH "?dry_run=true", bytes, 28);
+    send_bytes(b, 200, "PATCH " PATH "?dry_run=true", bytes, 28);
     compare(b, &o);
-    put_bytes(b, 200, "PATCH", PATH, bytes, 28);
+    send_bytes(b, 200, "PATCH " PATH, bytes, 28);
     bench_reply r = bench_expect(422, bench_send(b, "GET", PATH "?type=float", accept, NULL));
     assert_string_equal(bench_text(&r, "code"), "beyond_float");
     bench_done(r);
@@ -327,7 +330,8 @@ static void other_attributes_are_patched_by_octets_too(void **state)
     strip_send(b, 201, "PUT", path, "{\"type\":\"float\"}");
     memcpy(bytes, ids, sizeof ids);
     memcpy(bytes + sizeof ids, single, sizeof single);
-    put_bytes(b, 200, "PATCH", path, bytes, sizeof ids + sizeof single);
+    send_bytes(b, 200, "PATCH /v1/meshes/m/attributes/vertices/heat", bytes,
+               sizeof ids + sizeof single);
     bench_reply r = bench_expect(200, bench_send(b, "GET",
                                                  "/v1/meshes/m/attributes/vertices/heat"
                                                  "?ids=0,1&type=double",
@@ -338,10 +342,10 @@ static void other_attributes_are_patched_by_octets_too(void **state)
     assert_true(read[0] == 0.25 && read[1] == 0.5);
     bench_done(r);
     memcpy(bytes + sizeof ids, wide, sizeof wide);
-    put_bytes(b, 400, "PATCH", "/v1/meshes/m/attributes/vertices/heat?type=double", bytes,
-              sizeof ids + sizeof wide);
+    send_bytes(b, 400, "PATCH /v1/meshes/m/attributes/vertices/heat?type=double", bytes,
+               sizeof ids + sizeof wide);
     /* one id and its value */
-    put_bytes(b, 200, "PATCH", "/v1/meshes/m/attributes/vertices/heat?type=double", bytes, 12);
+    send_bytes(b, 200, "PATCH /v1/meshes/m/attributes/vertices/heat?type=double", bytes, 12);
     bench_free(b);
 }
 
@@ -354,10 +358,10 @@ static void a_locked_vertex_may_stay_but_not_move(void **state)
     strip_send(b, 200, "PATCH", "/v1/meshes/m/attributes/vertices/locked",
                "{\"ids\":[0],\"value\":true}");
     o.at[1][2] += 1;
-    put_bytes(b, 200, "PUT", PATH, o.at, o.count * sizeof o.at[0]);
+    send_bytes(b, 200, "PUT " PATH, o.at, o.count * sizeof o.at[0]);
     compare(b, &o);
     o.at[0][2] += 1;
-    put_bytes(b, 422, "PUT", PATH, o.at, o.count * sizeof o.at[0]);
+    send_bytes(b, 422, "PUT " PATH, o.at, o.count * sizeof o.at[0]);
     o.at[0][2] -= 1;
     compare(b, &o);
     bench_free(b);

@@ -20,12 +20,21 @@ static he_vertex vertex_at(const plan *p, size_t i)
     return (he_vertex){p->ids != NULL ? p->ids[i] : (uint32_t)i};
 }
 
+static bool same_bits(double a, double b)
+{
+    uint64_t x, y;
+    memcpy(&x, &a, sizeof x);
+    memcpy(&y, &b, sizeof y);
+    return x == y;
+}
+
 /* Returns true if entry i of the plan is a live vertex that is not at its point, in every bit. */
 static bool moves(const he_mesh *m, const plan *p, size_t i)
 {
     const he_vertex v = vertex_at(p, i);
-    const he_vec3 from = he_position(m, v), *to = &p->points[i * p->step];
-    return memcmp(&from, to, sizeof from) != 0 && he_vertex_is_live(m, v);
+    const he_vec3 from = he_position(m, v), to = p->points[i * p->step];
+    return !(same_bits(from.x, to.x) && same_bits(from.y, to.y) && same_bits(from.z, to.z)) &&
+           he_vertex_is_live(m, v);
 }
 
 static he_status check(const he_mesh *m, const plan *p, uint64_t *moved, he_error *err)
