@@ -1,0 +1,340 @@
+#include "solve/intrinsic.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A pair of angles opposite to an edge counts as larger than 180 degrees if the sum of their
+ * cotangents is below this. */
+static const double NOT_DELAUNAY = -1e-10;
+/* How much two sides of a triangle must at least be longer than the third, in mean lengths. */
+static const double LEAST_EXCESS = 1e-9;
+
+enum { FLIPS_FOR_EACH_SIDE = 64 };
+
+void he_intrinsic_clear(he_intrinsic *t)
+{
+    he_mem_free(t->corners);
+    he_mem_free(t->twins);
+    he_mem_free(t->lengths);
+    *t = (he_intrinsic){0};
+}
+
+static uint32_t next_of(uint32_t side)
+{
+    return side % 3 == 2 ? side - 2 : side + 1;
+}
+
+static uint32_t prev_of(uint32_t side)
+{
+    return side % 3 == 0 ? side + 2 : side - 1;
+}
+
+/* --- neighbours --- */
+
+/* Lists the sides by their lower vertex: those of vertex v are lists[begins[v]] ...
+ * lists[begins[v + 1] - 1]. */
+static void list_sides(const he_intrinsic *t, uint32_t vertices, uint32_t *begins, uint32_t *lists)
+{
+    const uint32_t sides = 3 * t->triangles;
+    memset(begins, 0, ((size_t)vertices + 2) * sizeof *begins);
+    for (uint32_t s = 0; s < sides; s++) {
+        const uint32_t a = t->corners[s], b = t->corners[next_of(s)];
+        begins[(a < b ? a : b) + 2]++;
+    }
+    for (uint32_t v = 0; v < vertices; v++) {
+        begins[v + 2] += begins[v + 1];
+    }
+    for (uint32_t s = 0; s < sides; s++) {
+        const uint32_t a = t->corners[s], b = t->corners[next_of(s)];
+        lists[begins[(a < b ? a : b) + 1]++] = s;
+    }
+}
+
+/* Pairs each side with the first side of the list that runs the other way and has no twin yet. */
+static void pair_sides(he_intrinsic *t, uint32_t vertices, const uint32_t *begins,
+                       const uint32_t *lists)
+{
+    memset(t->twins, 0xFF, 3 * (size_t)t->triangles * sizeof *t->twins);
+    for (uint32_t v = 0; v < vertices; v++) {
+        for (uint32_t i = begins[v]; i < begins[v + 1]; i++) {
+            const uint32_t s = lists[i];
+            for (uint32_t k = i + 1; k < begins[v + 1] && t->twins[s] == UINT32_MAX; k++) {
+                const uint32_t other = lists[k];
+                if (t->twins[other] == UINT32_MAX && t->corners[other] == t->corners[next_of(s)] &&
+                    t->corners[next_of(other)] == t->corners[s]) {
+                    t->twins[s] = other;
+                    t->twins[other] = s;
+                }
+            }
+        }
+    }
+}
+
+static he_status find_twins(he_intrinsic *t, uint32_t vertices, he_error *err)
+{
+    uint32_t *begins = he_mem_array(NULL, (size_t)vertices + 2, sizeof *begins);
+    uint32_t *lists = he_mem_array(NULL, 3 * (size_t)t->triangles + 1, sizeof *lists);
+    he_status status = HE_OK;
+    if (begins == NULL || lists == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the sides of %u triangles",
+                               t->triangles);
+    } else {
+        list_sides(t, vertices, begins, lists);
+        pair_sides(t, vertices, begins, lists);
+    }
+    he_mem_free(begins);
+    he_mem_free(lists);
+    return status;
+}
+
+/* --- lengths --- */
+
+static he_status measure(he_intrinsic *t, const he_surface *surface, he_error *err)
+{
+    const uint32_t sides = 3 * t->triangles;
+    double sum = 0;
+    for (uint32_t s = 0; s < sides; s++) {
+        /* Both sides of an edge are measured in the same direction, to get the same bits. */
+        uint32_t a = t->corners[s], b = t->corners[next_of(s)];
+        if (a > b) {
+            const uint32_t swap = a;
+            a = b;
+            b = swap;
+        }
+        const he_vec3 p = surface->points[a], q = surface->points[b];
+        t->lengths[s] = hypot(hypot(q.x - p.x, q.y - p.y), q.z - p.z);
+        if (!isfinite(t->lengths[s])) {
+            return he_fail(err, HE_NOT_FINITE, HE_VERTEX, a,
+                           "the distance of the vertices %u and %u is too large for a number", a,
+                           b);
+        }
+        sum += t->lengths[s] / sides;
+    }
+    t->unit = sum > 0 ? sum : 1;
+    for (uint32_t s = 0; s < sides; s++) {
+        t->lengths[s] /= t->unit;
+    }
+    return HE_OK;
+}
+
+/* Raises all lengths by the number that makes every two sides of a triangle longer than the third
+ * one. */
+static void lengthen(he_intrinsic *t)
+{
+    const uint32_t sides = 3 * t->triangles;
+    double missing = 0;
+    for (uint32_t s = 0; s < sides; s++) {
+        const double *l = t->lengths;
+        const double excess = l[next_of(s)] + l[prev_of(s)] - l[s];
+        missing = fmax(missing, LEAST_EXCESS - excess);
+    }
+    for (uint32_t s = 0; s < sides && missing > 0; s++) {
+        t->lengths[s] += missing;
+    }
+}
+
+he_status he_intrinsic_make(const he_surface *surface, he_intrinsic *out, he_error *err)
+{
+    const size_t sides = 3 * (size_t)surface->triangles;
+    if (sides > 1 << 30) {
+        return he_fail_plain(err, HE_LIMIT, "a surface of %u triangles is too large",
+                             surface->triangles);
+    }
+    for (size_t s = 0; s < sides; s++) {
+        if (surface->corners[s] >= surface->vertices) {
+            return he_fail_plain(err, HE_BAD_INDEX, "corner %zu is not one of the %u vertices", s,
+                                 surface->vertices);
+        }
+    }
+    he_intrinsic t = {.triangles = surface->triangles,
+                      .corners = he_mem_array(NULL, sides + 1, sizeof *t.corners),
+                      .twins = he_mem_array(NULL, sides + 1, sizeof *t.twins),
+                      .lengths = he_mem_array(NULL, sides + 1, sizeof *t.lengths)};
+    he_status status = HE_OK;
+    if (t.corners == NULL || t.twins == NULL || t.lengths == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a surface of %u triangles",
+                               surface->triangles);
+    } else {
+        memcpy(t.corners, surface->corners, sides * sizeof *t.corners);
+        status = find_twins(&t, surface->vertices, err);
+    }
+    if (status == HE_OK) {
+        status = measure(&t, surface, err);
+    }
+    if (status != HE_OK) {
+        he_intrinsic_clear(&t);
+        return status;
+    }
+    lengthen(&t);
+    *out = t;
+    return HE_OK;
+}
+
+/* --- angles --- */
+
+/* Exchanges two numbers if the second is larger. */
+static void order_pair(double *a, double *b)
+{
+    if (*a < *b) {
+        const double larger = *b;
+        *b = *a;
+        *a = larger;
+    }
+}
+
+/* Returns 4 times the area of a triangle with these sides, by Kahan's formula, which is exact to a
+ * few bits however thin the triangle is. */
+static double four_areas(double a, double b, double c)
+{
+    order_pair(&a, &b);
+    order_pair(&b, &c);
+    order_pair(&a, &b);
+    const double product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+    return product > 0 ? sqrt(product) : 0;
+}
+
+double he_intrinsic_area(const he_intrinsic *t, uint32_t triangle)
+{
+    const double *l = t->lengths + 3 * (size_t)triangle;
+    return four_areas(l[0], l[1], l[2]) / 4;
+}
+
+double he_intrinsic_cotangent(const he_intrinsic *t, uint32_t side)
+{
+    const double a = t->lengths[side], b = t->lengths[next_of(side)], c = t->lengths[prev_of(side)];
+    /* (b^2 + c^2 - a^2) / (4 A), without the loss of digits in a difference of squares */
+    return ((b - a) * (b + a) + c * c) / four_areas(a, b, c);
+}
+
+/* --- flips --- */
+
+/* The sides whose edges may not be Delaunay: a stack, with a mark for each side that is on it. */
+typedef struct stack {
+    uint32_t *sides;
+    uint64_t *marked;
+    uint32_t count;
+} stack;
+
+static void push(const he_intrinsic *t, stack *work, uint32_t side)
+{
+    const uint32_t twin = t->twins[side];
+    if (twin == UINT32_MAX) {
+        return;
+    }
+    side = side < twin ? side : twin;
+    if (!he_bits_get(work->marked, side)) {
+        he_bits_set(work->marked, side);
+        work->sides[work->count++] = side;
+    }
+}
+
+static bool may_flip(const he_intrinsic *t, uint32_t side)
+{
+    const uint32_t twin = t->twins[side];
+    return twin != UINT32_MAX && side / 3 != twin / 3 &&
+           he_intrinsic_cotangent(t, side) + he_intrinsic_cotangent(t, twin) < NOT_DELAUNAY;
+}
+
+/* Returns the length of the other diagonal of the two triangles at a side; 0 if they are too thin
+ * for a number. */
+static double other_diagonal(const he_intrinsic *t, uint32_t side)
+{
+    const uint32_t twin = t->twins[side];
+    const double l = t->lengths[side];
+    const double a = t->lengths[prev_of(side)], b = t->lengths[next_of(side)];
+    const double c = t->lengths[next_of(twin)], d = t->lengths[prev_of(twin)];
+    /* The side begins at the origin and runs along x; the third corners are above and below it. The
+     * one above has the distance a from the origin, the one below the distance c. */
+    const double x0 = (l + (a - b) * (a + b) / l) / 2, y0 = four_areas(l, a, b) / (2 * l);
+    const double x1 = (l + (c - d) * (c + d) / l) / 2, y1 = four_areas(l, c, d) / (2 * l);
+    const double length = hypot(x0 - x1, y0 + y1);
+    /* Rounding must not make a triangle whose sides do not reach. */
+    const double least = fmax(fabs(a - c), fabs(b - d)) + LEAST_EXCESS / 2;
+    const double most = fmin(a + c, b + d) - LEAST_EXCESS / 2;
+    return least <= most ? fmin(fmax(length, least), most) : 0;
+}
+
+static void join(he_intrinsic *t, uint32_t side, uint32_t twin)
+{
+    t->twins[side] = twin;
+    if (twin != UINT32_MAX) {
+        t->twins[twin] = side;
+    }
+}
+
+/* Writes a side; its twin is joined by the caller. */
+static void set_side(he_intrinsic *t, uint32_t side, uint32_t vertex, double length)
+{
+    t->corners[side] = vertex;
+    t->lengths[side] = length;
+}
+
+/* Flips the edge of a side.
+ *
+ *            k                      k
+ *          / |\                   / | \
+ *         /     \                /  |  \
+ *        i -s--> j      ->      i   |   j
+ *         \     /                \  |  /
+ *          \   /                  \ | /
+ *            m                      m                                          */
+static void flip(he_intrinsic *t, uint32_t s, double length)
+{
+    const uint32_t r = t->twins[s], jk = next_of(s), ki = prev_of(s), im = next_of(r),
+                   mj = prev_of(r);
+    const uint32_t i = t->corners[s], j = t->corners[r], k = t->corners[ki], m = t->corners[mj];
+    const uint32_t outer[4] = {t->twins[ki], t->twins[im], t->twins[mj], t->twins[jk]};
+    const double lengths[4] = {t->lengths[ki], t->lengths[im], t->lengths[mj], t->lengths[jk]};
+    /* the triangle of s becomes k i m, that of r becomes m j k */
+    const uint32_t sides[4] = {jk, ki, im, mj};
+    set_side(t, s, m, length);
+    set_side(t, jk, k, lengths[0]);
+    set_side(t, ki, i, lengths[1]);
+    set_side(t, r, k, length);
+    set_side(t, im, m, lengths[2]);
+    set_side(t, mj, j, lengths[3]);
+    for (int e = 0; e < 4; e++) {
+        /* The two triangles may also be neighbours at other edges than the flipped one. */
+        const uint32_t twin = outer[e];
+        join(t, sides[e],
+             twin == ki   ? sides[0]
+             : twin == im ? sides[1]
+             : twin == mj ? sides[2]
+             : twin == jk ? sides[3]
+                          : twin);
+    }
+    t->flips++;
+}
+
+he_status he_intrinsic_flip(he_intrinsic *t, he_progress *progress, he_error *err)
+{
+    const uint32_t sides = 3 * t->triangles;
+    const uint64_t most = (uint64_t)sides * FLIPS_FOR_EACH_SIDE;
+    stack work = {.sides = he_mem_array(NULL, (size_t)sides + 1, sizeof *work.sides),
+                  .marked = he_bits_new((size_t)sides + 1)};
+    he_status status = HE_OK;
+    if (work.sides == NULL || work.marked == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory to flip the edges of %u triangles",
+                               t->triangles);
+    }
+    for (uint32_t s = 0; s < sides && status == HE_OK; s++) {
+        push(t, &work, s);
+    }
+    for (uint64_t steps = 0; work.count > 0 && status == HE_OK && t->flips < most; steps++) {
+        const uint32_t s = work.sides[--work.count];
+        work.marked[s >> 6] &= ~((uint64_t)1 << (s & 63));
+        status = he_progress_at(progress, steps, steps + work.count + 1, err);
+        const double length = status == HE_OK && may_flip(t, s) ? other_diagonal(t, s) : 0;
+        if (length > 0) {
+            const uint32_t twin = t->twins[s];
+            flip(t, s, length);
+            push(t, &work, next_of(s));
+            push(t, &work, prev_of(s));
+            push(t, &work, next_of(twin));
+            push(t, &work, prev_of(twin));
+        }
+    }
+    he_mem_free(work.sides);
+    he_mem_free(work.marked);
+    return status;
+}
