@@ -1,6 +1,7 @@
 #include "algo/decimate.h"
 
 #include "algo/decimation.h"
+#include "algo/result_write.h"
 #include "geometry/scale.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
@@ -338,11 +339,24 @@ he_status he_decimation_run(he_mesh *m, const he_decimate_options *options, he_p
     return status == HE_OK ? run(m, options, log, NULL, out, err) : status;
 }
 
+static void note(he_mesh *m, he_kind kind, const he_ids *pairs)
+{
+    for (size_t i = 0; i + 1 < pairs->count; i += 2) {
+        he_note_merged(m, kind, pairs->ids[i], pairs->ids[i + 1]);
+    }
+}
+
 static he_status finish(he_mesh *m, he_mesh **copy, const he_merges *merges, bool replace,
                         he_error *err)
 {
     if (!replace) {
-        return he_decimation_write(m, *copy, merges, err);
+        size_t lineage = (merges->vertices.count + merges->edges.count) / 2;
+        he_status written = he_result_write(m, *copy, lineage, err);
+        if (written == HE_OK) {
+            note(m, HE_VERTEX, &merges->vertices);
+            note(m, HE_EDGE, &merges->edges);
+        }
+        return written;
     }
     he_status status = he_mesh_replace(m, *copy, HE_KEEPS_IDS, err);
     if (status == HE_OK) {

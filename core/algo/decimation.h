@@ -136,10 +136,6 @@ void he_decimation_end(he_decimation *d);
 he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside);
 /* Computes the cheapest collapse of an edge. Returns false if neither end may be deleted. */
 bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
-/* Makes mesh `m` equal to `made`, a decimated copy of `m`.
- * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
-                                           he_error *err);
 /* Decides whether an edge belongs in the queue, ASIDE or DEAR (see the head of decimation.h), and
  * computes the cheapest collapse of the edge unless it is ASIDE. */
 he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);

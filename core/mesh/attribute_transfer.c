@@ -15,12 +15,8 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
     return false;
 }
 
-/* Writes the weighted sum of the attribute values of n elements to `out`, or the mean of the values
- * if `weights` is NULL. The result has the type of the column: integers and booleans are rounded to
- * the nearest value, and a sum that rounding errors have pushed out of the type's range
- * is clamped. */
-static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
-                  unsigned char *out)
+void he_column_blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
+                     unsigned char *out)
 {
     size_t size = he_type_bytes(column->type);
     for (uint32_t k = 0; k < column->components; k++) {
@@ -113,7 +109,7 @@ static void carry(he_mesh *m, he_kind kind, uint32_t to, const mixture *of)
             memcpy(value, he_column_value(column, of->nearest), column->row_bytes);
             break;
         case HE_INTERPOLATE:
-            blend(column, of->rows, of->weights, of->n, value);
+            he_column_blend(column, of->rows, of->weights, of->n, value);
             break;
         case HE_DEFAULT:
         case HE_RULE_COUNT:
@@ -160,7 +156,7 @@ void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, doubl
         const he_column *column = m->c.columns[i];
         if (column != NULL && column->domain == kind && column->rule == HE_INTERPOLATE) {
             unsigned char value[HE_COLUMN_ROW_BYTES];
-            blend(column, rows, weights, 2, value);
+            he_column_blend(column, rows, weights, 2, value);
             he_set_attribute(m, i, row, value);
         }
     }

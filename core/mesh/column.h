@@ -89,6 +89,11 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
 {
     return column->data + row * column->row_bytes;
 }
+/* Writes the weighted sum of the values of n rows to `out`, or their mean if `weights` is NULL. The
+ * result has the type of the column: integers and booleans are rounded to the nearest value, and a
+ * sum that rounding errors have pushed out of the type's range is clamped. */
+void he_column_blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
+                     unsigned char *out);
 size_t he_column_bytes(const he_column *column);
 /* Returns the size in bytes of a column with all its rows, without labels and spare memory. */
 size_t he_column_rows_bytes(const he_column *column);

@@ -109,7 +109,7 @@ typedef struct he_result_row {
     const char *const *choices; /* names of the choices, ending in NULL */
 } he_result_row;
 
-enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
+enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 12, HE_OP_REFUSALS = 16 };
 
 /* The results of an operation: result i of the operation's row is in entry i of these arrays.
  * he_op_run clears the arrays and fills them; the caller clears them when they are no longer

@@ -18,6 +18,7 @@ extern const he_op he_region_rows[];
 extern const he_op he_whole_rows[];
 extern const he_op he_refine_rows[];
 extern const he_op he_decimate_rows[];
+extern const he_op he_remesh_rows[];
 extern const he_op he_material_rows[];
 
 /* Returns the row with this number, in the order of the table; NULL past the last row. */

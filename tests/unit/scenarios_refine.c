@@ -8,6 +8,10 @@
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
 
+#define SQUARE "012,023"
+/* Moves the vertices of SQUARE to the corners of a square with sides of length 2. */
+#define FLAT_SQUARE "vertex_move vertices=0,1,2,3 to=0,0,0,2,0,0,2,2,0,0,2,0"
+
 const scenario refine_scenarios[] = {
     {"subdivide", QCUBE, NULL, HE_OK, {18, 36, 18}},
     {"subdivide scheme=catmull_clark", QCUBE, "face_delete face=0", HE_OK, {17, 32, 15}},
@@ -55,5 +59,31 @@ const scenario refine_scenarios[] = {
     {"subdivide scheme=sqrt3", PILLOW, NULL, HE_DOUBLED_EDGE, {0}},
     {"subdivide scheme=sqrt3", TETRA, "mark locked edge=0-1", HE_LOCKED_ELEMENT, {0}},
     {"subdivide scheme=sqrt3", "012,023", "mark locked face=1", HE_LOCKED_ELEMENT, {0}},
+
+    {"remesh edge_length=100", "012", NULL, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=100", "", NULL, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=100", STRANGE, "face_delete face=1", HE_OK, {0, 0, 0}},
+    {"remesh edge_length=100 faces=0,1", STRANGE, NULL, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=100", PILLOW, NULL, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=0.01 crease=3", PILLOW, NULL, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=1.7 steps=1", SQUARE, FLAT_SQUARE, HE_OK, {1, 3, 2}},
+    {"remesh edge_length=1.7 steps=1 project=0", SQUARE, FLAT_SQUARE, HE_OK, {1, 3, 2}},
+    {"remesh edge_length=1 steps=1 keep_boundary=1", SQUARE, FLAT_SQUARE, HE_OK, {1, 3, 2}},
+    {"remesh edge_length=1 steps=1 face=0", SQUARE, FLAT_SQUARE, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=1 steps=1",
+     SQUARE,
+     FLAT_SQUARE ";mark locked face=1",
+     HE_OK,
+     {0, 0, 0}},
+    {"remesh target_faces=3 steps=1", SQUARE, FLAT_SQUARE, HE_OK, {1, 3, 2}},
+    {"remesh edge_length=0", "012", NULL, HE_BAD_VALUE, {0}},
+    {"remesh edge_length=-1", "012", NULL, HE_BAD_VALUE, {0}},
+    {"remesh edge_length=1e-13", SQUARE, FLAT_SQUARE, HE_BAD_VALUE, {0}},
+    {"remesh edge_length=1e-5", SQUARE, FLAT_SQUARE, HE_LIMIT, {0}},
+    {"remesh edge_length=1", "012,0234", NULL, HE_NOT_TRIANGLE, {0}},
+    {"remesh edge_length=100 face=0", "012,0234", NULL, HE_OK, {0, 0, 0}},
+    {"remesh edge_length=1 face=7", "012", NULL, HE_NO_SUCH_ELEMENT, {0}},
+    {"remesh edge_length=1 face=0", "012,034", "face_delete face=0", HE_DELETED_ELEMENT, {0}},
+    {"remesh edge_length=1 faces=0,1,0", "012,034", NULL, HE_REPEATED_ELEMENT, {0}},
     {.operation = NULL},
 };

@@ -1,8 +1,8 @@
-/* decimate_write.c - writes the result of a decimation, which was computed in a copy of the mesh,
- * into the mesh. Each word that differs is written once. */
-#include "algo/decimation.h"
+#include "algo/result_write.h"
 
 #include "mesh/write.h"
+
+#include <string.h>
 
 static bool is_live(const he_mesh *m, he_kind kind, uint32_t row)
 {
@@ -43,11 +43,21 @@ static bool has_moved(const he_mesh *m, const he_mesh *made, uint32_t v)
     return differ(&m->c.position[v], &made->c.position[v], sizeof *m->c.position);
 }
 
+/* Returns how many elements of a kind are deleted: those that live before and new ones, less those
+ * that live afterwards. */
+static size_t deleted(const he_rows *before, const he_rows *after)
+{
+    return (size_t)before->live + (after->issued - before->issued) - after->live;
+}
+
 static void count_words(const he_mesh *m, const he_mesh *made, he_reservation *need)
 {
-    need->deleted_vertices = m->c.vertices.live - made->c.vertices.live;
-    need->deleted_edges = m->c.edges.live - made->c.edges.live;
-    need->deleted_faces = m->c.faces.live - made->c.faces.live;
+    need->vertices = made->c.vertices.issued - m->c.vertices.issued;
+    need->edges = made->c.edges.issued - m->c.edges.issued;
+    need->faces = made->c.faces.issued - m->c.faces.issued;
+    need->deleted_vertices = deleted(&m->c.vertices, &made->c.vertices);
+    need->deleted_edges = deleted(&m->c.edges, &made->c.edges);
+    need->deleted_faces = deleted(&m->c.faces, &made->c.faces);
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (he_vertex_is_live(made, (he_vertex){v})) {
             need->links += m->c.vertex_halfedge[v] != made->c.vertex_halfedge[v];
@@ -75,7 +85,7 @@ static size_t words_between(const unsigned char *a, const unsigned char *b, size
     return count;
 }
 
-/* Counts the words of an attribute's values that differ between the mesh and its decimated copy. If
+/* Counts the words of an attribute's values that differ between the mesh and its changed copy. If
  * `to` is not NULL, also writes the differing values to the mesh `to`. */
 static size_t each_value(const he_mesh *m, const he_mesh *made, size_t slot, he_mesh *to)
 {
@@ -150,17 +160,24 @@ static void delete_rows(he_mesh *m, const he_mesh *made)
     }
 }
 
-static void note(he_mesh *m, he_kind kind, const he_ids *pairs)
+/* Makes the elements that only the copy has. Their links are written afterwards like those of other
+ * elements. */
+static void make_new(he_mesh *m, const he_mesh *made)
 {
-    for (size_t i = 0; i + 1 < pairs->count; i += 2) {
-        he_note_merged(m, kind, pairs->ids[i], pairs->ids[i + 1]);
+    while (m->c.vertices.issued < made->c.vertices.issued) {
+        (void)he_new_vertex(m);
+    }
+    while (m->c.edges.issued < made->c.edges.issued) {
+        (void)he_new_edge(m);
+    }
+    while (m->c.faces.issued < made->c.faces.issued) {
+        (void)he_new_face(m);
     }
 }
 
-he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
-                              he_error *err)
+he_status he_result_write(he_mesh *m, const he_mesh *made, size_t lineage, he_error *err)
 {
-    he_reservation need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
+    he_reservation need = {.lineage = lineage};
     count_words(m, made, &need);
     /* Changed attribute values are reserved as if they were links, by the number of changed words.
      * With need.attributes, he_reserve would allocate memory for all values of each attribute. */
@@ -170,10 +187,9 @@ he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *
         return status;
     }
     /* Nothing below can fail. */
+    make_new(m, made);
     (void)each_column(m, made, m);
     write_links(m, made);
     delete_rows(m, made);
-    note(m, HE_VERTEX, &merges->vertices);
-    note(m, HE_EDGE, &merges->edges);
     return HE_OK;
 }

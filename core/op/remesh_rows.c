@@ -1,0 +1,145 @@
+#include "op/rows.h"
+
+#include "remesh/remesh.h"
+
+#include <math.h>
+
+enum {
+    REMESH_EDGE_LENGTH,
+    REMESH_TARGET_FACES,
+    REMESH_STEPS,
+    REMESH_CREASE,
+    REMESH_KEEP_BOUNDARY,
+    REMESH_PROJECT,
+    REMESH_FACES
+};
+enum {
+    REMESH_OUT_STOP,
+    REMESH_OUT_FACES_BEFORE,
+    REMESH_OUT_FACES_AFTER,
+    REMESH_OUT_SHORTEST,
+    REMESH_OUT_MEAN_LENGTH,
+    REMESH_OUT_LONGEST,
+    REMESH_OUT_SMALLEST_ANGLE,
+    REMESH_OUT_LARGEST_ANGLE,
+    REMESH_OUT_REGULAR
+};
+
+static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const he_arg *faces = &args[REMESH_FACES];
+    bool by_length = args[REMESH_EDGE_LENGTH].given;
+    he_remesh_options options = {.edge_length = by_length ? args[REMESH_EDGE_LENGTH].number : 0,
+                                 .by_length = by_length,
+                                 .target_faces =
+                                     by_length ? 0 : (uint32_t)args[REMESH_TARGET_FACES].number,
+                                 .steps = (unsigned)args[REMESH_STEPS].number,
+                                 .crease = args[REMESH_CREASE].number,
+                                 .fixed_boundary = args[REMESH_KEEP_BOUNDARY].flag,
+                                 .project = args[REMESH_PROJECT].flag,
+                                 .faces = faces->given ? faces->ids : NULL,
+                                 .face_count = faces->count};
+    he_remeshed done;
+    he_status status = he_remesh(m, &options, &done, err);
+    if (status == HE_OK) {
+        he_results_set(out, REMESH_OUT_STOP, (uint32_t)done.stop);
+        he_results_set_number(out, REMESH_OUT_FACES_BEFORE, done.faces_before);
+        he_results_set_number(out, REMESH_OUT_FACES_AFTER, done.faces);
+        he_results_set_number(out, REMESH_OUT_SHORTEST, done.shortest);
+        he_results_set_number(out, REMESH_OUT_MEAN_LENGTH, done.mean);
+        he_results_set_number(out, REMESH_OUT_LONGEST, done.longest);
+        he_results_set_number(out, REMESH_OUT_SMALLEST_ANGLE, done.smallest_angle);
+        he_results_set_number(out, REMESH_OUT_LARGEST_ANGLE, done.largest_angle);
+        he_results_set_number(out, REMESH_OUT_REGULAR, done.regular);
+    }
+    return status;
+}
+
+const he_op he_remesh_rows[] = {
+    {
+        .name = "remesh",
+        .doc = "Replace triangles by others of even size and shape that cover the same surface. "
+               "Boundaries, edges whose bool attribute `feature` is true, creases and borders of "
+               "materials keep their shape: vertices move only along them, and their corners stay. "
+               "What is `locked` does not change. A million faces take about 4 s.",
+        .size = HE_OP_WHOLE,
+        .params =
+            {[REMESH_EDGE_LENGTH] = {.name = "edge_length",
+                                     .type = HE_PARAM_NUMBER,
+                                     .flags = HE_REQUIRED,
+                                     .group = 's',
+                                     .fallback = 1,
+                                     .doc = "The wanted length of edges, above 0. The mean length "
+                                            "becomes about this."},
+             [REMESH_TARGET_FACES] = {.name = "target_faces",
+                                      .type = HE_PARAM_NUMBER,
+                                      .flags = HE_REQUIRED | HE_RANGE | HE_WHOLE,
+                                      .group = 's',
+                                      .min = 1,
+                                      .max = HE_REMESH_FACES,
+                                      .doc =
+                                          "The wanted number of faces, which is met within a few "
+                                          "percent."},
+             [REMESH_STEPS] = {.name = "steps",
+                               .type = HE_PARAM_NUMBER,
+                               .flags = HE_RANGE | HE_WHOLE,
+                               .min = 1,
+                               .max = HE_REMESH_STEPS,
+                               .fallback = HE_REMESH_STEPS_USUAL,
+                               .doc = "The largest number of steps; it stops before if a step "
+                                      "changes almost nothing."},
+             [REMESH_CREASE] = {.name = "crease",
+                                .type = HE_PARAM_NUMBER,
+                                .flags = HE_RANGE,
+                                .min = 0,
+                                .max = 3.14159265358979323846,
+                                .fallback = HE_REMESH_CREASE,
+                                .doc = "An angle in radians. Edges between faces whose normals "
+                                       "differ by more count as features, and vertices at which a "
+                                       "boundary or feature line turns by more stay in place."},
+             [REMESH_KEEP_BOUNDARY] = {.name = "keep_boundary",
+                                       .type = HE_PARAM_FLAG,
+                                       .doc = "Do not change boundary edges at all."},
+             [REMESH_PROJECT] = {.name = "project",
+                                 .type = HE_PARAM_FLAG,
+                                 .fallback = 1,
+                                 .doc = "Put moved vertices back onto the surface."},
+             [REMESH_FACES] = {.name = "face",
+                               .plural = "faces",
+                               .type = HE_PARAM_ELEMENTS,
+                               .kind = HE_FACE,
+                               .doc = "The faces to replace. Other faces, with their edges and "
+                                      "vertices, do not change. Default: all."}},
+        .results =
+            {[REMESH_OUT_STOP] = {.name = "stop",
+                                  .type = HE_RESULT_CHOICE,
+                                  .choices = he_remesh_stop_names,
+                                  .doc = "Why it stopped: the last step changed almost nothing, or "
+                                         "all steps were done."},
+             [REMESH_OUT_FACES_BEFORE] = {"faces_before", HE_RESULT_NUMBER, HE_FACE,
+                                          "How many faces were replaced."},
+             [REMESH_OUT_FACES_AFTER] = {"faces_after", HE_RESULT_NUMBER, HE_FACE,
+                                         "By how many faces they were replaced. The other results "
+                                         "describe these faces."},
+             [REMESH_OUT_SHORTEST] = {"shortest", HE_RESULT_NUMBER, HE_EDGE,
+                                      "The length of the shortest edge."},
+             [REMESH_OUT_MEAN_LENGTH] = {"mean_length", HE_RESULT_NUMBER, HE_EDGE,
+                                         "The mean length of the edges."},
+             [REMESH_OUT_LONGEST] = {"longest", HE_RESULT_NUMBER, HE_EDGE,
+                                     "The length of the longest edge."},
+             [REMESH_OUT_SMALLEST_ANGLE] = {"smallest_angle", HE_RESULT_NUMBER, HE_HALFEDGE,
+                                            "The smallest angle of a face, in radians."},
+             [REMESH_OUT_LARGEST_ANGLE] = {"largest_angle", HE_RESULT_NUMBER, HE_HALFEDGE,
+                                           "The largest angle of a face, in radians."},
+             [REMESH_OUT_REGULAR] =
+                 {"regular", HE_RESULT_NUMBER, HE_VERTEX,
+                  "The fraction of the vertices that have six edges, among those "
+                  "that are not on lines and may move."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_TRIANGLE,
+                     HE_BAD_VALUE, HE_LIMIT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 25,
+        .run = run_remesh,
+    },
+    {.name = NULL},
+};

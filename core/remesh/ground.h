@@ -1,0 +1,45 @@
+/* ground.h - the surface that remesh was given, on which it puts the vertices of the new one.
+ *
+ * The nearest point of the ground is found by a walk: from a triangle that was near the vertex
+ * before, the walk goes to whichever neighbour is nearer, until none is. Vertices move by less than
+ * an edge in a step, so the walk is short; a search in a tree of boxes takes several times as long.
+ * And where two sheets of the surface are close together, a vertex stays on its own sheet, while
+ * the nearest point of all may lie on the other one. */
+#ifndef HE_REMESH_GROUND_H
+#define HE_REMESH_GROUND_H
+
+#include "remesh/net.h"
+
+typedef struct he_ground_triangle {
+    uint32_t v[3], twin[3]; /* as in he_net_triangle */
+} he_ground_triangle;
+
+typedef struct he_ground {
+    he_ground_triangle *triangles;
+    he_vec3 *place;   /* position of each vertex, in coordinates of the net */
+    float *size;      /* the wanted length of edges at each vertex; NULL if it is `length` */
+    uint32_t *face;   /* the face of the mesh that each triangle is */
+    uint32_t *vertex; /* the vertex of the mesh that each vertex is */
+    uint32_t triangle_count, vertex_count;
+} he_ground;
+
+/* The point of the ground that is nearest to another point. */
+typedef struct he_ground_point {
+    uint32_t triangle;
+    double weight[3]; /* barycentric coordinates in the triangle: not negative, sum 1 */
+    he_vec3 place;
+    double square; /* squared distance */
+} he_ground_point;
+
+/* Copies the triangles of a net. The arrays `face` and `size` are left to the caller.
+ * Returns HE_NO_MEMORY if memory is out. */
+HE_NODISCARD he_status he_ground_copy(const he_net *n, he_ground *out, he_error *err);
+void he_ground_clear(he_ground *g);
+/* Finds the point of one triangle that is nearest to `place`. */
+void he_ground_nearest(const he_ground *g, he_vec3 place, uint32_t triangle, he_ground_point *out);
+/* Walks from triangle `from` to a triangle that is nearer to `place` than its neighbours, and finds
+ * its nearest point. The walk ends after HE_GROUND_STEPS triangles at the latest. */
+enum { HE_GROUND_STEPS = 256 };
+void he_ground_walk(const he_ground *g, he_vec3 place, uint32_t from, he_ground_point *out);
+
+#endif

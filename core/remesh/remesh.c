@@ -1,0 +1,302 @@
+#include "remesh/remesh.h"
+
+#include "algo/result_write.h"
+#include "edit/piece/list.h"
+#include "geometry/scale.h"
+#include "mesh/write.h"
+#include "remesh/net_make.h"
+#include "remesh/net_write.h"
+#include "remesh/remeshing.h"
+
+const char *const he_remesh_stop_names[HE_REMESH_STOP_COUNT + 1] = {"settled", "steps", NULL};
+
+static he_status check(const he_mesh *m, const he_remesh_options *options, he_error *err)
+{
+    if (options->by_length && !(options->edge_length > 0 && isfinite(options->edge_length))) {
+        return he_fail_plain(err, HE_BAD_VALUE, "edge_length must be above 0 and finite, not %g",
+                             options->edge_length);
+    }
+    if (!options->by_length &&
+        !(options->target_faces >= 1 && options->target_faces <= HE_REMESH_FACES)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "target_faces must be from 1 to %u, not %u",
+                             HE_REMESH_FACES, options->target_faces);
+    }
+    if (options->steps < 1 || options->steps > HE_REMESH_STEPS) {
+        return he_fail_plain(err, HE_BAD_VALUE, "steps must be from 1 to %d, not %u",
+                             (int)HE_REMESH_STEPS, options->steps);
+    }
+    if (!(options->crease >= 0 && options->crease <= HE_PI)) {
+        return he_fail_plain(err, HE_BAD_VALUE, "crease must be from 0 to pi, not %g",
+                             options->crease);
+    }
+    return options->faces == NULL ? HE_OK
+                                  : he_list_require(m, HE_FACE, options->faces, options->face_count,
+                                                    HE_REPEATED_ELEMENT, err);
+}
+
+static double area_of(const he_net *n)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < n->triangle_count; t++) {
+        const uint32_t *v = n->triangles[t].v;
+        he_roundness own = he_remesh_roundness(he_net_place(n, v[0]), he_net_place(n, v[1]),
+                                               he_net_place(n, v[2]));
+        sum += 0.5 * he_vec3_length(own.area);
+    }
+    return sum;
+}
+
+static double extent_of(const he_net *n)
+{
+    double most = 0;
+    for (uint32_t v = 0; v < n->vertex_count; v++) {
+        most = fmax(most, he_vec3_extent(he_net_place(n, v)));
+    }
+    return 2 * most;
+}
+
+/* The area of a triangle with sides of length 1. */
+static const double REGULAR_AREA = 0.43301270189221932;
+
+/* Lengths in coordinates of the net are at most this, so that a float can hold their squares. */
+static const double MOST_LENGTH = 1e15;
+
+/* Finds the wanted length in coordinates of the net, and refuses one with which there would be too
+ * many triangles. */
+static he_status find_length(const he_net *n, const he_remesh_options *options, double *out,
+                             he_error *err)
+{
+    double area = area_of(n), most = HE_REMESH_FACES;
+    if (!options->by_length) {
+        *out = fmax(sqrt(area / (REGULAR_AREA * options->target_faces)),
+                    HE_REMESH_LEAST * extent_of(n));
+        return HE_OK;
+    }
+    double length = fmin(ldexp(options->edge_length, -n->exponent), MOST_LENGTH);
+    if (length < HE_REMESH_LEAST * extent_of(n)) {
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "edge_length %g is too small for faces in a box of extent %g: the "
+                             "least is %g",
+                             options->edge_length, ldexp(extent_of(n), n->exponent),
+                             ldexp(HE_REMESH_LEAST * extent_of(n), n->exponent));
+    }
+    double faces = area / (REGULAR_AREA * length * length);
+    if (faces > most) {
+        return he_fail_plain(err, HE_LIMIT,
+                             "with edges of length %g there would be about %.3g faces; at most "
+                             "%.0f are allowed",
+                             options->edge_length, faces, most);
+    }
+    *out = length;
+    return HE_OK;
+}
+
+static void set_sizes(he_net *n, double length)
+{
+    for (uint32_t v = 0; v < n->vertex_count; v++) {
+        n->vertices[v].size = (float)length;
+    }
+}
+
+/* A step has changed almost nothing if it made fewer splits, collapses and flips than this fraction
+ * of the triangles, and moved vertices by less than this fraction of the wanted length on the
+ * average. */
+static const double FEW_CHANGES = 2e-3, SMALL_MOVES = 0.01;
+
+static bool has_settled(const he_remeshing *r)
+{
+    return (double)r->changes <= FEW_CHANGES * r->net.live_triangles &&
+           r->moved <= SMALL_MOVES * r->net.live_vertices;
+}
+
+/* Runs one step. Before the first split, short edges are collapsed: otherwise long edges beside
+ * them would be cut into more pieces than are needed. */
+static he_status step(he_remeshing *r, bool first, he_error *err)
+{
+    r->changes = 0;
+    r->moved = 0;
+    he_status status = first ? he_remesh_collapse(r, err) : HE_OK;
+    if (status == HE_OK) {
+        status = he_remesh_split(r, err);
+    }
+    if (status == HE_OK) {
+        status = he_remesh_collapse(r, err);
+    }
+    if (status == HE_OK) {
+        status = he_remesh_flip(r, HE_FLIP_DEGREES, err);
+    }
+    if (status == HE_OK) {
+        status = he_remesh_relax(r, err);
+    }
+    return status == HE_OK ? he_net_tidy(&r->net, err) : status;
+}
+
+/* Makes angles even: what the steps leave are edges that bring degrees nearer to 6, but not
+ * angles. */
+static he_status finish_angles(he_remeshing *r, he_error *err)
+{
+    he_status status = he_remesh_flip(r, HE_FLIP_ANGLES, err);
+    if (status == HE_OK) {
+        status = he_remesh_relax(r, err);
+    }
+    for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
+        status = he_remesh_flip(r, HE_FLIP_ANGLES, err);
+        if (status == HE_OK) {
+            status = he_remesh_round(r, err);
+        }
+    }
+    return status;
+}
+
+/* The reported progress (0 to 1) after the preparations, and after all steps. */
+static const double PREPARED = 0.1, STEPPED = 0.9;
+
+static he_status run_steps(he_remeshing *r, const he_remesh_options *options, double length,
+                           he_remesh_stop *stop, he_error *err)
+{
+    he_status status = HE_OK;
+    *stop = HE_REMESH_DONE;
+    set_sizes(&r->net, length);
+    for (unsigned i = 0; i < options->steps && status == HE_OK; i++) {
+        double to = PREPARED + (STEPPED - PREPARED) * (i + 1) / options->steps;
+        status = he_progress_phase(r->progress, "remeshing", to, err);
+        if (status == HE_OK) {
+            status = step(r, i == 0, err);
+        }
+        if (status == HE_OK && !options->by_length) {
+            length *= sqrt((double)r->net.live_triangles / options->target_faces);
+            set_sizes(&r->net, length);
+        }
+        if (status == HE_OK && has_settled(r)) {
+            *stop = HE_REMESH_SETTLED;
+            break;
+        }
+    }
+    if (status == HE_OK) {
+        status = he_progress_phase(r->progress, "making angles even", STEPPED, err);
+    }
+    return status == HE_OK ? finish_angles(r, err) : status;
+}
+
+/* Makes the net and the ground, and runs all steps. */
+static he_status compute(const he_mesh *m, const he_remesh_options *options, he_remeshing *r,
+                         he_remesh_stop *stop, he_error *err)
+{
+    const he_net_choice choice = {options->faces, options->face_count, options->crease,
+                                  options->fixed_boundary};
+    double length = 0;
+    he_status status = he_progress_phase(r->progress, "preparing", PREPARED, err);
+    if (status == HE_OK) {
+        status = he_net_make(m, &choice, &r->net, err);
+    }
+    if (status == HE_OK) {
+        status = find_length(&r->net, options, &length, err);
+    }
+    if (status == HE_OK) {
+        r->net.most_triangles = HE_REMESH_FACES;
+        status = he_ground_copy(&r->net, &r->ground, err);
+    }
+    return status == HE_OK ? run_steps(r, options, length, stop, err) : status;
+}
+
+/* Writes the result. Changed faces of a small set are recorded one by one. */
+static he_status write(he_mesh *m, he_remeshing *r, he_error *err)
+{
+    he_mesh *copy = NULL;
+    bool replace =
+        r->ground.triangle_count > HE_REMESH_RECORDED || r->net.live_triangles > HE_REMESH_RECORDED;
+    he_status status = he_progress_phase(r->progress, "writing", 1, err);
+    if (status == HE_OK) {
+        status = he_net_write(&r->net, &r->ground, m, &copy, err);
+    }
+    if (status == HE_OK && m->c.column_count > 0) {
+        status = he_net_carry(&r->net, &r->ground, m, copy, err);
+    }
+    if (status == HE_OK && replace) {
+        he_mesh_set_progress(copy, NULL);
+        status = he_mesh_replace(m, copy, HE_KEEPS_IDS, err);
+        copy = status == HE_OK ? NULL : copy;
+    } else if (status == HE_OK) {
+        status = he_result_write(m, copy, 0, err);
+    }
+    he_mesh_free(copy);
+    return status;
+}
+
+/* --- the report --- */
+
+static void look_at(const he_net *n, uint32_t t, he_remeshed *out, double *sum, uint64_t *count)
+{
+    for (uint32_t c = 4 * t; c < 4 * t + 3; c++) {
+        uint32_t twin = he_net_twin(n, c);
+        he_vec3 p = he_net_place(n, he_net_origin(n, c));
+        he_vec3 along = he_vec3_sub(he_net_place(n, he_net_target(n, c)), p);
+        he_vec3 back = he_vec3_sub(he_net_place(n, he_net_opposite(n, c)), p);
+        double angle = he_vec3_angle(along, back);
+        out->smallest_angle = fmin(out->smallest_angle, angle);
+        out->largest_angle = fmax(out->largest_angle, angle);
+        if (twin == HE_NONE || c < twin) {
+            double length = he_vec3_length(along);
+            out->shortest = fmin(out->shortest, length);
+            out->longest = fmax(out->longest, length);
+            *sum += length;
+            ++*count;
+        }
+    }
+}
+
+static double regular_share(const he_net *n)
+{
+    uint64_t regular = 0, all = 0;
+    for (uint32_t v = 0; v < n->vertex_count; v++) {
+        const he_net_vertex *at = &n->vertices[v];
+        if ((at->flags & (HE_NET_DEAD | HE_NET_FIXED | HE_NET_LINE | HE_NET_BORDER)) == 0) {
+            regular += at->degree == 6;
+            all++;
+        }
+    }
+    return all > 0 ? (double)regular / (double)all : 1;
+}
+
+static void report(const he_remeshing *r, he_remesh_stop stop, he_remeshed *out)
+{
+    const he_net *n = &r->net;
+    double sum = 0;
+    uint64_t count = 0;
+    *out = (he_remeshed){.faces_before = r->ground.triangle_count,
+                         .faces = n->live_triangles,
+                         .shortest = HUGE_VAL,
+                         .smallest_angle = HUGE_VAL,
+                         .stop = stop};
+    for (uint32_t t = 0; t < n->triangle_count; t++) {
+        if (!he_net_is_gone(n, t)) {
+            look_at(n, t, out, &sum, &count);
+        }
+    }
+    if (count == 0) {
+        out->shortest = out->smallest_angle = 0;
+    }
+    out->shortest = he_saturated(ldexp(out->shortest, n->exponent));
+    out->longest = he_saturated(ldexp(out->longest, n->exponent));
+    out->mean = count > 0 ? he_saturated(ldexp(sum / (double)count, n->exponent)) : 0;
+    out->regular = regular_share(n);
+}
+
+he_status he_remesh(he_mesh *m, const he_remesh_options *options, he_remeshed *out, he_error *err)
+{
+    he_remeshing r = {.progress = m->progress, .project = options->project};
+    he_remesh_stop stop = HE_REMESH_SETTLED;
+    he_status status = check(m, options, err);
+    if (status == HE_OK) {
+        status = compute(m, options, &r, &stop, err);
+    }
+    if (status == HE_OK && r.ground.triangle_count > 0) {
+        status = write(m, &r, err);
+    }
+    if (status == HE_OK && out != NULL) {
+        report(&r, stop, out);
+    }
+    he_net_clear(&r.net);
+    he_ground_clear(&r.ground);
+    return status;
+}

@@ -1,0 +1,162 @@
+/* remesh_flip.c - flips edges. */
+#include "remesh/remeshing.h"
+
+/* The four vertices of the two triangles beside an edge, which runs from a to b; c is to its left,
+ * d to its right. */
+typedef struct kite {
+    uint32_t a, b, c, d;
+} kite;
+
+static int off(const he_net *n, uint32_t v, int change)
+{
+    int by = (int)n->vertices[v].degree + change - (int)n->vertices[v].ideal;
+    return by * by;
+}
+
+/* Returns by how much a flip brings the degrees nearer to the ideal: the sum of the squared
+ * differences before, less that after the flip. */
+static int gain(const he_net *n, const kite *k)
+{
+    return off(n, k->a, 0) - off(n, k->a, -1) + off(n, k->b, 0) - off(n, k->b, -1) +
+           off(n, k->c, 0) - off(n, k->c, 1) + off(n, k->d, 0) - off(n, k->d, 1);
+}
+
+/* Returns true if a vertex keeps enough edges when it loses one. */
+static bool can_lose(const he_net *n, uint32_t v)
+{
+    return n->vertices[v].degree > (he_net_has(n, v, HE_NET_BORDER) ? 2 : 3);
+}
+
+/* Returns true if an edge joins two vertices, or if that cannot be found out in a few steps. */
+static bool are_joined(const he_net *n, uint32_t c, uint32_t d)
+{
+    he_net_ring ring;
+    bool first = n->vertices[c].degree <= n->vertices[d].degree;
+    uint32_t v = he_net_can_turn(n, c) && (first || !he_net_can_turn(n, d)) ? c : d;
+    if (!he_net_turn(n, v, &ring)) {
+        return true;
+    }
+    for (uint32_t i = 0; i < ring.count; i++) {
+        if (ring.vertex[i] == (v == c ? d : c)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A flip for the degrees may not make triangles whose roundness is below both this and the
+ * roundness of the triangles before. */
+static const double LEAST_ROUND = 0.25;
+
+static bool is_wanted(const he_net *n, const kite *k, he_flip_aim aim)
+{
+    he_vec3 a = he_net_place(n, k->a), b = he_net_place(n, k->b);
+    he_vec3 c = he_net_place(n, k->c), d = he_net_place(n, k->d);
+    int better = gain(n, k);
+    if (aim == HE_FLIP_DEGREES && better <= 0) {
+        return false;
+    }
+    he_roundness left = he_remesh_roundness(a, b, c), right = he_remesh_roundness(b, a, d);
+    if (aim == HE_FLIP_ANGLES) {
+        /* The cotangents of the two angles opposite the edge have a negative sum if the angles add
+         * up to more than pi. */
+        double at_c = he_vec3_dot(he_vec3_sub(a, c), he_vec3_sub(b, c));
+        double at_d = he_vec3_dot(he_vec3_sub(a, d), he_vec3_sub(b, d));
+        double l = he_vec3_length(left.area), r = he_vec3_length(right.area);
+        if (!(at_c * r + at_d * l < -1e-9 * (l * r))) {
+            return false;
+        }
+    }
+    he_roundness fore = he_remesh_roundness(d, c, a), back = he_remesh_roundness(c, d, b);
+    double before = fmin(left.round, right.round), after = fmin(fore.round, back.round);
+    if (aim == HE_FLIP_DEGREES ? after < fmin(before, LEAST_ROUND) : after <= before) {
+        return false;
+    }
+    he_vec3 old = he_vec3_add(left.area, right.area);
+    return he_remesh_agree(left.area, right.area) && he_remesh_agree(old, fore.area) &&
+           he_remesh_agree(old, back.area);
+}
+
+static void take_edge(he_net *n, uint32_t to, uint32_t twin, uint32_t h, uint32_t marks)
+{
+    he_net_pair(n, to, twin);
+    n->ids[to >> 2].halfedge[to & 3] = h;
+    he_net_set_edge_marks(n, to, marks);
+}
+
+static void replace_corner(he_net *n, uint32_t v, const uint32_t lost[2], uint32_t other)
+{
+    if (n->corner[v] == lost[0] || n->corner[v] == lost[1]) {
+        n->corner[v] = other;
+    }
+}
+
+/* Flips the edge of corner e, which turns counter-clockwise: it runs from d to c afterwards. */
+static void flip(he_net *n, uint32_t e, const kite *k)
+{
+    uint32_t twin = he_net_twin(n, e);
+    uint32_t from_b = he_net_next(e), from_c = he_net_prev(e);
+    uint32_t from_a = he_net_next(twin), from_d = he_net_prev(twin);
+    uint32_t side[4] = {from_b, from_c, from_a, from_d}, beside[4], h[4], marks[4];
+    for (unsigned i = 0; i < 4; i++) {
+        beside[i] = he_net_twin(n, side[i]);
+        h[i] = he_net_halfedge(n, side[i]);
+        marks[i] = he_net_edge_marks(n, side[i]);
+    }
+    uint32_t *left = n->triangles[e >> 2].v, *right = n->triangles[twin >> 2].v;
+    left[e & 3] = k->d;
+    left[from_b & 3] = k->c;
+    left[from_c & 3] = k->a;
+    right[twin & 3] = k->c;
+    right[from_a & 3] = k->d;
+    right[from_d & 3] = k->b;
+    take_edge(n, from_b, beside[1], h[1], marks[1]);
+    take_edge(n, from_c, beside[2], h[2], marks[2]);
+    take_edge(n, from_a, beside[3], h[3], marks[3]);
+    take_edge(n, from_d, beside[0], h[0], marks[0]);
+    replace_corner(n, k->c, (uint32_t[2]){from_c, from_c}, from_b);
+    replace_corner(n, k->d, (uint32_t[2]){from_d, from_d}, from_a);
+    replace_corner(n, k->a, (uint32_t[2]){e, from_a}, from_c);
+    replace_corner(n, k->b, (uint32_t[2]){twin, from_b}, from_d);
+    he_net_add_degree(n, k->a, -1);
+    he_net_add_degree(n, k->b, -1);
+    he_net_add_degree(n, k->c, 1);
+    he_net_add_degree(n, k->d, 1);
+}
+
+static bool try_flip(he_net *n, uint32_t e, he_flip_aim aim)
+{
+    uint32_t twin = he_net_twin(n, e);
+    kite k = {he_net_origin(n, e), he_net_origin(n, twin), he_net_opposite(n, e),
+              he_net_opposite(n, twin)};
+    if (k.c == k.d || !can_lose(n, k.a) || !can_lose(n, k.b) || !is_wanted(n, &k, aim) ||
+        are_joined(n, k.c, k.d)) {
+        return false;
+    }
+    flip(n, e, &k);
+    return true;
+}
+
+/* The number of times that all edges are tested, unless there is nothing to flip any more. */
+enum { SWEEPS = 3 };
+
+he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, he_error *err)
+{
+    he_net *n = &r->net;
+    uint64_t flips = 1;
+    he_status status = HE_OK;
+    for (unsigned sweep = 0; sweep < SWEEPS && flips > 0 && status == HE_OK; sweep++) {
+        flips = 0;
+        for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
+            status = he_progress_at(r->progress, t, n->triangle_count, err);
+            for (uint32_t c = 4 * t; c < 4 * t + 3 && !he_net_is_gone(n, t); c++) {
+                uint32_t twin = he_net_twin(n, c);
+                if (twin != HE_NONE && c < twin && !he_net_is_held(n, c)) {
+                    flips += try_flip(n, c, aim);
+                }
+            }
+        }
+        r->changes += flips;
+    }
+    return status;
+}

@@ -1,0 +1,73 @@
+/* remeshing.h - the state of a remeshing, and its passes: each goes once over all triangles or
+ * vertices of the net. remesh.c calls them. */
+#ifndef HE_REMESH_REMESHING_H
+#define HE_REMESH_REMESHING_H
+
+#include "remesh/ground.h"
+#include "remesh/net.h"
+
+/* An edge is too long if it is longer than HE_REMESH_LONG times the wanted length, and too short if
+ * it is shorter than HE_REMESH_SHORT times that length. With these limits, the mean length becomes
+ * about the wanted one. */
+#define HE_REMESH_LONG  1.24
+#define HE_REMESH_SHORT 0.78
+
+typedef struct he_remeshing {
+    he_net net;
+    he_ground ground;
+    he_progress *progress;
+    bool project;
+    uint64_t changes; /* number of splits, collapses and flips in this step */
+    double moved;     /* the sum of the moves of all vertices in this step, in wanted lengths */
+} he_remeshing;
+
+/* How flips are chosen. */
+typedef enum he_flip_aim {
+    HE_FLIP_DEGREES, /* degrees come nearer to the ideal */
+    HE_FLIP_ANGLES   /* the angles opposite an edge add up to at most pi */
+} he_flip_aim;
+
+/* Each returns HE_NO_MEMORY if memory is out, or HE_CANCELLED if the work was cancelled.
+ * he_remesh_split also returns HE_LIMIT if there would be too many triangles. */
+HE_NODISCARD he_status he_remesh_split(he_remeshing *r, he_error *err);
+HE_NODISCARD he_status he_remesh_collapse(he_remeshing *r, he_error *err);
+HE_NODISCARD he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, he_error *err);
+HE_NODISCARD he_status he_remesh_relax(he_remeshing *r, he_error *err);
+/* Moves the corners of the triangles that are least round, so that they become rounder. */
+HE_NODISCARD he_status he_remesh_round(he_remeshing *r, he_error *err);
+
+/* --- shapes of triangles --- */
+
+static inline double he_remesh_square(he_vec3 a, he_vec3 b)
+{
+    he_vec3 d = he_vec3_sub(b, a);
+    return he_vec3_dot(d, d);
+}
+
+/* A triangle's area vector, twice as long as its area, and its roundness: the square of 4 sqrt(3)
+ * area / (sum of the squared sides), which is 1 for a regular triangle, and 0 for one without
+ * area. */
+typedef struct he_roundness {
+    he_vec3 area;
+    double round;
+} he_roundness;
+
+static inline he_roundness he_remesh_roundness(he_vec3 a, he_vec3 b, he_vec3 c)
+{
+    he_vec3 ab = he_vec3_sub(b, a), ac = he_vec3_sub(c, a), bc = he_vec3_sub(c, b);
+    he_vec3 area = he_vec3_cross(ab, ac);
+    double sum = he_vec3_dot(ab, ab) + he_vec3_dot(ac, ac) + he_vec3_dot(bc, bc);
+    double square = 12 * he_vec3_dot(area, area);
+    return (he_roundness){area, sum > 0 ? square / (sum * sum) : 0};
+}
+
+/* Returns true if the directions of two area vectors differ by at most 60 degrees, or if one of
+ * them has no direction. */
+static inline bool he_remesh_agree(he_vec3 a, he_vec3 b)
+{
+    double along = he_vec3_dot(a, b);
+    double squares = he_vec3_dot(a, a) * he_vec3_dot(b, b);
+    return squares == 0 || (along > 0 && along * along >= 0.25 * squares);
+}
+
+#endif

@@ -1,0 +1,223 @@
+/* Remeshing: which shapes stay exactly as they are, how even the triangles become, and what is
+ * refused. */
+#include "tests/unit/dense.h"
+
+#include "geometry/geometry.h"
+#include "mesh/marks.h"
+#include "remesh/remesh.h"
+
+#include <float.h>
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+static he_remesh_options usual(double edge_length)
+{
+    return (he_remesh_options){.by_length = edge_length > 0,
+                               .edge_length = edge_length,
+                               .steps = HE_REMESH_STEPS_USUAL,
+                               .project = true,
+                               .crease = HE_REMESH_CREASE};
+}
+
+static he_remeshed remesh(he_mesh *m, const he_remesh_options *options)
+{
+    he_remeshed out = {.stop = HE_REMESH_STOP_COUNT};
+    he_error err = {0};
+    if (he_remesh(m, options, &out, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    fixture_check(m);
+    return out;
+}
+
+static he_remeshed remesh_evenly(he_mesh *m, double edge_length)
+{
+    he_remesh_options options = usual(edge_length);
+    return remesh(m, &options);
+}
+
+static double degrees(double radians)
+{
+    return radians * 180 / PI;
+}
+
+static void tell(const char *what, const he_remeshed *r)
+{
+    printf("note: %s: %u faces, edges %.3g %.3g %.3g, angles %.1f to %.1f, regular %.2f, %s\n",
+           what, r->faces, r->shortest, r->mean, r->longest, degrees(r->smallest_angle),
+           degrees(r->largest_angle), r->regular, he_remesh_stop_names[r->stop]);
+}
+
+static he_measures measure(const he_mesh *m)
+{
+    he_measures out;
+    assert_int_equal(he_mesh_measure(m, &out, NULL), HE_OK);
+    return out;
+}
+
+static void assert_near(double a, double b, double relative)
+{
+    if (!(fabs(a - b) <= relative * fabs(b))) {
+        fail_msg("%.17g is not %.17g", a, b);
+    }
+}
+
+/* --- exact shapes --- */
+
+static void a_cube_keeps_its_edges_area_and_volume(void **state)
+{
+    (void)state;
+    static const double lengths[] = {0.7, 1.3, 2.9, 4, 11, 30};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        he_mesh *m = dense_cube(10);
+        he_remeshed done = remesh_evenly(m, lengths[i]);
+        he_measures after = measure(m);
+        tell("cube", &done);
+        assert_near(after.area, 600, 1e-12);
+        assert_near(after.volume, 1000, 1e-12);
+        double length = 0;
+        for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
+            double angle;
+            if (he_mesh_is_live(m, HE_EDGE, e) && he_edge_dihedral(m, (he_edge){e}, &angle) &&
+                fabs(angle) > 0.1) {
+                assert_near(angle, PI / 2, 1e-9);
+                length += he_edge_length(m, (he_edge){e});
+            }
+        }
+        assert_near(length, 120, 1e-12);
+        he_mesh_free(m);
+    }
+}
+
+static void triangles_of_a_plane_are_even(void **state)
+{
+    (void)state;
+    static const double lengths[] = {0.21, 0.5, 0.8, 1, 1.3, 2, 3.1};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        he_mesh *m = dense_grid(20, NULL, 1);
+        he_remeshed done = remesh_evenly(m, lengths[i]);
+        tell("plane", &done);
+        assert_true(done.smallest_angle >= PI / 6 && done.largest_angle <= PI * 2 / 3);
+        assert_near(done.mean, lengths[i], 0.15);
+        assert_near(measure(m).area, 400, 1e-12);
+        for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            assert_true(he_position(m, (he_vertex){v}).z == 0);
+        }
+        he_mesh_free(m);
+    }
+}
+
+/* A disc with a boundary of 40 straight parts. */
+static he_mesh *make_disc(void)
+{
+    enum { ROUND = 40, RINGS = 8 };
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    (void)dense_add_vertex(&soup, 0, 0, 0);
+    for (uint32_t i = 0; i < RINGS; i++) {
+        for (uint32_t k = 0; k < ROUND; k++) {
+            double a = 2 * PI * k / ROUND, r = (i + 1.0) / RINGS;
+            (void)dense_add_vertex(&soup, r * cos(a), r * sin(a), 0);
+        }
+    }
+    for (uint32_t k = 0; k < ROUND; k++) {
+        uint32_t next = (k + 1) % ROUND;
+        dense_add_triangle(&soup, 0, 1 + k, 1 + next);
+        for (uint32_t i = 0; i + 1 < RINGS; i++) {
+            uint32_t in = 1 + i * ROUND, out = in + ROUND;
+            dense_add_triangle(&soup, in + k, out + k, out + next);
+            dense_add_triangle(&soup, in + k, out + next, in + next);
+        }
+    }
+    return dense_built(&soup);
+}
+
+static void the_boundary_of_a_disc_stays(void **state)
+{
+    (void)state;
+    static const double lengths[] = {0.03, 0.1, 0.3};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        he_mesh *m = make_disc(), *first = dense_copy(m);
+        he_remeshed done = remesh_evenly(m, lengths[i]);
+        double apothem = cos(PI / 40);
+        tell("disc", &done);
+        for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            if (he_mesh_is_live(m, HE_VERTEX, v) && he_is_boundary_vertex(m, (he_vertex){v})) {
+                /* The boundary's 40 straight parts touch a circle of radius cos(pi / 40). */
+                he_vec3 p = he_position(m, (he_vertex){v});
+                double a = atan2(p.y, p.x) * 40 / (2 * PI), off = (a - floor(a) - 0.5) / 40;
+                assert_near(hypot(p.x, p.y) * cos(2 * PI * off), apothem, 1e-12);
+            }
+        }
+        assert_near(measure(m).area, measure(first).area, lengths[i] * lengths[i]);
+        assert_true(done.smallest_angle > PI / 7);
+        he_remesh_options options = usual(lengths[i]);
+        options.fixed_boundary = true;
+        (void)remesh(first, &options);
+        for (uint32_t k = 0; k < 40; k++) {
+            assert_true(he_mesh_is_live(first, HE_VERTEX, 281 + k));
+        }
+        assert_int_equal(he_mesh_boundary_halfedges(first), 40);
+        he_mesh_free(first);
+        he_mesh_free(m);
+    }
+}
+
+static void a_sphere_stays_round(void **state)
+{
+    (void)state;
+    he_mesh *m = dense_shape("icosphere", "subdivisions", 4), *first = dense_copy(m);
+    he_remeshed done = remesh_evenly(m, 0.1);
+    tell("sphere", &done);
+    assert_true(done.smallest_angle > PI / 6 && done.largest_angle < PI * 2 / 3);
+    assert_near(done.mean, 0.1, 0.1);
+    dense_apart there = dense_measure(m, first);
+    printf("note: sphere: farthest %g, mean square %g\n", there.farthest, there.root_mean_square);
+    assert_true(there.farthest < 0.1 * 0.1 / 3);
+    assert_int_equal(there.turned, 0);
+    he_mesh_free(first);
+    he_mesh_free(m);
+}
+
+static void a_second_remeshing_changes_little(void **state)
+{
+    (void)state;
+    he_mesh *m = dense_torus(60);
+    he_remeshed done = remesh_evenly(m, 0.15), again = remesh_evenly(m, 0.15);
+    tell("torus", &done);
+    tell("torus again", &again);
+    assert_near(again.faces, done.faces, 0.02);
+    assert_near(again.mean, done.mean, 0.02);
+    he_mesh_free(m);
+}
+
+static void the_number_of_faces_is_met(void **state)
+{
+    (void)state;
+    static const uint32_t targets[] = {500, 2000, 7200, 30000};
+    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+        he_mesh *m = dense_torus(60);
+        he_remesh_options options = usual(0);
+        options.target_faces = targets[i];
+        he_remeshed done = remesh(m, &options);
+        tell("faces", &done);
+        assert_near(done.faces, targets[i], 0.03);
+        assert_int_equal(he_mesh_faces(m), done.faces);
+        assert_true(done.smallest_angle > PI / 9);
+        he_mesh_free(m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cube_keeps_its_edges_area_and_volume),
+        cmocka_unit_test(triangles_of_a_plane_are_even),
+        cmocka_unit_test(the_boundary_of_a_disc_stays),
+        cmocka_unit_test(a_sphere_stays_round),
+        cmocka_unit_test(a_second_remeshing_changes_little),
+        cmocka_unit_test(the_number_of_faces_is_met),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
