@@ -34,14 +34,27 @@ static he_status check(const he_mesh *m, const he_remesh_options *options, he_er
                                                     HE_REPEATED_ELEMENT, err);
 }
 
-static double area_of(const he_net *n)
+/* The area of a triangle with sides of length 1. */
+static const double REGULAR_AREA = 0.43301270189221932;
+
+/* Estimates how many triangles with edges of a length are needed: so many as have the same area,
+ * and for a triangle that is longer but much lower than the length, as many as fit along it. */
+static double estimate(const he_net *n, double length)
 {
-    double sum = 0;
+    double sum = 0, unit = REGULAR_AREA * length * length;
     for (uint32_t t = 0; t < n->triangle_count; t++) {
+        if (he_net_is_gone(n, t)) {
+            continue;
+        }
         const uint32_t *v = n->triangles[t].v;
-        he_roundness own = he_remesh_roundness(he_net_place(n, v[0]), he_net_place(n, v[1]),
-                                               he_net_place(n, v[2]));
-        sum += 0.5 * he_vec3_length(own.area);
+        he_vec3 a = he_net_place(n, v[0]), b = he_net_place(n, v[1]), c = he_net_place(n, v[2]);
+        double area = 0.5 * he_vec3_length(he_remesh_roundness(a, b, c).area);
+        double longest = sqrt(
+            fmax(he_remesh_square(a, b), fmax(he_remesh_square(b, c), he_remesh_square(c, a))));
+        sum += area / unit;
+        if (longest > length && 2 * area < 0.5 * length * longest) {
+            sum += longest / length;
+        }
     }
     return sum;
 }
@@ -55,37 +68,55 @@ static double extent_of(const he_net *n)
     return 2 * most;
 }
 
-/* The area of a triangle with sides of length 1. */
-static const double REGULAR_AREA = 0.43301270189221932;
+/* Finds the length with which about `target` triangles are needed, not below `least`. */
+static double length_for(const he_net *n, double target, double least)
+{
+    double low = least, high = fmax(2 * extent_of(n), least);
+    if (!(low > 0)) {
+        return 1;
+    }
+    while (high > low * (1 + 1e-3)) {
+        double middle = sqrt(low * high);
+        if (estimate(n, middle) > target) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return high;
+}
+
+static he_status require_few(const he_net *n, const he_remesh_options *options, double length,
+                             he_error *err)
+{
+    double faces = estimate(n, length);
+    return faces <= HE_REMESH_FACES
+               ? HE_OK
+               : he_fail_plain(err, HE_LIMIT,
+                               "with edges of length %g there would be about %.3g faces; at most "
+                               "%u are allowed",
+                               options->edge_length, faces, HE_REMESH_FACES);
+}
 
 /* Lengths in coordinates of the net are at most this, so that a float can hold their squares. */
 static const double MOST_LENGTH = 1e15;
 
-/* Finds the wanted length in coordinates of the net, and refuses one with which there would be too
- * many triangles. */
+/* Finds the wanted length in coordinates of the net. */
 static he_status find_length(const he_net *n, const he_remesh_options *options, double *out,
                              he_error *err)
 {
-    double area = area_of(n), most = HE_REMESH_FACES;
+    double least = HE_REMESH_LEAST * extent_of(n);
     if (!options->by_length) {
-        *out = fmax(sqrt(area / (REGULAR_AREA * options->target_faces)),
-                    HE_REMESH_LEAST * extent_of(n));
+        *out = length_for(n, options->target_faces, least);
         return HE_OK;
     }
     double length = fmin(ldexp(options->edge_length, -n->exponent), MOST_LENGTH);
-    if (length < HE_REMESH_LEAST * extent_of(n)) {
+    if (length < least) {
         return he_fail_plain(err, HE_BAD_VALUE,
                              "edge_length %g is too small for faces in a box of extent %g: the "
                              "least is %g",
                              options->edge_length, ldexp(extent_of(n), n->exponent),
-                             ldexp(HE_REMESH_LEAST * extent_of(n), n->exponent));
-    }
-    double faces = area / (REGULAR_AREA * length * length);
-    if (faces > most) {
-        return he_fail_plain(err, HE_LIMIT,
-                             "with edges of length %g there would be about %.3g faces; at most "
-                             "%.0f are allowed",
-                             options->edge_length, faces, most);
+                             ldexp(least, n->exponent));
     }
     *out = length;
     return HE_OK;
@@ -109,16 +140,11 @@ static bool has_settled(const he_remeshing *r)
            r->moved <= SMALL_MOVES * r->net.live_vertices;
 }
 
-/* Runs one step. Before the first split, short edges are collapsed: otherwise long edges beside
- * them would be cut into more pieces than are needed. */
-static he_status step(he_remeshing *r, bool first, he_error *err)
+static he_status step(he_remeshing *r, he_error *err)
 {
     r->changes = 0;
     r->moved = 0;
-    he_status status = first ? he_remesh_collapse(r, err) : HE_OK;
-    if (status == HE_OK) {
-        status = he_remesh_split(r, err);
-    }
+    he_status status = he_remesh_split(r, err);
     if (status == HE_OK) {
         status = he_remesh_collapse(r, err);
     }
@@ -151,20 +177,31 @@ static he_status finish_angles(he_remeshing *r, he_error *err)
 /* The reported progress (0 to 1) after the preparations, and after all steps. */
 static const double PREPARED = 0.1, STEPPED = 0.9;
 
+/* If a number of faces is wanted, the length that was estimated first is changed by at most this
+ * factor: the number may be out of reach, because of frozen edges. */
+static const double MOST_CHANGE = 2;
+
 static he_status run_steps(he_remeshing *r, const he_remesh_options *options, double length,
                            he_remesh_stop *stop, he_error *err)
 {
-    he_status status = HE_OK;
+    const double first = length;
     *stop = HE_REMESH_DONE;
     set_sizes(&r->net, length);
+    /* Short edges are collapsed before the first split: otherwise long edges beside them would be
+     * cut into more pieces than are needed. */
+    he_status status = he_remesh_collapse(r, err);
+    if (status == HE_OK && options->by_length) {
+        status = require_few(&r->net, options, length, err);
+    }
     for (unsigned i = 0; i < options->steps && status == HE_OK; i++) {
         double to = PREPARED + (STEPPED - PREPARED) * (i + 1) / options->steps;
         status = he_progress_phase(r->progress, "remeshing", to, err);
         if (status == HE_OK) {
-            status = step(r, i == 0, err);
+            status = step(r, err);
         }
         if (status == HE_OK && !options->by_length) {
-            length *= sqrt((double)r->net.live_triangles / options->target_faces);
+            double wrong = sqrt((double)r->net.live_triangles / options->target_faces);
+            length = fmin(fmax(length * wrong, first / MOST_CHANGE), first * MOST_CHANGE);
             set_sizes(&r->net, length);
         }
         if (status == HE_OK && has_settled(r)) {

@@ -25,6 +25,7 @@ extern const md_row md_loop_rows[];
 extern const md_row md_region_rows[];
 extern const md_row md_refine_rows[];
 extern const md_row md_decimate_rows[];
+extern const md_row md_remesh_rows[];
 extern const md_row md_material_rows[];
 
 #endif
