@@ -113,7 +113,9 @@ static void put_number(draft *d, const he_param *p)
     put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
 }
 
-static void put_value(draft *d, const he_param *p)
+/* Writes the member for a parameter. `arg` gets the value of a choice, on which other parameters
+ * may depend. */
+static void put_value(draft *d, const he_param *p, he_arg *arg)
 {
     size_t choices = 0;
     switch (p->type) {
@@ -148,7 +150,11 @@ static void put_value(draft *d, const he_param *p)
         while (p->choices[choices] != NULL) {
             choices++;
         }
-        put(d, "\"%s\":\"%s\"", p->name, p->choices[md_below(d->random, (uint32_t)choices)]);
+        arg->choice = (int)md_below(d->random, (uint32_t)choices);
+        put(d, "\"%s\":\"%s\"", p->name, p->choices[arg->choice]);
+        return;
+    case HE_PARAM_POLYGON:
+        put(d, "\"%s\":[[-1,-1],[%.17g,-1],[0,1]]", p->name, md_unit(d->random));
         return;
     case HE_PARAM_MATRIX:
         put(d, "\"%s\":[1,0,0,%.17g,0,1,0,%.17g,0,0,1,0,0,0,0,1]", p->name,
@@ -168,17 +174,21 @@ static void put_value(draft *d, const he_param *p)
 
 /* Returns whether parameter i is in the request: of several alternatives, one is chosen at
  * random. */
-static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
+static bool is_chosen(draft *d, const he_op *op, const he_arg *args, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];
+    if (!he_op_takes(op, args, i)) {
+        return false;
+    }
     if (p->group == 0) {
-        return (p->flags & HE_REQUIRED) != 0 || md_chance(d->random, 30);
+        return he_op_needs(op, args, i) || md_chance(d->random, 30);
     }
     size_t later = 0;
     bool required = false;
     for (size_t k = 0; k < he_op_params(op); k++) {
-        later += k > i && op->params[k].group == p->group;
-        required |= op->params[k].group == p->group && (op->params[k].flags & HE_REQUIRED) != 0;
+        const bool same = op->params[k].group == p->group && he_op_takes(op, args, k);
+        later += k > i && same;
+        required |= same && he_op_needs(op, args, k);
     }
     return strchr(taken, p->group) == NULL &&
            (md_chance(d->random, 40) || (required && later == 0));
@@ -266,6 +276,8 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
     const he_op *op = he_op_at(row);
     draft d = {.random = r, .mesh = m, .text = text};
     char taken[HE_OP_PARAMS + 1] = "";
+    he_arg args[HE_OP_PARAMS];
+    he_op_defaults(op, args);
     d.halfedge = any(&d, HE_HALFEDGE);
     /* Some operations need a hole, and holes are rare, so this searches for a half-edge next to
      * one. */
@@ -283,12 +295,12 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
         return;
     }
     for (size_t i = 0; i < he_op_params(op); i++) {
-        if (is_chosen(&d, op, i, taken)) {
+        if (is_chosen(&d, op, args, i, taken)) {
             if (op->params[i].group != 0) {
                 taken[strlen(taken)] = op->params[i].group;
             }
             put(&d, ",");
-            put_value(&d, &op->params[i]);
+            put_value(&d, &op->params[i], &args[i]);
         }
     }
     put(&d, "}");

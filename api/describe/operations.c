@@ -29,7 +29,9 @@ static const char *param_type(const he_param *param)
     case HE_PARAM_CHOICE:
         return "choice";
     case HE_PARAM_MATRIX:
-        return "matrix";
+        return param->flags & HE_PROJECTIVE ? "matrix_projective" : "matrix";
+    case HE_PARAM_POLYGON:
+        return "polygon";
     case HE_PARAM_TEXT:
         return "text";
     case HE_PARAM_COLOR:
@@ -43,7 +45,7 @@ static const char *param_type(const he_param *param)
 /* A parameter has a default value if it need not be given and nothing else determines its value. */
 static bool has_default(const he_param *param)
 {
-    return (param->flags & (HE_REQUIRED | HE_DERIVED)) == 0 &&
+    return (param->flags & (HE_REQUIRED | HE_DERIVED)) == 0 && param->needed == 0 &&
            (param->type == HE_PARAM_NUMBER || param->type == HE_PARAM_FLAG ||
             param->type == HE_PARAM_CHOICE);
 }
@@ -67,12 +69,29 @@ static void write_doc(api_out *out, const void *doc)
     api_out_string(out, text == NULL ? "" : text);
 }
 
+/* The most choices that a selector has, one for each bit of he_param.with. */
+enum { MOST_CHOICES = 32 };
+
+/* Lists the names of those choices of the operation's selector that are in `bits`; the list ends in
+ * NULL, and is empty if `bits` is 0. */
+static void list_choices(const he_op *op, unsigned bits, const char *out[MOST_CHOICES + 1])
+{
+    size_t count = 0;
+    for (size_t i = 0; i < MOST_CHOICES && bits >> i != 0; i++) {
+        if (bits & HE_WITH(i)) {
+            out[count++] = he_op_selector(op)->choices[i];
+        }
+    }
+    out[count] = NULL;
+}
+
 /* A parameter with the values of its JSON members that are not in he_param. */
 typedef struct shown_param {
     he_param param;
     const char *type;
     char group[2];
-    bool required, set, nullable, has_default, has_range, exclusive;
+    bool required, selects, set, nullable, has_default, has_range, exclusive;
+    const char *const *with, *const *needed; /* NULL: none */
 } shown_param;
 
 static const api_field param_fields[] = {
@@ -80,13 +99,22 @@ static const api_field param_fields[] = {
     API_FIELD("plural", "text", shown_param, param.plural,
               .doc = "The name of the parameter that takes a list of ids instead of one id."),
     API_FIELD("set", "flag", shown_param, set, .zero_is_none = true,
-              .doc = "True if a set such as {\"selected\":true} may be given instead of a list of "
-                     "ids."),
+              .doc = "True if a set such as {\"selected\":true} or {\"patch\":3} may be given "
+                     "instead of a list of ids."),
     API_FIELD("type", "text", shown_param, type, .required = true),
     API_FIELD("required", "flag", shown_param, required, .required = true),
     API_FIELD("nullable", "flag", shown_param, nullable, .zero_is_none = true),
     API_FIELD("group", "text", shown_param, group, .zero_is_none = true,
               .doc = "Exactly one of the parameters with the same group must be given."),
+    API_FIELD("selects", "flag", shown_param, selects, .zero_is_none = true,
+              .doc = "True for the selector of an operation: a choice on which depends which other "
+                     "parameters may be given."),
+    API_FIELD("with", "*text", shown_param, with,
+              .doc = "The values of the selector with which the parameter may be given. Without "
+                     "this member it may be given with all."),
+    API_FIELD("required_with", "*text", shown_param, needed,
+              .doc = "The values of the selector with which the parameter, or one of its group, "
+                     "must be given."),
     API_FIELD_MADE_OF("default", "#scalar", shown_param, param, write_default,
                       .known = API_KNOWN(shown_param, has_default)),
     API_FIELD("min", "number", shown_param, param.min, .known = API_KNOWN(shown_param, has_range)),
@@ -99,13 +127,19 @@ static const api_field param_fields[] = {
 };
 const api_record api_parameter_record = API_RECORD("parameter", param_fields);
 
-static void write_param(api_out *out, const he_param *param)
+static void write_param(api_out *out, const he_op *op, const he_param *param)
 {
     const bool has_range = (param->flags & HE_RANGE) != 0;
+    const char *with[MOST_CHOICES + 1], *needed[MOST_CHOICES + 1];
+    list_choices(op, param->with, with);
+    list_choices(op, param->needed, needed);
     const shown_param shown = {.param = *param,
                                .type = param_type(param),
                                .group = {param->group, '\0'},
                                .required = (param->flags & HE_REQUIRED) != 0,
+                               .selects = (param->flags & HE_SELECTS) != 0,
+                               .with = param->with != 0 ? with : NULL,
+                               .needed = param->needed != 0 ? needed : NULL,
                                .set = param->plural != NULL,
                                .nullable = (param->flags & HE_NULLABLE) != 0,
                                .has_default = has_default(param),
@@ -157,7 +191,7 @@ static void write_params(api_out *out, const void *value)
     const he_op *op = value;
     api_out_array_begin(out);
     for (size_t i = 0; i < he_op_params(op); i++) {
-        write_param(out, &op->params[i]);
+        write_param(out, op, &op->params[i]);
     }
     api_out_array_end(out);
 }
@@ -326,7 +360,10 @@ static void write_value_schema(api_out *out, const he_param *param)
         write_default_member(out, param);
         break;
     case HE_PARAM_MATRIX:
-        api_schema_reference(out, "matrix");
+        api_schema_reference(out, param_type(param));
+        break;
+    case HE_PARAM_POLYGON:
+        api_schema_reference(out, "polygon");
         break;
     case HE_PARAM_TEXT:
         api_out_key_string(out, "type", "string");
@@ -340,12 +377,49 @@ static void write_value_schema(api_out *out, const he_param *param)
     }
 }
 
-static void write_param_schema(api_out *out, const he_param *param)
+static void add_choices(api_text *text, const char *before, const char *const *choices)
+{
+    for (; *choices != NULL; choices++) {
+        api_text_add_format(text, "%s`%s`", before, *choices);
+        before = ", ";
+    }
+}
+
+/* Writes the description of a parameter. If the parameter depends on the operation's selector, a
+ * sentence at its end says so. */
+static void write_description(api_out *out, const he_op *op, const he_param *param)
+{
+    api_text text = {0};
+    if (param->with == 0) {
+        api_out_key_string(out, "description", param->doc);
+        return;
+    }
+    const char *with[MOST_CHOICES + 1], *needed[MOST_CHOICES + 1];
+    list_choices(op, param->with, with);
+    list_choices(op, param->needed, needed);
+    api_text_add_format(&text, "%s Only if `%s` is ", param->doc, he_op_selector(op)->name);
+    add_choices(&text, "", with);
+    api_text_add_string(&text, ".");
+    if (param->needed == param->with && param->group == 0 && param->plural == NULL) {
+        api_text_add_string(&text, " Then it is required.");
+    } else if (param->needed != 0) {
+        add_choices(&text,
+                    param->group != 0 ? " One of its group is required for "
+                                      : " It is required for ",
+                    needed);
+        api_text_add_string(&text, ".");
+    }
+    api_text_add(&text, "", 1); /* the NUL at its end */
+    api_out_key_string(out, "description", text.failed ? param->doc : text.bytes);
+    api_text_clear(&text);
+}
+
+static void write_param_schema(api_out *out, const he_op *op, const he_param *param)
 {
     api_out_key(out, param->name);
     api_out_object_begin(out);
     if (param->doc != NULL) {
-        api_out_key_string(out, "description", param->doc);
+        write_description(out, op, param);
     }
     write_value_schema(out, param);
     api_out_object_end(out);
@@ -424,7 +498,7 @@ static void write_op_schema(api_out *out, const he_op *op)
     begin_named(out, "op", op, description.failed ? op->doc : description.bytes);
     api_text_clear(&description);
     for (size_t i = 0; i < he_op_params(op); i++) {
-        write_param_schema(out, &op->params[i]);
+        write_param_schema(out, op, &op->params[i]);
     }
     for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
         api_out_key(out, beside[i].name);

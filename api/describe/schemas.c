@@ -48,9 +48,15 @@ static const struct {
      "{\"type\":\"string\",\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"type\":\"string\",\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
-    {"set", "{\"type\":\"object\",\"additionalProperties\":{\"type\":\"boolean\",\"const\":true},"
+    {"set", "{\"type\":\"object\",\"additionalProperties\":{\"oneOf\":[{\"type\":\"boolean\","
+            "\"const\":true},{\"type\":\"integer\",\"format\":\"int64\"}]},"
             "\"minProperties\":1,\"maxProperties\":1,\"description\":\"The live elements "
-            "whose bool attribute of this name is true; none changes nothing.\"}"},
+            "whose bool attribute of this name is true, or whose int32 or uint32 attribute of "
+            "this name has this value.\"}"},
+    {"polygon", "{\"type\":\"array\",\"items\":{\"type\":\"array\",\"items\":{\"type\":"
+                "\"number\"},\"minItems\":2,\"maxItems\":2},\"minItems\":3}"},
+    {"matrix_projective", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
+                          "\"maxItems\":16,\"description\":\"Row-major.\"}"},
     {"ids_or_set",
      "{\"oneOf\":[{\"type\":\"array\",\"items\":"
      "{\"$ref\":\"#/components/schemas/id\"},\"minItems\":1},"

@@ -89,6 +89,9 @@ static const struct {
               "to zero have no common normal. Give a vector or a factor instead of a distance."},
     [HE_NOT_TRIANGLE] =
         {422, "Every face must be a triangle for this operation: use `triangulate` first."},
+    [HE_NO_SUCH_ATTRIBUTE] = {422, "The mesh has no attribute with this name in this domain; GET "
+                                   ".../attributes lists its attributes. The status is 404 if the "
+                                   "attribute is in the path, and 422 if it is in the body."},
     [HE_ATTRIBUTE_CLASH] = {422,
                             "Attributes with the same name on the same kind of element must have "
                             "the same type and number of components, and either both or neither "

@@ -98,10 +98,6 @@
     X(NO_SUCH_MESH, "no_such_mesh", 404, "No such mesh",                                           \
       "No mesh has this id, or the mesh was deleted. The status is 404 if the id is in the path, " \
       "and 422 if it is in the body.")                                                             \
-    X(NO_SUCH_ATTRIBUTE, "no_such_attribute", 404, "No such attribute",                            \
-      "The mesh has no attribute with this name in this domain; GET .../attributes lists its "     \
-      "attributes. The status is 404 if the attribute is in the path, and 422 if it is in the "    \
-      "body.")                                                                                     \
     X(NO_SUCH_JOB, "no_such_job", 404, "No such job",                                              \
       "No job has this id, or the job ended so long ago that the server has forgotten it.")        \
     X(NO_SUCH_RESULT, "no_such_result", 404, "The job has no result",                              \

@@ -63,8 +63,9 @@ const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
     }
     const he_column *column = he_mesh_find_column(mesh, x->kind, x->attribute);
     if (column == NULL) {
-        api_fail(x, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"",
+        api_fail(x, HE_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.100s\"",
                  he_kind_plural(x->kind), x->attribute);
+        x->problem.status = 404;
     }
     return column;
 }

@@ -106,13 +106,13 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
 static bool decode_set(const decoder *d, he_kind kind, const api_in *in, he_arg *arg)
 {
     static const uint32_t none[1] = {HE_NONE};
-    const char *name;
+    api_set set;
     uint32_t *ids;
     d->call->has_set = true;
     arg->list = true;
     arg->ids = none;
     if (d->scope->mesh == NULL) {
-        return api_in_set(in, &name);
+        return api_in_set(in, &set);
     }
     if (!api_find_set(in, d->scope->mesh, kind, d->arena, &ids, &arg->count)) {
         return false;
@@ -152,7 +152,35 @@ static bool decode_points(const decoder *d, const he_param *param, const api_in 
     return true;
 }
 
-static bool decode_matrix(const api_in *in, he_arg *arg)
+/* Reads a list of points [x, y]. Its length is not checked, because the operation itself refuses a
+ * polygon with too few corners. */
+static bool decode_polygon(const decoder *d, const api_in *in, he_arg *arg)
+{
+    if (!api_in_array(in, 0, SIZE_MAX)) {
+        return false;
+    }
+    size_t i = 0;
+    he_vec3 *points = api_arena_array(d->arena, api_in_count(in), sizeof *points);
+    if (points == NULL) {
+        return api_in_fail(in, HE_NO_MEMORY, "no memory for a polygon of %zu corners",
+                           api_in_count(in));
+    }
+    api_in child, number;
+    for (bool more = api_in_first(in, &child); more; more = api_in_next(&child)) {
+        points[i].z = 0;
+        if (!api_in_array(&child, 2, 2) || !api_in_first(&child, &number) ||
+            !api_in_number(&number, &points[i].x) || !api_in_next(&number) ||
+            !api_in_number(&number, &points[i].y)) {
+            return false;
+        }
+        i++;
+    }
+    arg->points = points;
+    arg->count = i;
+    return true;
+}
+
+static bool decode_matrix(const he_param *param, const api_in *in, he_arg *arg)
 {
     static const double last[4] = {0, 0, 0, 1};
     if (!api_in_array(in, 16, 16)) {
@@ -164,7 +192,8 @@ static bool decode_matrix(const api_in *in, he_arg *arg)
         if (!api_in_number(&child, &arg->matrix[i])) {
             return false;
         }
-        if (i >= 12 && (arg->matrix[i] < last[i - 12] || arg->matrix[i] > last[i - 12])) {
+        if (i >= 12 && !(param->flags & HE_PROJECTIVE) &&
+            (arg->matrix[i] < last[i - 12] || arg->matrix[i] > last[i - 12])) {
             return api_in_fail(&child, HE_BAD_VALUE, "the last row of the matrix must be 0 0 0 1");
         }
         i++;
@@ -226,7 +255,9 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_CHOICE:
         return api_in_choice(in, param->choices, &arg->choice);
     case HE_PARAM_MATRIX:
-        return decode_matrix(in, arg);
+        return decode_matrix(param, in, arg);
+    case HE_PARAM_POLYGON:
+        return decode_polygon(d, in, arg);
     case HE_PARAM_CYCLE:
         /* No minimum length is given, because the operation itself refuses a list with too few
          * corners. */
@@ -324,33 +355,72 @@ static bool decode_member(const decoder *d, const api_in *in)
     return decode_value(d, &d->op->params[i], in, plural, arg);
 }
 
+/* Finds the member that gives a parameter. Returns the whole object if there is none. */
+static api_in member_of(const decoder *d, const he_param *param)
+{
+    api_in at;
+    if (api_in_find(d->object, param->name, &at) ||
+        (param->plural != NULL && api_in_find(d->object, param->plural, &at))) {
+        return at;
+    }
+    return *d->object;
+}
+
+/* Checks that no parameter is given that the value of the operation's selector does not allow. */
+static bool check_selected(const decoder *d)
+{
+    const he_param *selector = he_op_selector(d->op);
+    const he_arg *args = d->call->args;
+    if (selector == NULL || !args[selector - d->op->params].given) {
+        return true;
+    }
+    for (size_t i = 0; i < he_op_params(d->op); i++) {
+        const he_param *param = &d->op->params[i];
+        if (!args[i].given || he_op_takes(d->op, args, i)) {
+            continue;
+        }
+        api_in at = member_of(d, param);
+        char names[120] = "";
+        for (size_t k = 0; selector->choices[k] != NULL; k++) {
+            if (param->with & HE_WITH(k)) {
+                strncat(names, names[0] == '\0' ? "" : ", ", sizeof names - strlen(names) - 1);
+                strncat(names, selector->choices[k], sizeof names - strlen(names) - 1);
+            }
+        }
+        return api_in_fail(&at, API_CONFLICTING_MEMBERS,
+                           "\"%s\" may be given only if \"%s\" is one of: %s; it is %s",
+                           api_in_name(&at), selector->name, names,
+                           selector->choices[args[selector - d->op->params].choice]);
+    }
+    return true;
+}
+
 /* Checks that all required parameters are given, and that at most one parameter of each group of
  * alternatives is given. */
 static bool check_given(const decoder *d)
 {
+    const he_arg *args = d->call->args;
     for (size_t i = 0; i < he_op_params(d->op); i++) {
         const he_param *param = &d->op->params[i];
-        bool given = d->call->args[i].given, needed = (param->flags & HE_REQUIRED) != 0;
+        bool given = args[i].given, needed = he_op_needs(d->op, args, i);
+        if (!he_op_takes(d->op, args, i)) {
+            continue;
+        }
         char names[160] = "";
         strncat(names, param->name, sizeof names - strlen(names) - 1);
         for (size_t j = 0; param->group != 0 && j < he_op_params(d->op); j++) {
             const he_param *other = &d->op->params[j];
-            if (j == i || other->group != param->group) {
+            if (j == i || other->group != param->group || !he_op_takes(d->op, args, j)) {
                 continue;
             }
-            if (d->call->args[i].given && d->call->args[j].given) {
-                api_in at;
-                const he_param *late = j > i ? other : param;
-                if (!api_in_find(d->object, late->name, &at) &&
-                    !(late->plural != NULL && api_in_find(d->object, late->plural, &at))) {
-                    at = *d->object;
-                }
+            if (args[i].given && args[j].given) {
+                api_in at = member_of(d, j > i ? other : param);
                 return api_in_fail(&at, API_CONFLICTING_MEMBERS,
                                    "give either \"%s\" or \"%s\", not both", param->name,
                                    other->name);
             }
-            given = given || d->call->args[j].given;
-            needed = needed || (other->flags & HE_REQUIRED) != 0;
+            given = given || args[j].given;
+            needed = needed || he_op_needs(d->op, args, j);
             strncat(names, "\" or \"", sizeof names - strlen(names) - 1);
             strncat(names, other->name, sizeof names - strlen(names) - 1);
         }
@@ -406,7 +476,9 @@ bool api_decode_op(const api_in *object, const api_op_scope *scope, api_arena *a
         !api_in_string(&name, SIZE_MAX, &text)) {
         return false;
     }
-    *out = (api_call){.op = he_op_find(text, strlen(text))};
+    out->op = he_op_find(text, strlen(text));
+    out->as = NULL;
+    out->has_set = false;
     if (out->op == NULL) {
         return refuse_operation(&name, text);
     }
@@ -417,5 +489,5 @@ bool api_decode_op(const api_in *object, const api_op_scope *scope, api_arena *a
             return false;
         }
     }
-    return check_given(&d) && check_points(&d);
+    return check_selected(&d) && check_given(&d) && check_points(&d);
 }

@@ -56,6 +56,33 @@ size_t he_op_results(const he_op *op)
     return count;
 }
 
+const he_param *he_op_selector(const he_op *op)
+{
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        if (op->params[i].flags & HE_SELECTS) {
+            return &op->params[i];
+        }
+    }
+    return NULL;
+}
+
+/* Returns whether the value of the operation's selector is one of `choices`, which are bits. */
+static bool is_selected(const he_op *op, const he_arg *args, unsigned choices)
+{
+    const he_param *selector = he_op_selector(op);
+    return selector != NULL && (choices & HE_WITH(args[selector - op->params].choice)) != 0;
+}
+
+bool he_op_takes(const he_op *op, const he_arg *args, size_t i)
+{
+    return op->params[i].with == 0 || is_selected(op, args, op->params[i].with);
+}
+
+bool he_op_needs(const he_op *op, const he_arg *args, size_t i)
+{
+    return (op->params[i].flags & HE_REQUIRED) != 0 || is_selected(op, args, op->params[i].needed);
+}
+
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS])
 {
     bool whole = op->size == HE_OP_WHOLE;
@@ -97,12 +124,9 @@ bool he_op_declares(const he_op *op, he_status status)
 
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
 {
-    for (size_t i = 0; i < HE_OP_PARAMS; i++) {
+    for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         args[i] = (he_arg){.id = HE_NONE};
-        if (param->name == NULL) {
-            continue;
-        }
         switch (param->type) {
         case HE_PARAM_NUMBER:
             args[i].number = param->fallback;
@@ -118,6 +142,7 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
         case HE_PARAM_POINT:
         case HE_PARAM_POINTS:
         case HE_PARAM_MATRIX:
+        case HE_PARAM_POLYGON:
         case HE_PARAM_CYCLE:
         case HE_PARAM_TEXT:
         case HE_PARAM_COLOR:
@@ -127,13 +152,10 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
     }
 }
 
-/* Returns true if an argument has passed the checks that are the duty of the decoder of
- * requests. */
+/* Returns true if an argument that was given has passed the checks that are the duty of the decoder
+ * of requests. */
 static bool is_sound(const he_param *param, const he_arg *arg)
 {
-    if (!arg->given) {
-        return !(param->flags & HE_REQUIRED) || param->group != 0;
-    }
     switch (param->type) {
     case HE_PARAM_ELEMENT:
         return arg->id != HE_NONE || (param->flags & HE_NULLABLE);
@@ -141,6 +163,8 @@ static bool is_sound(const he_param *param, const he_arg *arg)
         return arg->ids != NULL;
     case HE_PARAM_CYCLE:
         return arg->ids != NULL || arg->count == 0;
+    case HE_PARAM_POLYGON:
+        return arg->points != NULL || arg->count == 0;
     case HE_PARAM_MESH:
         return arg->mesh != NULL;
     case HE_PARAM_NUMBER:
@@ -177,7 +201,7 @@ static bool is_group_sound(const he_op *op, const he_arg *args, size_t i)
     for (size_t k = 0; k < he_op_params(op); k++) {
         if (op->params[k].group == op->params[i].group) {
             given += args[k].given;
-            required |= (op->params[k].flags & HE_REQUIRED) != 0;
+            required |= he_op_needs(op, args, k);
         }
     }
     return required ? given == 1 : given <= 1;
@@ -186,8 +210,12 @@ static bool is_group_sound(const he_op *op, const he_arg *args, size_t i)
 static bool are_sound(const he_op *op, const he_arg *args)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
-        if (!is_sound(&op->params[i], &args[i]) ||
-            (op->params[i].group != 0 && !is_group_sound(op, args, i))) {
+        const he_param *param = &op->params[i];
+        if (args[i].given ? !is_sound(param, &args[i]) || !he_op_takes(op, args, i)
+                          : param->group == 0 && he_op_needs(op, args, i)) {
+            return false;
+        }
+        if (param->group != 0 && !is_group_sound(op, args, i)) {
             return false;
         }
     }
@@ -197,7 +225,8 @@ static bool are_sound(const he_op *op, const he_arg *args)
 static bool has_empty_list(const he_op *op, const he_arg *args)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
-        if (op->params[i].type == HE_PARAM_ELEMENTS && args[i].given && args[i].count == 0) {
+        if (op->params[i].type == HE_PARAM_ELEMENTS && args[i].given && args[i].count == 0 &&
+            !(op->params[i].flags & HE_MAY_BE_EMPTY)) {
             return true;
         }
     }

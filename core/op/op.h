@@ -22,9 +22,11 @@ typedef enum he_param_type {
     HE_PARAM_POINTS,   /* a point [x, y, z], or a list of points, one for each element */
     HE_PARAM_FLAG,     /* true or false */
     HE_PARAM_CHOICE,   /* one of the strings in `choices` */
-    HE_PARAM_MATRIX,   /* 16 numbers, row-major, last row 0 0 0 1 */
-    HE_PARAM_CYCLE,    /* a list of element ids whose order matters; repeated ids are refused */
-    HE_PARAM_TEXT,     /* a string */
+    /* 16 numbers, row-major; the last row is 0 0 0 1 unless the flag HE_PROJECTIVE is set */
+    HE_PARAM_MATRIX,
+    HE_PARAM_POLYGON, /* a list of points [x, y], the corners of a polygon in a plane */
+    HE_PARAM_CYCLE,   /* a list of element ids whose order matters; repeated ids are refused */
+    HE_PARAM_TEXT,    /* a string */
     /* red, green and blue, none below 0; with the flag HE_OPACITY a fourth number, the opacity, may
      * follow */
     HE_PARAM_COLOR,
@@ -50,8 +52,18 @@ enum {
      * These walks count towards the work limit of a request that has a list of operations, because
      * such a request may name a vertex of large degree again and again. */
     HE_WALKS = 256,
-    HE_OPACITY = 512 /* a colour may have an opacity as its fourth number */
+    HE_OPACITY = 512, /* a colour may have an opacity as its fourth number */
+    /* The selector of the operation: a choice on which depends which other parameters may be given,
+     * see `with`. An operation has at most one, before the parameters that depend on it. */
+    HE_SELECTS = 1024,
+    /* The operation also runs if this list of elements is empty. Without this flag he_op_run then
+     * does nothing. */
+    HE_MAY_BE_EMPTY = 2048,
+    HE_PROJECTIVE = 4096 /* the last row of the matrix may be any four numbers */
 };
+
+/* The bit of a value of the selector in `with` and `needed` of a parameter. */
+#define HE_WITH(choice) (1u << (choice))
 
 typedef struct he_param {
     const char *name;
@@ -64,6 +76,12 @@ typedef struct he_param {
     /* Parameters that have the same letter here are alternatives: at most one of them is given, and
      * exactly one if any of them is required. 0: the parameter has no alternatives. */
     char group;
+    /* The values of the selector with which the parameter may be given, as bits (HE_WITH); 0: with
+     * all. */
+    unsigned with;
+    /* Those of them with which the parameter, or one of its alternatives, must be given. A
+     * parameter that has HE_REQUIRED must be given with all. */
+    unsigned needed;
     double min, max;
     double fallback;            /* default of a number; 0 or 1 for a flag; index of a choice */
     const char *const *choices; /* names of the choices, ending in NULL */
@@ -76,10 +94,11 @@ typedef struct he_arg {
     bool given;
     uint32_t id;         /* value of an HE_PARAM_ELEMENT; HE_NONE for null */
     const uint32_t *ids; /* values of an HE_PARAM_ELEMENTS or HE_PARAM_CYCLE */
-    size_t count;        /* number of ids or points */
+    size_t count;        /* number of ids, points or corners */
     bool list;           /* true if an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list */
     double number;
-    const he_vec3 *points; /* values of an HE_PARAM_POINT or HE_PARAM_POINTS */
+    /* Values of an HE_PARAM_POINT or HE_PARAM_POINTS; values of an HE_PARAM_POLYGON, with z = 0. */
+    const he_vec3 *points;
     bool flag;
     int choice;
     double matrix[16];
@@ -109,7 +128,7 @@ typedef struct he_result_row {
     const char *const *choices; /* names of the choices, ending in NULL */
 } he_result_row;
 
-enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 12, HE_OP_REFUSALS = 16 };
+enum { HE_OP_PARAMS = 24, HE_OP_RESULTS = 12, HE_OP_REFUSALS = 16 };
 
 /* The results of an operation: result i of the operation's row is in entry i of these arrays.
  * he_op_run clears the arrays and fills them; the caller clears them when they are no longer
@@ -160,6 +179,13 @@ size_t he_op_number(const he_op *op); /* returns the number i for which he_op_at
 const he_op *he_op_find(const char *name, size_t length);
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
+/* Returns the operation's selector, the parameter with the flag HE_SELECTS, or NULL if it has
+ * none. */
+const he_param *he_op_selector(const he_op *op);
+/* These functions say whether parameter `i` of the operation may be given, and whether it or one of
+ * its alternatives must be given, with the value that the selector has in `args`. */
+bool he_op_takes(const he_op *op, const he_arg *args, size_t i);
+bool he_op_needs(const he_op *op, const he_arg *args, size_t i);
 /* Returns true if the operation, with these arguments, takes time linear in the whole mesh. */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* Returns the approximate factor by which the operation makes the mesh grow; 1 if the mesh keeps
@@ -178,9 +204,10 @@ bool he_op_declares(const he_op *op, he_status status);
 /* Fills in an argument for every parameter: the parameter's default, with `given` false. */
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
 /* Applies one operation. The caller fills `args` by he_op_defaults and then replaces the arguments
- * that were given. It must have checked ranges, groups and finiteness; this is asserted. If the
- * operation is refused, the mesh does not change. If a list of elements is empty, the mesh does not
- * change either, and the results are null, 0 and empty lists. */
+ * that were given. It must have checked ranges, groups, the selector and finiteness; this is
+ * asserted. If the operation is refused, the mesh does not change. If a list of elements without
+ * the flag HE_MAY_BE_EMPTY is empty, the mesh does not change either, and the results are null, 0
+ * and empty lists. */
 HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                                  he_results *out, he_error *err);
 void he_results_clear(he_results *results);

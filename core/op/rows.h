@@ -20,6 +20,7 @@ extern const he_op he_refine_rows[];
 extern const he_op he_decimate_rows[];
 extern const he_op he_remesh_rows[];
 extern const he_op he_material_rows[];
+extern const he_op he_select_rows[];
 
 /* Returns the row with this number, in the order of the table; NULL past the last row. */
 const he_op *he_table_row(size_t i);

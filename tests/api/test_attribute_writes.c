@@ -74,6 +74,52 @@ static void sets_stand_for_lists(void **state)
     bench_free(b);
 }
 
+/* Sends an operation on the cube and returns the JSON of its results. */
+static void expect_results(api_bench *b, const char *operation, const char *results)
+{
+    bench_reply r = bench_expect(200, bench_send(b, "POST", "/v1/meshes/m/edits", NULL, operation));
+    if (strstr(r.body, results) == NULL) {
+        fail_msg("%s: %s is not in %s", operation, results, r.body);
+    }
+    bench_reply_free(&r);
+}
+
+static void what_select_writes_is_taken_by_other_operations(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    strip_send(b, 201, "POST", "/v1/meshes?id=m", "{\"shape\":\"cube\"}");
+    expect_results(b,
+                   "{\"op\":\"select\",\"by\":\"half_space\",\"point\":[0,0,0.5],"
+                   "\"normal\":[0,0,1],\"into\":\"top\"}",
+                   "{\"op\":\"select\",\"selected\":1,\"added\":1,\"removed\":0}");
+    expect_results(
+        b,
+        "{\"ops\":[{\"op\":\"select\",\"by\":\"boundary\",\"faces\":{\"top\":true},"
+        "\"elements\":\"vertices\"},{\"op\":\"transform\",\"vertices\":{\"selected\":true"
+        "},\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,7,0,0,0,1]}]}",
+        "\"selected\":4,\"added\":4,\"removed\":0}");
+    expect_results(b,
+                   "{\"op\":\"select\",\"by\":\"box\",\"min\":[-9,-9,7],\"max\":[9,9,9],"
+                   "\"corners\":\"any\",\"value\":3,\"into\":\"part\"}",
+                   "\"selected\":5,\"added\":5,\"removed\":0}");
+    expect_results(b, "{\"op\":\"face_delete\",\"faces\":{\"part\":3}}", "\"faces\":[");
+    strip_send(b, 422, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"face_delete\",\"faces\":{\"parts\":3}}");
+    strip_send(b, 400, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"face_delete\",\"faces\":{\"part\":true}}");
+    strip_send(b, 400, "POST", "/v1/meshes/m/edits",
+               "{\"op\":\"face_delete\",\"faces\":{\"top\":1}}");
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m", NULL, NULL));
+    assert_non_null(strstr(r.body, "\"faces\":1"));
+    bench_reply_free(&r);
+    strip_send(b, 200, "PATCH", "/v1/meshes/m/attributes/faces/top",
+               "{\"ids\":{\"part\":0},\"value\":true}");
+    expect_results(b, "{\"op\":\"select\",\"by\":\"boundary\",\"faces\":{\"part\":3}}",
+                   "\"selected\":0,\"added\":0,\"removed\":0}");
+    bench_free(b);
+}
+
 static void what_changes_nothing_makes_no_revision(void **state)
 {
     (void)state;
@@ -231,6 +277,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sets_stand_for_lists),
+        cmocka_unit_test(what_select_writes_is_taken_by_other_operations),
         cmocka_unit_test(what_changes_nothing_makes_no_revision),
         cmocka_unit_test(what_cannot_be_undone_says_so),
         cmocka_unit_test(the_history_counts_what_was_written),

@@ -64,7 +64,7 @@ static const he_mesh *a_vertex(void)
 }
 
 static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg *arg,
-                          uint32_t ids[MANY], he_vec3 *point)
+                          uint32_t ids[MANY], he_vec3 points[MANY])
 {
     double span = md_chance(&w->r, 3) ? 40 : 0.7;
     arg->given = true;
@@ -89,14 +89,14 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
                           : 0.05 + md_unit(&w->r);
         /* a large number, such as of subdivision steps, would make the mesh large */
         if (p->flags & HE_WHOLE) {
-            arg->number = p->max < 1e6 ? p->min : md_below(&w->r, 200);
+            arg->number = p->min + (p->max < 1e6 ? 0 : md_below(&w->r, 200));
         }
         break;
     case HE_PARAM_POINT:
     case HE_PARAM_POINTS:
-        *point = (he_vec3){span * (md_unit(&w->r) - 0.5), span * (md_unit(&w->r) - 0.5),
-                           span * (md_unit(&w->r) - 0.5)};
-        arg->points = point;
+        points[0] = (he_vec3){span * (md_unit(&w->r) - 0.5), span * (md_unit(&w->r) - 0.5),
+                              span * (md_unit(&w->r) - 0.5)};
+        arg->points = points;
         arg->count = 1;
         break;
     case HE_PARAM_FLAG:
@@ -104,6 +104,13 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
         break;
     case HE_PARAM_CHOICE:
         arg->choice = 0;
+        break;
+    case HE_PARAM_POLYGON:
+        for (size_t i = 0; i < 3; i++) {
+            points[i] = (he_vec3){md_unit(&w->r), md_unit(&w->r), 0};
+        }
+        arg->points = points;
+        arg->count = 3;
         break;
     case HE_PARAM_TEXT:
         arg->text = md_chance(&w->r, 50) ? "a" : "b";
@@ -132,7 +139,7 @@ static bool run_one(world *w, he_mesh *m, bool *barrier)
     const he_op *op = he_op_at(md_below(&w->r, (uint32_t)he_op_count()));
     he_arg args[HE_OP_PARAMS];
     uint32_t ids[HE_OP_PARAMS][MANY];
-    he_vec3 points[HE_OP_PARAMS];
+    he_vec3 points[HE_OP_PARAMS][MANY];
     he_results results = {0};
     he_error err = {0};
     bool is_compact = strcmp(op->name, "compact") == 0;
@@ -144,12 +151,12 @@ static bool run_one(world *w, he_mesh *m, bool *barrier)
     he_op_defaults(op, args);
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *p = &op->params[i];
-        bool first = true;
+        bool first = he_op_takes(op, args, i);
         for (size_t k = 0; k < i && p->group != 0; k++) {
-            first = first && op->params[k].group != p->group;
+            first = first && (op->params[k].group != p->group || !he_op_takes(op, args, k));
         }
-        if (first && ((p->flags & HE_REQUIRED) || md_chance(&w->r, 40))) {
-            fill_argument(w, m, p, &args[i], ids[i], &points[i]);
+        if (first && (he_op_needs(op, args, i) || md_chance(&w->r, 40))) {
+            fill_argument(w, m, p, &args[i], ids[i], points[i]);
         }
     }
     he_status status = he_op_run(op, m, args, &results, &err);

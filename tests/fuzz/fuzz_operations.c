@@ -150,6 +150,14 @@ static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, con
         break;
     case HE_PARAM_MATRIX:
         draw_matrix(t, arg->matrix);
+        for (size_t k = 12; k < 16 && (p->flags & HE_PROJECTIVE) != 0; k++) {
+            arg->matrix[k] = fuzz_double(t);
+        }
+        break;
+    case HE_PARAM_POLYGON:
+        arg->count = fuzz_byte(t) % (LIST + 1);
+        arg->points = c->points[i];
+        draw_points(t, c->points[i], arg->count);
         break;
     case HE_PARAM_TEXT:
         snprintf(c->texts[i], sizeof c->texts[i], "%.*s%c", (int)(fuzz_byte(t) % 4), "abc",
@@ -170,16 +178,20 @@ static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, con
 
 /* Returns whether parameter i gets a value. In a group of alternative parameters at most one gets a
  * value, and exactly one if the group is required. */
-static bool is_wanted(fuzz_tape *t, const he_op *op, size_t i, const char *taken)
+static bool is_wanted(fuzz_tape *t, const call *c, size_t i, const char *taken)
 {
+    const he_op *op = c->op;
     const he_param *p = &op->params[i];
-    bool required = (p->flags & HE_REQUIRED) != 0, later = false;
+    bool required = he_op_needs(op, c->args, i), later = false;
+    if (!he_op_takes(op, c->args, i)) {
+        return false;
+    }
     if (p->group == 0) {
         return required || fuzz_byte(t) % 2 == 0;
     }
     for (size_t k = 0; k < he_op_params(op); k++) {
-        bool same = op->params[k].group == p->group;
-        required |= same && (op->params[k].flags & HE_REQUIRED) != 0;
+        bool same = op->params[k].group == p->group && he_op_takes(op, c->args, k);
+        required |= same && he_op_needs(op, c->args, k);
         later |= same && k > i;
     }
     return strchr(taken, p->group) == NULL && (fuzz_byte(t) % 2 == 0 || (required && !later));
@@ -193,7 +205,7 @@ static void draw(fuzz_tape *t, call *c, const he_mesh *mesh, const he_mesh *othe
     he_op_defaults(c->op, c->args);
     for (size_t i = 0; i < he_op_params(c->op); i++) {
         const he_param *p = &c->op->params[i];
-        if (!is_wanted(t, c->op, i, taken)) {
+        if (!is_wanted(t, c, i, taken)) {
             continue;
         }
         if (p->group != 0) {

@@ -48,6 +48,24 @@ void md_give_flag(md_draft *d, const char *name, bool flag)
     arg->flag = flag;
 }
 
+void md_give_choice(md_draft *d, const char *name, const char *choice)
+{
+    const size_t i = md_index(d->c, name);
+    he_arg *arg = &d->c->args[i];
+    arg->given = true;
+    for (arg->choice = 0; strcmp(d->c->op->params[i].choices[arg->choice], choice) != 0;
+         arg->choice++) {
+        assert(d->c->op->params[i].choices[arg->choice + 1] != NULL);
+    }
+}
+
+void md_give_text(md_draft *d, const char *name, const char *text)
+{
+    he_arg *arg = &d->c->args[md_index(d->c, name)];
+    arg->given = true;
+    arg->text = text;
+}
+
 void md_give_ids(md_draft *d, const char *name, const uint32_t *ids, uint32_t count, bool list)
 {
     size_t i = md_index(d->c, name);
@@ -262,6 +280,9 @@ void md_describe(const md_call *c, char text[MD_CALL_TEXT])
             break;
         case HE_PARAM_CHOICE:
             n = snprintf(to, room, " %s=%s", p->name, p->choices[arg->choice]);
+            break;
+        case HE_PARAM_POLYGON:
+            n = snprintf(to, room, " %s=(%zu corners)", p->name, arg->count);
             break;
         case HE_PARAM_MATRIX:
             n = snprintf(to, room, " %s=(16 numbers)", p->name);

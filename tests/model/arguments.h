@@ -38,6 +38,8 @@ typedef struct md_draft {
 void md_give_id(md_draft *d, const char *name, uint32_t id);
 void md_give_number(md_draft *d, const char *name, double number);
 void md_give_flag(md_draft *d, const char *name, bool flag);
+void md_give_choice(md_draft *d, const char *name, const char *choice);
+void md_give_text(md_draft *d, const char *name, const char *text);
 void md_give_ids(md_draft *d, const char *name, const uint32_t *ids, uint32_t count, bool list);
 void md_give_points(md_draft *d, const char *name, uint32_t count, bool list);
 

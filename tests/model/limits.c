@@ -13,8 +13,10 @@ typedef struct limit {
     /* name of the edit's first argument, the element with the id `id`; NULL if it has none */
     const char *element;
     uint32_t id;
-    const char *number;     /* name of the edit's second argument, whose value is 0.1 */
-    const char *name;       /* value of its argument `name` */
+    const char *number; /* name of the edit's second argument, whose value is 0.1 */
+    const char *name;   /* value of its argument `name` */
+    /* the names of its choices, each followed by the value; ends in NULL */
+    const char *choices[6 + 1];
     he_mesh *(*mesh)(void); /* makes the mesh for the edit's argument `mesh`; NULL if the edit has
                                no such argument */
 } limit;
@@ -35,6 +37,9 @@ static const limit limits[] = {
     {.row = "face_collapse", .make = giant_star, .element = "face"},
     {.row = "material_set", .make = all_materials, .element = "face", .name = "n"},
     {.row = "append", .make = all_materials, .mesh = another_material},
+    {.row = "select",
+     .make = giant_star,
+     .choices = {"by", "measure", "measure", "mean_curvature", "elements", "vertices"}},
 };
 
 static void make_call(const limit *l, const he_mesh *other, md_call *call)
@@ -56,6 +61,9 @@ static void make_call(const limit *l, const he_mesh *other, md_call *call)
         he_arg *name = &call->args[md_index(call, "name")];
         name->given = true;
         name->text = l->name;
+    }
+    for (size_t i = 0; l->choices[i] != NULL; i += 2) {
+        md_give_choice(&draft, l->choices[i], l->choices[i + 1]);
     }
     if (other != NULL) {
         he_arg *mesh = &call->args[md_index(call, "mesh")];

@@ -27,5 +27,6 @@ extern const md_row md_refine_rows[];
 extern const md_row md_decimate_rows[];
 extern const md_row md_remesh_rows[];
 extern const md_row md_material_rows[];
+extern const md_row md_select_rows[];
 
 #endif

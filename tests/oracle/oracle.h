@@ -301,6 +301,32 @@ typedef struct or_plane_size {
 } or_plane_size;
 or_plane_size or_plane_measure(const or_mesh *o, const or_plane *plane);
 
+/* (ops_select.c) A rule of the operation select, see core/select/select.h. The oracle does not know
+ * attributes: `values` has a value for each element of the kind `of`, for the rules attribute and
+ * measure; NULL lets the oracle measure. */
+typedef struct or_rule {
+    const char *by;
+    he_kind of, seed_kind;
+    const uint32_t *seeds;
+    uint32_t seed_count;
+    bool seeded; /* whether seeds are given */
+    bool cross_features, any_corner;
+    double angle, from, to;
+    he_vec3 low, high, normal;
+    or_plane plane;
+    const double *matrix;
+    const he_vec3 *polygon;
+    uint32_t polygon_count, steps;
+    const char *measure;
+    const double *values;
+} or_rule;
+/* What the oracle says about an element: it is not selected, rounding decides, it is selected. */
+typedef enum or_verdict { OR_NO, OR_EITHER, OR_YES } or_verdict;
+enum { OR_ROWS = OR_EDGES };
+/* Finds for each element of the kind `of` whether the rule selects it; the kinds have at most
+ * OR_ROWS elements. The rule must be one that hedge accepts. */
+void or_select(const or_mesh *o, const or_rule *rule, or_verdict verdict[OR_ROWS]);
+
 /* or_delaunay_flip applies one flip that hedge's delaunay reports; hedge chooses the order. Returns
  * false, and writes a sentence to `text`, unless the edge lies between two triangles, the opposite
  * angles require a flip, and edge_flip allows it. `looked[e]` is set for the edges to examine at

@@ -214,6 +214,13 @@ static void parse_value(const he_mesh *m, const he_param *param, const char *tex
             points[i] = (he_vec3){numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
         }
         return;
+    case HE_PARAM_POLYGON:
+        arg->count = parse_numbers(text, numbers) / 2;
+        arg->points = points;
+        for (size_t i = 0; i < arg->count; i++) {
+            points[i] = (he_vec3){numbers[2 * i], numbers[2 * i + 1], 0};
+        }
+        return;
     case HE_PARAM_TEXT:
         arg->text = text;
         return;

@@ -23,5 +23,6 @@ extern const scenario loop_scenarios[];
 extern const scenario region_scenarios[];
 extern const scenario refine_scenarios[];
 extern const scenario material_scenarios[];
+extern const scenario select_scenarios[];
 
 #endif

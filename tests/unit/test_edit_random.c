@@ -119,7 +119,7 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
             /* Whole numbers may be numbers of steps, and an edit of many steps could make the mesh
              * very large or remove all of it: the test keeps them small. */
             HE_WHOLE) {
-            arg->number = param->max < 1e6 ? param->min : random_below(100);
+            arg->number = param->min + (param->max < 1e6 ? 0 : random_below(100));
         }
         return;
     case HE_PARAM_FLAG:
@@ -135,6 +135,13 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
         arg->count = 1;
         arg->points = store->points;
         store->points[0] = (he_vec3){random_unit(), random_unit(), random_unit()};
+        return;
+    case HE_PARAM_POLYGON:
+        arg->count = 3;
+        arg->points = store->points;
+        for (size_t i = 0; i < arg->count; i++) {
+            store->points[i] = (he_vec3){random_unit(), random_unit(), 0};
+        }
         return;
     case HE_PARAM_TEXT:
         arg->text = random_below(2) ? "a" : "b";
@@ -154,20 +161,35 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
     }
 }
 
+/* Chooses one of the parameters that are alternatives to parameter i. Returns SIZE_MAX if one of
+ * those before it is an alternative, for which the choice was made already. */
+static size_t alternative(const he_op *op, const he_arg *args, size_t i)
+{
+    size_t all[HE_OP_PARAMS], count = 0;
+    for (size_t k = 0; k < he_op_params(op); k++) {
+        if (op->params[k].group == op->params[i].group && he_op_takes(op, args, k)) {
+            if (k < i) {
+                return SIZE_MAX;
+            }
+            all[count++] = k;
+        }
+    }
+    return all[random_below((uint32_t)count)];
+}
+
 static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage *stores)
 {
     he_op_defaults(op, args);
     for (size_t i = 0; i < he_op_params(op); i++) {
-        const he_param *param = &op->params[i];
-        if (param->group != 0) {
-            /* This parameter and the one before it are alternatives. The loop chose between the two
-             * when it came to the first of them. */
-            if (i > 0 && op->params[i - 1].group == param->group) {
-                continue;
+        if (!he_op_takes(op, args, i)) {
+            continue;
+        }
+        if (op->params[i].group != 0) {
+            size_t k = alternative(op, args, i);
+            if (k != SIZE_MAX) {
+                choose(m, op, k, args, stores);
             }
-            size_t k = i + random_below(2);
-            choose(m, op, k, args, stores);
-        } else if ((param->flags & HE_REQUIRED) || random_below(2)) {
+        } else if (he_op_needs(op, args, i) || random_below(2)) {
             choose(m, op, i, args, stores);
         }
     }

@@ -373,9 +373,9 @@ static const scenario scenarios[] = {
     {.operation = NULL},
 };
 
-static const scenario *const groups[] = {scenarios,        border_scenarios,  weld_scenarios,
-                                         corner_scenarios, loop_scenarios,    region_scenarios,
-                                         refine_scenarios, material_scenarios};
+static const scenario *const groups[] = {scenarios,        border_scenarios,   weld_scenarios,
+                                         corner_scenarios, loop_scenarios,     region_scenarios,
+                                         refine_scenarios, material_scenarios, select_scenarios};
 
 enum { MAX_OPS = 128 };
 
@@ -505,6 +505,7 @@ static void too_much_work_is_refused_without_change(void **state)
         "delaunay",
         "face_inset face=0 distance=0.1",
         "face_collapse face=0",
+        "select by=measure measure=mean_curvature elements=vertices",
     };
     for (unsigned i = 0; i < sizeof operations / sizeof *operations; i++) {
         he_mesh *m = i > 0 ? giant_star() : giant_rows();
@@ -542,6 +543,29 @@ static void each_declared_refusal_occurs_and_no_other(void **state)
     assert_int_equal(missing, 0);
 }
 
+/* Checks what parameter k says about the operation's selector: there is one, before the parameters
+ * that depend on it, and all of these name choices that it has. */
+static void check_selector(const he_op *op, size_t k)
+{
+    const he_param *param = &op->params[k], *selector = he_op_selector(op);
+    size_t choices = 0;
+    if (param->flags & HE_SELECTS) {
+        assert_ptr_equal(param, selector);
+        assert_int_equal(param->type, HE_PARAM_CHOICE);
+    }
+    if (param->with == 0) {
+        assert_int_equal(param->needed, 0);
+        return;
+    }
+    assert_true(selector != NULL && selector < param);
+    while (selector->choices[choices] != NULL) {
+        choices++;
+    }
+    assert_int_equal(param->with >> choices, 0);
+    assert_int_equal(param->needed & ~param->with, 0);
+    assert_false(param->flags & HE_REQUIRED);
+}
+
 static void rows_are_complete_and_found_by_name(void **state)
 {
     (void)state;
@@ -557,7 +581,8 @@ static void rows_are_complete_and_found_by_name(void **state)
             assert_int_equal(param->type == HE_PARAM_ELEMENTS, param->plural != NULL);
             assert_int_equal(param->type == HE_PARAM_CHOICE, param->choices != NULL);
             assert_true(!(param->flags & HE_DERIVED) || param->type == HE_PARAM_NUMBER ||
-                        param->type == HE_PARAM_FLAG);
+                        param->type == HE_PARAM_FLAG || param->type == HE_PARAM_CHOICE);
+            check_selector(op, k);
             assert_true(!(param->flags & HE_WHOLE) ||
                         (param->type == HE_PARAM_NUMBER && (param->flags & HE_RANGE)));
             for (size_t j = 0; j < k; j++) {
