@@ -6,10 +6,6 @@
 #include <math.h>
 
 enum {
-    SELECT_INTO,
-    SELECT_VALUE,
-    SELECT_MODE,
-    SELECT_ELEMENTS,
     SELECT_BY,
     SELECT_FACES,
     SELECT_EDGES,
@@ -21,15 +17,19 @@ enum {
     SELECT_POINT,
     SELECT_NORMAL,
     SELECT_TOLERANCE,
-    SELECT_MATRIX,
     SELECT_POLYGON,
+    SELECT_MATRIX,
     SELECT_CORNERS,
     SELECT_MEASURE,
     SELECT_ATTRIBUTE,
     SELECT_COMPONENT,
     SELECT_FROM,
     SELECT_TO,
-    SELECT_STEPS
+    SELECT_STEPS,
+    SELECT_ELEMENTS,
+    SELECT_MODE,
+    SELECT_INTO,
+    SELECT_VALUE
 };
 enum { SELECT_OUT_SELECTED, SELECT_OUT_ADDED, SELECT_OUT_REMOVED };
 
@@ -125,31 +125,7 @@ const he_op he_select_rows[] = {
                "{\"patch\":3}.",
         .size = HE_OP_WHOLE,
         .params =
-            {[SELECT_INTO] = {.name = "into",
-                              .type = HE_PARAM_TEXT,
-                              .doc =
-                                  "The attribute that gets the set; it is created if it does not "
-                                  "exist. Default: `selected`."},
-             [SELECT_VALUE] =
-                 {.name = "value",
-                  .type = HE_PARAM_NUMBER,
-                  .flags = HE_RANGE | HE_WHOLE | HE_DERIVED,
-                  .min = 1,
-                  .max = INT32_MAX,
-                  .doc = "The attribute is an int, and the set are the elements with this value; "
-                         "elements that leave the set get 0. Default: the attribute is a bool."},
-             [SELECT_MODE] = {.name = "mode",
-                              .type = HE_PARAM_CHOICE,
-                              .choices = modes,
-                              .doc = "only: the elements that the rule finds become the set. add: "
-                                     "they are added to it. remove: they are removed from it."},
-             [SELECT_ELEMENTS] = {.name = "elements",
-                                  .type = HE_PARAM_CHOICE,
-                                  .flags = HE_DERIVED,
-                                  .choices = kinds,
-                                  .doc = "The kind of the elements to find. Default: for grow and "
-                                         "shrink the kind of the list, else faces."},
-             [SELECT_BY] =
+            {[SELECT_BY] =
                  {.name = "by",
                   .type = HE_PARAM_CHOICE,
                   .flags = HE_REQUIRED | HE_SELECTS,
@@ -235,6 +211,13 @@ const he_op he_select_rows[] = {
                   .with = HE_WITH(HE_BY_HALF_SPACE),
                   .doc = "Vertices within this distance of the plane count as in the half-space. "
                          "Default: as for plane_split."},
+             [SELECT_POLYGON] =
+                 {.name = "polygon",
+                  .type = HE_PARAM_POLYGON,
+                  .with = HE_WITH(HE_BY_LASSO),
+                  .needed = HE_WITH(HE_BY_LASSO),
+                  .doc = "The corners [x, y] of the lasso in the plane to which the matrix maps, 3 "
+                         "to 4096. It may intersect itself: everything it winds around is inside."},
              [SELECT_MATRIX] =
                  {.name = "matrix",
                   .type = HE_PARAM_MATRIX,
@@ -245,13 +228,6 @@ const he_op he_select_rows[] = {
                       "16 numbers, row by row, that map a point (x, y, z, 1) to (X, Y, Z, W): it "
                       "is found if W is above 0 and (X / W, Y / W) is inside the polygon. A "
                       "camera's projection times view is such a matrix."},
-             [SELECT_POLYGON] =
-                 {.name = "polygon",
-                  .type = HE_PARAM_POLYGON,
-                  .with = HE_WITH(HE_BY_LASSO),
-                  .needed = HE_WITH(HE_BY_LASSO),
-                  .doc = "The corners [x, y] of the lasso in the plane to which the matrix maps, 3 "
-                         "to 4096. It may intersect itself: everything it winds around is inside."},
              [SELECT_CORNERS] = {.name = "corners",
                                  .type = HE_PARAM_CHOICE,
                                  .choices = corners,
@@ -303,7 +279,31 @@ const he_op he_select_rows[] = {
                                .doc =
                                    "How often to grow or shrink. A step leads from a vertex along "
                                    "an edge, from an edge or face to those that share a vertex "
-                                   "with it."}},
+                                   "with it."},
+             [SELECT_ELEMENTS] = {.name = "elements",
+                                  .type = HE_PARAM_CHOICE,
+                                  .flags = HE_DERIVED,
+                                  .choices = kinds,
+                                  .doc = "The kind of the elements to find. Default: for grow and "
+                                         "shrink the kind of the list, else faces."},
+             [SELECT_MODE] = {.name = "mode",
+                              .type = HE_PARAM_CHOICE,
+                              .choices = modes,
+                              .doc = "only: the elements that the rule finds become the set. add: "
+                                     "they are added to it. remove: they are removed from it."},
+             [SELECT_INTO] = {.name = "into",
+                              .type = HE_PARAM_TEXT,
+                              .doc =
+                                  "The attribute that gets the set; it is created if it does not "
+                                  "exist. Default: `selected`."},
+             [SELECT_VALUE] =
+                 {.name = "value",
+                  .type = HE_PARAM_NUMBER,
+                  .flags = HE_RANGE | HE_WHOLE | HE_DERIVED,
+                  .min = 1,
+                  .max = INT32_MAX,
+                  .doc = "The attribute is an int, and the set are the elements with this value; "
+                         "elements that leave the set get 0. Default: the attribute is a bool."}},
         .results = {[SELECT_OUT_SELECTED] = {"selected", HE_RESULT_NUMBER, HE_FACE,
                                              "How many elements the set now has."},
                     [SELECT_OUT_ADDED] = {"added", HE_RESULT_NUMBER, HE_FACE,

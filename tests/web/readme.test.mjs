@@ -150,6 +150,16 @@ test('the lines about finer and coarser meshes work as pasted', async (t) => {
     assert.equal((await (await fetch(`${url}/v1/meshes/ball`)).json()).counts.faces, 500);
 });
 
+test('the lines about sets work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const block = shellWith('"into":"lid"', url);
+    const [made, lid, rim, same] = await runCurls(block);
+    assert.equal(JSON.parse(made).counts.faces, 26);
+    assert.equal(lid, '"selected":1,"added":1,"removed":0');
+    assert.ok(block.includes(`# ${rim}`), rim);
+    assert.equal(same, '"selected":1,"added":0,"removed":0');
+});
+
 test('no line floods a terminal, ends without a line end or changes a sample', async (t) => {
     const { url } = await startDaemon(t, '--samples');
     const list = async () => (await (await fetch(`${url}/v1/meshes`)).json()).items;

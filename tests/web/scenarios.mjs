@@ -100,6 +100,10 @@ export const SCENARIOS = [
     ['material_delete', GRID, { name: 'steel' }, [
         { op: 'material_set', name: 'steel', faces: [0] },
     ]],
+    ['select', GRID, {
+        by: 'region', face: [MIDDLE], angle: '0.5', cross_features: true, elements: 'edges',
+        into: 'part',
+    }],
     ['delaunay', LONG, { edge: [edge(0, 2)] }],
     ['compact', GRID, {}, HOLE],
     ['vertex_weld', GRID, { vertex: [vertex(5), vertex(6)], position: 'lowest' }],

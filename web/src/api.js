@@ -180,6 +180,22 @@ export async function getFaceLabels(mesh, name, revision, signal) {
     return new Uint32Array(await answer.arrayBuffer());
 }
 
+// Returns the ids of a set: of the elements of a kind ('vertices', 'edges' or 'faces') whose bool
+// attribute `name` is true or, with a `value`, whose int attribute has this value.
+export async function getSet(mesh, kind, name, value) {
+    const path = `${meshPath(mesh)}/attributes/${kind}/${encodeURIComponent(name)}`;
+    const headers = { Accept: 'application/octet-stream', Prefer: 'wait=30' };
+    const bytes = await (await request(path, { headers })).arrayBuffer();
+    const values = value === undefined ? new Uint8Array(bytes) : new Int32Array(bytes);
+    const ids = [];
+    values.forEach((one, id) => {
+        if (one === (value ?? 1)) {
+            ids.push(id);
+        }
+    });
+    return ids;
+}
+
 // Returns the table of operations: [{name, doc, params, ...}].
 export async function getOperations() {
     return (await getJson('v1/operations')).operations;

@@ -110,16 +110,33 @@ export class Color extends Text {
     }
 }
 
-// A text field for ids of elements: `isList` allows several ids, `isNullable` allows none.
+// Returns the set that a text names: "selected" means {selected: true}, the elements whose bool
+// attribute `selected` is true, and "patch=3" means {patch: 3}. Returns null if the text names no
+// set; a text that begins with a digit or a sign is a list of ids.
+export function setOf(text) {
+    const [, name, value] = /^([^\s\d=+.,;()[\]-][^=]*?)(?:\s*=\s*(-?\d{1,10}))?$/.exec(text) ?? [];
+    return name === undefined ? null : { [name]: value === undefined ? true : Number(value) };
+}
+
+// A text field for ids of elements: `isList` allows several ids, `isNullable` allows none, and
+// `isSet` allows the name of a set, see setOf().
 export class Ids {
     node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
     #name;
     #isList;
     #isNullable;
+    #isSet;
 
-    constructor(name, isList, isNullable) {
+    constructor(name, { isList = false, isNullable = false, isSet = false } = {}) {
         [this.#name, this.#isList, this.#isNullable] = [name, isList, isNullable];
-        this.node.placeholder = isList ? 'ids' : isNullable ? 'id or none' : 'id';
+        this.#isSet = isSet;
+        this.node.placeholder = isSet
+            ? 'ids, or a set such as selected'
+            : isList
+              ? 'ids'
+              : isNullable
+                ? 'id or none'
+                : 'id';
         if (!isList && !isNullable) {
             this.node.inputMode = 'numeric';
         }
@@ -147,12 +164,17 @@ export class Ids {
     }
 
     take(id) {
-        this.node.value = this.#isList ? toggleWord(this.node.value, id) : `${id}`;
+        const text = this.#isSet && setOf(this.node.value.trim()) !== null ? '' : this.node.value;
+        this.node.value = this.#isList ? toggleWord(text, id) : `${id}`;
     }
 
-    // Returns an array of ids if the field takes several, else one id, or null for "none".
+    // Returns an array of ids if the field takes several, or a set; else one id, or null for "none".
     read() {
         const text = this.node.value.trim();
+        const set = this.#isSet ? setOf(text) : null;
+        if (set !== null) {
+            return set;
+        }
         if (this.#isNullable && (text === '' || text === 'none')) {
             return null;
         }
@@ -169,6 +191,39 @@ export class Ids {
         }
         return this.#isList ? ids : ids[0];
     }
+}
+
+// A text area for the corners of a polygon, one in each line, or for the numbers of a matrix, as
+// `parse(numbers)` reads them.
+export class Numbers extends Field {
+    #name;
+    #parse;
+
+    constructor(name, placeholder, parse) {
+        super(make('textarea', { rows: 4, placeholder, spellcheck: false }));
+        [this.#name, this.#parse] = [name, parse];
+    }
+
+    set(rows) {
+        this.node.value = rows.map((row) => row.join(' ')).join('\n');
+    }
+
+    read() {
+        const numbers = numbersOf(this.node.value, this.#name);
+        return numbers.length === 0 ? undefined : this.#parse(numbers);
+    }
+}
+
+// Returns a control for the corners [x, y] of a polygon.
+export function polygon(name) {
+    return new Numbers(name, 'x y, one corner in each line', (numbers) => {
+        if (numbers.length % 2 !== 0) {
+            throw slip(name, 'Two numbers', `${name}: the last corner lacks its y.`);
+        }
+        return Array.from({ length: numbers.length / 2 }, (_, i) =>
+            numbers.slice(2 * i, 2 * i + 2),
+        );
+    });
 }
 
 // A field for a number; it may be empty.

@@ -5,15 +5,18 @@ import * as api from './api.js';
 import { Direct } from './direct.js';
 import { byId, enable } from './dom.js';
 import { begin, drag } from './gesture.js';
+import { Lasso } from './lasso.js';
 import { isIn, markOf, readAll } from './selection.js';
 import { Tools } from './tools.js';
-import { Trial, wordsOf } from './trial.js';
+import { Trial, selectionOf, wordsOf } from './trial.js';
+import { clipMatrixOf } from './view.js';
 import { Work } from './work.js';
 
 // An operation on the whole mesh gets no dry run if the mesh has more faces than this.
 const MOST_TRIED = 100000;
 
-// If a form's fields contain more elements than this, the view does not mark them.
+// If a form's fields contain more elements than this, the view does not mark them. If the operation
+// `select` finds more, they are not selected in the page.
 const MOST_MARKED = 1000;
 
 // The operation whose form is shown if a tool of the view cannot work on the selected elements, by
@@ -24,6 +27,14 @@ const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset
 // for several.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
 const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
+
+// The kinds of elements by the names of parameters that take one element or a list.
+const KINDS = Object.fromEntries(
+    Object.entries(PLURALS).flatMap(([one, many]) => [
+        [one, one],
+        [many, one],
+    ]),
+);
 
 // The operation that the X key runs, by the kind of the selected element.
 const REMOVALS = {
@@ -39,6 +50,7 @@ export class Editing {
     #toasts;
     #tools;
     #direct;
+    #lasso;
     #trial;
     #work;
     #onPicking;
@@ -77,6 +89,7 @@ export class Editing {
                     }
                 },
                 onArm: (wanted) => this.#showPicking(wanted),
+                onDraw: () => this.#drawLasso(),
                 meshes: async () => (await api.listMeshes()).items,
                 onError,
             },
@@ -100,6 +113,15 @@ export class Editing {
                 onShow: (lines) => stage.preview(lines),
                 onRun,
             },
+        );
+        this.#lasso = new Lasso(
+            canvas,
+            {
+                note: byId('lasso-note'),
+                giveUp: byId('lasso-cancel'),
+                line: byId('lasso-line'),
+            },
+            { onDraw: (polygon) => this.#takeLasso(polygon) },
         );
         byId('remove').addEventListener('click', () => this.remove().catch(onError));
         byId('pick-done').addEventListener('click', () => this.#tools.disarm());
@@ -126,6 +148,9 @@ export class Editing {
     // constructor of Session.
     follow(what) {
         this.#tools.setSelection(this.#session.selection.chosen);
+        if (what === 'mesh') {
+            this.#lasso.cancel();
+        }
         if (what === 'mesh' || what === 'selection') {
             this.#direct.cancel();
         } else {
@@ -170,13 +195,58 @@ export class Editing {
         }
         this.#work.start(operation.op, false);
         try {
-            await this.#session.run(operation, this.#work);
+            const answer = await this.#session.run(operation, this.#work);
+            const result = answer?.results?.find(({ selected }) => selected !== undefined);
+            if (result !== undefined) {
+                await this.#showSelected(operation, result);
+                return;
+            }
             const { revision, history } = this.#session.shown;
             const isFinal = history.entries[0]?.undoable === false;
             const end = isFinal ? ' This edit cannot be undone.' : '';
             this.#toasts.tell(operation.op, `Done: the mesh is now at revision ${revision}.${end}`);
         } finally {
             this.#work.end();
+        }
+    }
+
+    // Says what the operation `select` has found, and selects it in the page, so that the forms of
+    // other operations are filled with it. If it is too much, says how forms can name it instead.
+    async #showSelected(operation, result) {
+        const { into = 'selected', value } = operation;
+        const listed = Object.keys(KINDS).find((kind) => kind in operation);
+        const isSized = operation.by === 'grow' || operation.by === 'shrink';
+        const kind = operation.elements ?? (isSized ? PLURALS[KINDS[listed]] : 'faces');
+        const name = value === undefined ? into : `${into}=${value}`;
+        const words = selectionOf(result);
+        if (result.selected > MOST_MARKED) {
+            const how = `Write \u201c${name}\u201d into a field for ${kind} to use them.`;
+            this.#toasts.tell(operation.op, `The set has ${words}. ${how}`);
+            return;
+        }
+        this.#toasts.tell(operation.op, `The set \u201c${name}\u201d of ${kind} has ${words}.`);
+        const ids = await api.getSet(this.#session.mesh, kind, into, value);
+        const one = Object.entries(PLURALS).find(([, plural]) => plural === kind)[0];
+        await this.#session.selection.selectAll(one, ids);
+    }
+
+    // --- the lasso ---
+
+    #drawLasso() {
+        if (this.#stage.isThere) {
+            this.#tools.disarm();
+            this.#direct.cancel();
+            this.#onPicking();
+            this.#stage.bringIntoSight();
+            this.#lasso.arm();
+        }
+    }
+
+    #takeLasso(polygon) {
+        const { shown } = this.#session;
+        if (shown !== null) {
+            const matrix = clipMatrixOf(this.#stage.matrix, shown.geometry.frame);
+            this.#tools.takeLasso({ matrix, polygon });
         }
     }
 
@@ -220,6 +290,7 @@ export class Editing {
     // Ends the wait of the form's field that waits for a click, if there is one.
     stopPicking() {
         this.#tools.disarm();
+        this.#lasso.cancel();
     }
 
     async #giveToField(chosen) {
@@ -279,10 +350,12 @@ export class Editing {
         }
     }
 
-    // Handles the Esc key: cancels the selected tool; if there is none, stops waiting for a click
+    // Handles the Esc key: cancels the lasso or the selected tool; if there is none, stops waiting for a click
     // that fills a field; if no field waits, clears the selection.
     giveUp() {
-        if (this.#direct.isArmed) {
+        if (this.#lasso.isArmed) {
+            this.#lasso.cancel();
+        } else if (this.#direct.isArmed) {
             this.#direct.cancel();
         } else if (this.#tools.isArmed) {
             this.#tools.disarm();

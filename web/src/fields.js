@@ -1,7 +1,19 @@
 // fields.js - chooses the control of each parameter of an operation, and writes what the form says
 // about the parameter.
 
-import { Choice, Color, Flag, Ids, Numeral, Text, Vector, vectors, Whether } from './controls.js';
+import {
+    Choice,
+    Color,
+    Flag,
+    Ids,
+    Numbers,
+    Numeral,
+    Text,
+    Vector,
+    Whether,
+    polygon,
+    vectors,
+} from './controls.js';
 import { matrix } from './matrix.js';
 
 const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
@@ -32,7 +44,7 @@ export function isList({ plural, type }) {
 // `pickable(param, control)` returns an element with the control's node and a button; after a click
 // on the button, a click on an element in the view fills the control.
 export function controlFor(param, meshes, pickable) {
-    const { name, type, choices, default: usual, nullable = false } = param;
+    const { name, type, choices, default: usual, nullable = false, set = false } = param;
     if (type === 'flag') {
         return usual === undefined ? new Whether() : new Flag(usual);
     }
@@ -43,7 +55,10 @@ export function controlFor(param, meshes, pickable) {
         return new Color(name, type === 'color' ? 3 : 4);
     }
     if (type === 'choice') {
-        return new Choice(choices.map((choice) => [choice, choice]), usual ?? choices[0]);
+        const options = choices.map((choice) => [choice, choice]);
+        return isChosenByServer(param)
+            ? new Choice([['', 'default'], ...options], '')
+            : new Choice(options, usual ?? choices[0]);
     }
     if (type === 'mesh') {
         const control = new Choice([['', 'which mesh']], '');
@@ -56,10 +71,21 @@ export function controlFor(param, meshes, pickable) {
     if (type === 'matrix') {
         return matrix(name, (part, control) => pickable({ name: part, type: 'point' }, control));
     }
+    if (type === 'matrix_projective') {
+        return new Numbers(name, '1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1', (numbers) => numbers);
+    }
+    if (type === 'polygon') {
+        return polygon(name);
+    }
     if (isPlace(param)) {
         return type === 'point' ? new Vector(name) : vectors(name);
     }
-    return new Ids(name, isList(param), nullable);
+    return new Ids(name, { isList: isList(param), isNullable: nullable, isSet: set });
+}
+
+// Returns whether the server chooses the value of a parameter that is not given.
+function isChosenByServer({ default: usual, required, required_with: needed }) {
+    return usual === undefined && !required && needed === undefined;
 }
 
 // Returns the placeholder of an empty number field: the default value, if it is known; else
@@ -68,26 +94,39 @@ function hintFor({ default: usual, required }) {
     return usual === undefined ? (required ? 'number' : 'default') : `${usual}`;
 }
 
+// Returns whether a parameter may be given, where `selected` is the value of the operation's
+// selector, a choice on which that depends.
+export function isOpen({ with: values }, selected) {
+    return values === undefined || values.includes(selected);
+}
+
+// Returns whether a parameter, or one of its alternatives, must be given.
+function isNeeded({ required, required_with: values = [] }, selected) {
+    return required || values.includes(selected);
+}
+
 // Returns a note on a parameter: whether the value is a whole number, its range, and whether it may
 // be left out.
-export function marksOf({ type, required, min, max, exclusive }) {
+export function marksOf(param, selected) {
+    const { type, min, max, exclusive } = param;
     const marks = type === 'integer' ? ['whole'] : [];
     if (min !== undefined || max !== undefined) {
         const between = exclusive ? 'between' : 'from';
         marks.push(`${between} ${min} ${exclusive ? 'and' : 'to'} ${max}`);
     }
-    if (!required && type !== 'flag') {
+    if (!isNeeded(param, selected) && type !== 'flag') {
         marks.push('optional');
     }
     return marks.join(', ');
 }
 
-// Returns whether every parameter has a value or needs none. If parameters are alternatives, which
-// have the same `group`, a value for one of them is enough.
-export function isComplete(fields) {
+// Returns whether every parameter has a value or needs none; `fields` are those of the parameters
+// that may be given. If parameters are alternatives, which have the same `group`, a value for one of
+// them is enough.
+export function isComplete(fields, selected) {
     return fields.every(
         (field) =>
-            !field.param.required ||
+            !isNeeded(field.param, selected) ||
             field.control.isSaid ||
             fields.some(
                 (other) =>
@@ -103,7 +142,7 @@ export function isComplete(fields) {
 // what is wrong.
 export function readField({ param, control }) {
     const value = control.read();
-    if (Array.isArray(value) && param.plural !== undefined) {
+    if (value !== null && typeof value === 'object' && param.plural !== undefined) {
         return value.length === 1 ? [param.name, value[0]] : [param.plural, value];
     }
     return [param.name, value];

@@ -57,6 +57,22 @@ export class Selection {
         }
     }
 
+    // Selects several elements of one kind, in place of those that were selected; leaves out those
+    // that do not exist.
+    async selectAll(kind, ids) {
+        const choice = ++this.#choice;
+        const change = this.#change;
+        const [chosen] = await readAll(this.#mesh, ids.map((id) => ({ kind, id })));
+        const around = await this.#describe(chosen.at(-1));
+        if (choice === this.#choice) {
+            this.#set(chosen, around, []);
+            this.#onChange();
+            if (change !== this.#change) {
+                await this.#readAgain();
+            }
+        }
+    }
+
     #take(kind, id, also, read) {
         if (read !== null) {
             const others = also ? this.chosen.filter((s) => s.kind === kind && s.id !== id) : [];

@@ -302,7 +302,7 @@ export class Session {
     }
 
     // Runs an operation on the open mesh; if it may take long, `work` shows its progress, see
-    // edit() in api.js.
+    // edit() in api.js. Returns the server's answer, or null if there is none.
     run(operation, work = null) {
         return this.#edit((revision) => api.edit(this.mesh, operation, revision, work));
     }
@@ -318,7 +318,7 @@ export class Session {
 
     async #edit(send) {
         if (this.busy) {
-            return;
+            return null;
         }
         const followed = this.#followed;
         const { revision } = this.shown;
@@ -332,6 +332,7 @@ export class Session {
             if (followed === this.#followed) {
                 await this.#fetch({});
             }
+            return answer;
         } catch (error) {
             if ((error.status !== 409 && error.status !== 412) || followed !== this.#followed) {
                 throw error;

@@ -179,6 +179,11 @@ export class Stage {
         return this.#renderer.view;
     }
 
+    // The matrix that maps view coordinates to clip coordinates, column-major.
+    get matrix() {
+        return this.#renderer.matrix;
+    }
+
     // Position of the camera and of the point that it looks at, six numbers; undefined without a
     // renderer.
     get camera() {

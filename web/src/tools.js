@@ -11,6 +11,7 @@ import {
     isAbout,
     isComplete,
     isList,
+    isOpen,
     isPlace,
     kindOf,
     marksOf,
@@ -32,22 +33,27 @@ export class Tools {
     #onRun;
     #onTouch;
     #onArm;
+    #onDraw;
     #meshes;
     #armed = null; // {param, control, button} of the field that waits for a click
     #selection = [];
     #isEnabled = true;
     #isChosen = false; // the user chose an operation, so that it stays when the selection changes
-    #fields = new Map(); // name of the parameter -> {param, control, row, isTaken}
+    // name of the parameter -> {param, control, row, or, marks, isTaken}; `or` is the line above the
+    // row of an alternative, and `marks` the note in the row
+    #fields = new Map();
 
     // `onRun(operation)` runs the operation of the form and shows errors. `onTouch(operation,
     // error)` is called after a change of the form: `operation` is null if the form is incomplete
     // or has an error. `onArm({name, kind, isList})` is called when a field begins to wait for
-    // clicks in the view, and with undefined when it stops. `meshes()` returns the list of meshes.
-    constructor({ select, form, search }, { onRun, onTouch, onArm, meshes, onError }) {
+    // clicks in the view, and with undefined when it stops. `onDraw()` is called when the user wants
+    // to draw a lasso for the form, see takeLasso(). `meshes()` returns the list of meshes.
+    constructor({ select, form, search }, { onRun, onTouch, onArm, onDraw, meshes, onError }) {
         this.#form = form;
         this.#onRun = onRun;
         this.#onTouch = onTouch;
         this.#onArm = onArm;
+        this.#onDraw = onDraw;
         this.#meshes = () => meshes().catch((error) => (onError(error), []));
         this.#chooser = new Chooser(
             { select, search },
@@ -142,7 +148,7 @@ export class Tools {
     // alternatives, the fields of the other alternatives are cleared.
     #typed(target) {
         const field = this.#fields.get(target.closest('.field').dataset.name);
-        const { group } = field.param;
+        const { group, selects } = field.param;
         if (group !== undefined && field.control.isSaid) {
             for (const other of this.#fields.values()) {
                 if (other !== field && other.param.group === group) {
@@ -150,7 +156,49 @@ export class Tools {
                 }
             }
         }
+        if (selects) {
+            this.disarm();
+            this.#unfold();
+            this.#fill();
+        }
         this.#touch();
+    }
+
+    // The value of the operation's selector, a choice on which other parameters depend, or undefined
+    // if the operation has none.
+    get #selected() {
+        return [...this.#fields.values()].find(({ param }) => param.selects)?.control.read();
+    }
+
+    // The fields of the parameters that may be given.
+    get #open() {
+        const selected = this.#selected;
+        return [...this.#fields.values()].filter(({ param }) => isOpen(param, selected));
+    }
+
+    // Shows the rows of the parameters that may be given, and hides the others.
+    #unfold() {
+        const open = this.#open;
+        for (const field of this.#fields.values()) {
+            const isHidden = !open.includes(field);
+            field.row.hidden = isHidden;
+            field.marks.textContent = marksOf(field.param, this.#selected);
+            if (field.or !== null) {
+                field.or.hidden = isHidden;
+            }
+        }
+    }
+
+    // Puts a lasso that the user has drawn into the form, if it still has fields for one: a matrix of
+    // 16 numbers and a polygon of points [x, y].
+    takeLasso({ matrix, polygon }) {
+        const find = (type) => this.#open.find(({ param }) => param.type === type);
+        const [ofMatrix, ofPolygon] = [find('matrix_projective'), find('polygon')];
+        if (ofMatrix !== undefined && ofPolygon !== undefined) {
+            ofMatrix.control.set([0, 4, 8, 12].map((row) => matrix.slice(row, row + 4)));
+            ofPolygon.control.set(polygon);
+            this.#touch();
+        }
     }
 
     // Reports the operation of the form to onTouch(), if the user has chosen an operation.
@@ -160,7 +208,7 @@ export class Tools {
             return;
         }
         try {
-            const isReady = isComplete([...this.#fields.values()]);
+            const isReady = isComplete(this.#open, this.#selected);
             this.#onTouch(isReady ? this.#read() : null, null);
         } catch (error) {
             this.mark(error.pointer ?? '');
@@ -171,7 +219,7 @@ export class Tools {
     // The elements that the form's fields name, {kind, id} each; the list is empty until the user
     // has chosen an operation.
     get elements() {
-        const fields = this.#isChosen ? [...this.#fields.values()] : [];
+        const fields = this.#isChosen ? this.#open : [];
         return fields
             .filter(({ param }) => kindOf(param) !== null && !isPlace(param))
             .flatMap(({ param, control }) =>
@@ -232,7 +280,7 @@ export class Tools {
     // the first field, else to the button.
     open(name) {
         this.show(name);
-        const controls = [...this.#fields.values()].map(({ control }) => control);
+        const controls = this.#open.map(({ control }) => control);
         const { main } = controls.find(({ isSaid }) => !isSaid) ?? controls[0] ?? {};
         (main ?? this.#form.querySelector('button')).focus();
     }
@@ -255,6 +303,7 @@ export class Tools {
             ),
         );
         this.#form.hidden = operation === undefined;
+        this.#unfold();
         this.#fill();
         this.#touch();
     }
@@ -266,7 +315,9 @@ export class Tools {
         const id = `param-${name}`;
         const pickable = (part, control) => this.#pickable(part, control);
         const control = controlFor(param, this.#meshes, pickable);
-        const field = { param, control, row: null, isTaken: false };
+        const marks = make('span', { className: 'small' });
+        const or = isOther ? make('p', { className: 'or' }, 'or') : null;
+        const field = { param, control, row: null, or, marks, isTaken: false };
         this.#fields.set(name, field);
         // If a control consists of several inputs, they form a group and the first has the id.
         const isGroup = control.main !== control.node;
@@ -276,13 +327,8 @@ export class Tools {
         const label = isGroup
             ? make('span', { id: `${id}-name`, className: 'name' }, name)
             : make('label', { htmlFor: id, className: 'name' }, name);
-        const head = make(
-            'div',
-            { className: 'head' },
-            label,
-            make('span', { className: 'small' }, marksOf(param)),
-        );
-        const box = kindOf(param) === null ? control.node : pickable(param, control);
+        const head = make('div', { className: 'head' }, label, marks);
+        const box = kindOf(param) === null ? this.#drawable(param, control) : pickable(param, control);
         const className = control instanceof Flag ? 'field flag' : 'field';
         field.row = make('div', { className }, head, box, help);
         field.row.dataset.name = name;
@@ -290,7 +336,25 @@ export class Tools {
             field.row.setAttribute('role', 'group');
             field.row.setAttribute('aria-labelledby', label.id);
         }
-        return isOther ? [make('p', { className: 'or' }, 'or'), field.row] : [field.row];
+        return isOther ? [or, field.row] : [field.row];
+    }
+
+    // Returns the node of a control; that of a polygon with a button, after which the user draws the
+    // polygon in the view.
+    #drawable({ name, type }, control) {
+        if (type !== 'polygon') {
+            return control.node;
+        }
+        const button = make(
+            'button',
+            {
+                type: 'button',
+                'aria-label': `Draw ${name} in the view`,
+                onclick: () => this.#onDraw(),
+            },
+            'Draw',
+        );
+        return make('div', { className: 'drawn' }, control.node, button);
     }
 
     // Returns an element with a control and a button: after a click on the button, a click in the
@@ -315,7 +379,7 @@ export class Tools {
     // first that fits is filled. Fields that the user filled by clicks stay as they are.
     #fill() {
         const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
-        const fields = [...this.#fields.values()];
+        const fields = this.#open;
         const groups = new Set(fields.filter((one) => one.isTaken).map(({ param }) => param.group));
         groups.delete(undefined);
         for (const { param, control, isTaken } of fields) {
@@ -341,7 +405,7 @@ export class Tools {
 
     #read() {
         const operation = { op: this.#chooser.operation.name };
-        for (const field of this.#fields.values()) {
+        for (const field of this.#open) {
             const [name, value] = readField(field);
             if (value !== undefined) {
                 operation[name] = value;

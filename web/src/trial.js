@@ -1,6 +1,8 @@
 // trial.js - makes a dry run of the edit in a form before the user sends it, and shows the result
 // in words.
 
+import { formatCount } from './dom.js';
+
 // A dry run starts when the form has not changed for this many milliseconds.
 const DELAY = 300;
 
@@ -89,6 +91,10 @@ export function wordsOf(answer) {
 
 function changesOf(answer) {
     const { created, deleted, modified, replaced } = answer;
+    const chosen = answer.results.find(({ selected }) => selected !== undefined);
+    if (chosen !== undefined) {
+        return `Would select: ${selectionOf(chosen)}.`;
+    }
     const signs = [
         ['+', created],
         ['\u2212', deleted],
@@ -104,6 +110,16 @@ function changesOf(answer) {
             : 'Would replace the whole mesh.';
     }
     return changed.length > 0 ? `Would change: ${changed.join(' ')}` : 'Would change nothing.';
+}
+
+// Returns the result of a selection in words.
+export function selectionOf({ selected, added, removed }) {
+    const changes = [
+        ['+', added],
+        ['\u2212', removed],
+    ].flatMap(([sign, count]) => (count > 0 ? [`${sign}${formatCount(count)}`] : []));
+    const end = ` (${changes.length > 0 ? changes.join(' ') : 'as before'})`;
+    return `${formatCount(selected)} ${selected === 1 ? 'element' : 'elements'}${end}`;
 }
 
 function tally(found) {

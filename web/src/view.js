@@ -61,6 +61,17 @@ export function turnTo(direction, normal) {
         : unit(normal.map((value, i) => value + 0.5 * (direction[i] - seen * normal[i])));
 }
 
+// Returns the matrix, 16 numbers row by row, that maps points of the mesh to clip coordinates.
+// `matrix` is the product of projection and view, column-major, for view coordinates; `frame` says
+// how the server has made these from the mesh, see geometry.js.
+export function clipMatrixOf(matrix, { origin, scale }) {
+    return [0, 1, 2, 3].flatMap((row) => {
+        const [x, y, z] = [0, 4, 8].map((at) => matrix[at + row] * scale);
+        const moved = x * origin[0] + y * origin[1] + z * origin[2];
+        return [x, y, z, matrix[12 + row] - moved];
+    });
+}
+
 // Returns the clip coordinates [x, y, z, w] of a point; `matrix` is the product of projection and
 // view, column-major.
 function toClip(matrix, point) {
