@@ -33,7 +33,7 @@ enum {
 };
 enum { SELECT_OUT_SELECTED, SELECT_OUT_ADDED, SELECT_OUT_REMOVED };
 
-/* The names that requests use for the values of he_select_by, he_select_mode, he_corner_rule and
+/* The names that requests use for the values of he_select_by, he_set_mode, he_corner_rule and
  * he_select_measure, in the order of the enums. */
 static const char *const rules[] = {"region", "component", "box",      "half_space",
                                     "lasso",  "cone",      "measure",  "attribute",
@@ -98,11 +98,11 @@ static he_status run_select(he_mesh *m, const he_arg *args, he_results *out, he_
         .steps = (uint32_t)args[SELECT_STEPS].number};
     take_seeds(args, &rule);
     rule.of = kind_of(args, &rule);
-    const he_select_into into = {
-        .name = args[SELECT_INTO].given ? args[SELECT_INTO].text : "selected",
-        .value = args[SELECT_VALUE].given ? (int32_t)args[SELECT_VALUE].number : 0,
-        .mode = (he_select_mode)args[SELECT_MODE].choice};
-    he_selected done;
+    const he_set_into into = {.name = args[SELECT_INTO].given ? args[SELECT_INTO].text : "selected",
+                              .value =
+                                  args[SELECT_VALUE].given ? (int32_t)args[SELECT_VALUE].number : 0,
+                              .mode = (he_set_mode)args[SELECT_MODE].choice};
+    he_set_counts done;
     he_status status = he_select(m, &rule, &into, &done, err);
     if (status == HE_OK) {
         he_results_set_number(out, SELECT_OUT_SELECTED, done.selected);
@@ -314,7 +314,7 @@ const he_op he_select_rows[] = {
                      HE_ATTRIBUTE_CLASH, HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT,
                      HE_REPEATED_ELEMENT},
         .change = {0, 0, 0},
-        .pace = 3,
+        .pace = 5,
         .run = run_select,
     },
     {.name = NULL},

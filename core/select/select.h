@@ -1,31 +1,30 @@
 /* select.h - the operation `select`: finds elements by a rule, and writes the set of them into an
- * attribute.
+ * attribute (set_write.h).
  *
- * THE SET is a bool attribute of vertices, edges or faces, such as `selected`, `locked` or
- * `feature` (marks.h); or all elements whose int attribute, such as `patch`, has a certain value.
- * Requests name such a set as {"selected":true} or {"patch":3} wherever an operation takes a list
- * of elements. If the attribute does not exist, it is created: with the default false or 0, and the
- * rule copy, so that the parts of an element that is cut belong to the set, too.
+ * Every rule finds elements of the kind that the caller asks for:
  *
- * RULES. Every rule finds elements of the kind that the caller asks for.
- *
- *     region       the faces that a chain of faces joins to a seed. Neighbours in the chain share
- * an edge at which their normals differ by at most `angle`, and which is no feature edge unless
- * `cross_features` is true. A face without a normal counts as if it had the normal of a neighbour
- * (smooth_normals.h). component    the components (topology.h, joined by vertices) of the seeds,
- * which are vertices, edges or faces. An isolated vertex is a component, too. box          vertices
- * from the corner `low` to the corner `high`, both included half_space   vertices on the side of a
- * plane to which its normal points, or in the plane within its tolerance (plane.h) lasso vertices
- * that a matrix maps into a polygon, its border included (lasso.h) cone         elements whose
- * normal makes an angle of at most `angle` with a direction. The normal of a vertex is the mean of
- * the normals of its faces, weighted by angles; that of an edge is the mean of those of its two
- * faces. measure      elements of which a measure is from `from` to `to`, both included attribute
- * elements of which a component of an attribute is from `from` to `to` grow         the seeds, and
- * all elements that can be reached from them in `steps` steps. A step leads from a vertex to the
- * other end of one of its edges, from an edge or face to one with which it shares a vertex. shrink
- * the seeds, without those that can be reached in `steps` steps from an element that is no seed.
- * The boundary of the mesh shrinks nothing. boundary     the edges that have a face of a set on
- * exactly one side; without a set, the edges on the boundary of the mesh
+ *   region       The faces that a chain of faces joins to a seed. Neighbours in the chain share an
+ *                edge at which their normals differ by at most `angle`, and which is no feature
+ *                edge unless `cross_features` is true. A face without a normal counts as if it had
+ *                the normal of a neighbour (smooth_normals.h).
+ *   component    The components (topology.h, joined by vertices) of the seeds, which are vertices,
+ *                edges or faces. An isolated vertex is a component, too.
+ *   box          Vertices from the corner `low` to the corner `high`, both included.
+ *   half_space   Vertices on the side of a plane to which its normal points, or in the plane
+ *                within its tolerance (plane.h).
+ *   lasso        Vertices that a matrix maps into a polygon, its border included (lasso.h).
+ *   cone         Elements whose normal makes an angle of at most `angle` with a direction. The
+ *                normal of a vertex is the mean of the normals of its faces, weighted by angles;
+ *                that of an edge is the mean of those of its two faces.
+ *   measure      Elements of which a measure is from `from` to `to`, both included.
+ *   attribute    Elements of which a component of an attribute is from `from` to `to`.
+ *   grow         The seeds, and all elements that can be reached from them in `steps` steps. A step
+ *                leads from a vertex to the other end of one of its edges, from an edge or face to
+ *                one with which it shares a vertex.
+ *   shrink       The seeds, without those that can be reached in `steps` steps from an element that
+ *                is no seed. The boundary of the mesh shrinks nothing.
+ *   boundary     The edges that have a face of a set on exactly one side; without a set, the edges
+ *                on the boundary of the mesh.
  *
  * region, component and boundary find edges or faces first. Of faces, the other kinds are all their
  * edges and vertices; of the boundary's edges, the vertices are their ends and the faces those of
@@ -36,7 +35,7 @@
 
 #include "edit/plane/plane.h"
 #include "select/lasso.h"
-#include "select/set.h"
+#include "select/set_write.h"
 
 typedef enum he_select_by {
     HE_BY_REGION,
@@ -87,28 +86,6 @@ typedef struct he_select_rule {
     uint32_t steps;
 } he_select_rule;
 
-/* What is done with the elements that the rule finds. */
-typedef enum he_select_mode {
-    HE_SELECT_ONLY,  /* they become the set */
-    HE_SELECT_ADD,   /* they are added to the set */
-    HE_SELECT_REMOVE /* they are removed from the set */
-} he_select_mode;
-
-/* The set into which the result is written. */
-typedef struct he_select_into {
-    const char *name; /* of an attribute of the elements */
-    /* 0: the attribute is a bool with one component. Otherwise it is an int32 or uint32 with one
-     * component and without labels, the elements of the set have this value, and elements that are
-     * removed get 0. */
-    int32_t value;
-    he_select_mode mode;
-} he_select_into;
-
-typedef struct he_selected {
-    uint32_t selected;       /* number of elements of the set afterwards */
-    uint32_t added, removed; /* number of elements that joined and left the set */
-} he_selected;
-
 /* Finds elements by a rule and writes the set. `out` may be NULL.
  *
  * If the selection is refused, nothing changes.
@@ -123,7 +100,7 @@ typedef struct he_selected {
  * type. Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if a seed is not live, HE_REPEATED_ELEMENT
  * if it is listed twice. Returns HE_CANCELLED if the work was cancelled. Returns HE_NO_MEMORY if
  * memory is out, HE_IDS_EXHAUSTED if a face has too large an id for measuring curvatures. */
-HE_NODISCARD he_status he_select(he_mesh *m, const he_select_rule *rule, const he_select_into *into,
-                                 he_selected *out, he_error *err);
+HE_NODISCARD he_status he_select(he_mesh *m, const he_select_rule *rule, const he_set_into *into,
+                                 he_set_counts *out, he_error *err);
 
 #endif

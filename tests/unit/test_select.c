@@ -77,7 +77,7 @@ static void select_from(he_mesh *m, const he_select_rule *rule, const char *set,
     seeded.seeds = seeds.ids;
     seeded.seed_count = seeds.count;
     seeded.seed_kind = rule->of;
-    const he_select_into to = {into, 0, HE_SELECT_ONLY};
+    const he_set_into to = {into, 0, HE_SET_ONLY};
     assert_int_equal(he_select(m, &seeded, &to, NULL, NULL), HE_OK);
     he_ids_clear(&seeds);
 }
