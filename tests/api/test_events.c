@@ -49,7 +49,9 @@ static void put(api_bench *b, const char *obj)
 {
     static const char *const headers[] = {"Content-Type", "model/obj", NULL};
     bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", headers, obj);
-    assert_true(r.status == 200 || r.status == 201);
+    if (r.status != 200 && r.status != 201) {
+        fail_msg("%d %s", r.status, r.body);
+    }
     bench_reply_free(&r);
 }
 
@@ -109,7 +111,11 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
             steps += status == 200;
         } else {
             random_edit(&random, &copy, row, text);
-            done[row] += send(b, "POST", "/v1/meshes/m/edits", text) == 200;
+            const int status = send(b, "POST", "/v1/meshes/m/edits", text);
+            done[row] += status == 200;
+            if (status == 202) {
+                bench_run_jobs(b, 1); /* a remesh into many small triangles is a job */
+            }
         }
         anew += stream_follow(b, l, &copy);
         stream_require(b, &copy, text);

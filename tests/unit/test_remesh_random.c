@@ -212,8 +212,12 @@ static void decorate(he_mesh *m, md_random *r)
 
 static bool same_place(const he_mesh *a, const he_mesh *b, he_vertex v)
 {
-    he_vec3 p = he_position(a, v), q = he_position(b, v);
-    return memcmp(&p, &q, sizeof p) == 0;
+    const he_vec3 p = he_position(a, v), q = he_position(b, v);
+    const double before[] = {p.x, p.y, p.z}, after[] = {q.x, q.y, q.z};
+    uint64_t x[3], y[3];
+    memcpy(x, before, sizeof x);
+    memcpy(y, after, sizeof y);
+    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
 }
 
 static void require_locks(const he_mesh *before, const he_mesh *after, const uint64_t *chosen)
