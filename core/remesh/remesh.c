@@ -195,7 +195,10 @@ static he_status run_steps(he_remeshing *r, const he_remesh_options *options, do
     }
     for (unsigned i = 0; i < options->steps && status == HE_OK; i++) {
         double to = PREPARED + (STEPPED - PREPARED) * (i + 1) / options->steps;
-        status = he_progress_phase(r->progress, "remeshing", to, err);
+        /* The steps of a small mesh are too short to be told of one by one. */
+        if (i == 0 || r->net.triangle_count >= HE_PROGRESS_STRIDE) {
+            status = he_progress_phase(r->progress, "remeshing", to, err);
+        }
         if (status == HE_OK) {
             status = step(r, err);
         }

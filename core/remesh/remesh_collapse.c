@@ -347,7 +347,7 @@ he_status he_remesh_collapse(he_remeshing *r, he_error *err)
     }
     for (; scale <= 1 && shortest < 1 && status == HE_OK; scale *= 2) {
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
-            status = he_progress_at(r->progress, t, n->triangle_count, err);
+            status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
             if (!he_net_is_gone(n, t)) {
                 collapse_triangle(r, t, scale);
             }

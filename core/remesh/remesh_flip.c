@@ -148,7 +148,7 @@ he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, he_error *err)
     for (unsigned sweep = 0; sweep < SWEEPS && flips > 0 && status == HE_OK; sweep++) {
         flips = 0;
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
-            status = he_progress_at(r->progress, t, n->triangle_count, err);
+            status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
             for (uint32_t c = 4 * t; c < 4 * t + 3 && !he_net_is_gone(n, t); c++) {
                 uint32_t twin = he_net_twin(n, c);
                 if (twin != HE_NONE && c < twin && !he_net_is_held(n, c)) {

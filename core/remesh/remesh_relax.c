@@ -187,7 +187,7 @@ he_status he_remesh_relax(he_remeshing *r, he_error *err)
     he_status status = HE_OK;
     for (uint32_t v = 0; v < n->vertex_count && status == HE_OK; v++) {
         uint32_t flags = n->vertices[v].flags;
-        status = he_progress_at(r->progress, v, n->vertex_count, err);
+        status = he_progress_at(r->progress, v + 1, n->vertex_count, err);
         if ((flags & (HE_NET_FIXED | HE_NET_DEAD)) != 0) {
             continue;
         }
@@ -262,7 +262,7 @@ he_status he_remesh_round(he_remeshing *r, he_error *err)
     for (unsigned sweep = 0; sweep < SWEEPS && any && status == HE_OK; sweep++) {
         any = false;
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
-            status = he_progress_at(r->progress, t, n->triangle_count, err);
+            status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
             if (he_net_is_gone(n, t)) {
                 continue;
             }

@@ -223,7 +223,7 @@ he_status he_remesh_split(he_remeshing *r, he_error *err)
     }
     for (; most >= least && longest > least && status == HE_OK; most /= 4) {
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
-            status = he_progress_at(r->progress, t, n->triangle_count, err);
+            status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
             if (status == HE_OK && !he_net_is_gone(n, t)) {
                 status = split_triangle(r, t, most, err);
             }

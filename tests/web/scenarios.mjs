@@ -115,6 +115,7 @@ export const SCENARIOS = [
     ['reverse', GRID, {}],
     ['dual', CUBES, {}],
     ['decimate', GRID, { faces: '4' }, [{ op: 'triangulate' }]],
+    ['remesh', GRID, { target_faces: '30' }, [{ op: 'triangulate' }]],
     ['append', GRID, { mesh: 'which mesh' }],
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));
