@@ -26,6 +26,7 @@ extern const md_row md_region_rows[];
 extern const md_row md_refine_rows[];
 extern const md_row md_decimate_rows[];
 extern const md_row md_remesh_rows[];
+extern const md_row md_smooth_rows[];
 extern const md_row md_material_rows[];
 extern const md_row md_select_rows[];
 
