@@ -1,6 +1,7 @@
 #include "op/rows.h"
 
 #include "geometry/scale.h"
+#include "select/segment.h"
 #include "select/select.h"
 
 #include <math.h>
@@ -108,6 +109,29 @@ static he_status run_select(he_mesh *m, const he_arg *args, he_results *out, he_
         he_results_set_number(out, SELECT_OUT_SELECTED, done.selected);
         he_results_set_number(out, SELECT_OUT_ADDED, done.added);
         he_results_set_number(out, SELECT_OUT_REMOVED, done.removed);
+    }
+    return status;
+}
+
+enum { SEGMENT_ANGLE, SEGMENT_PLANES, SEGMENT_FEATURES, SEGMENT_INTO };
+enum { SEGMENT_OUT_PATCHES, SEGMENT_OUT_FEATURES, SEGMENT_OUT_DEVIATION };
+
+/* The names that requests use for the values of he_segment_features, in the order of the enum. */
+static const char *const features[] = {"add", "replace", "ignore", NULL};
+
+static he_status run_segment(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const he_segment_options options = {
+        .into = args[SEGMENT_INTO].given ? args[SEGMENT_INTO].text : "patch",
+        .planes = args[SEGMENT_PLANES].given ? (uint32_t)args[SEGMENT_PLANES].number : 0,
+        .angle = args[SEGMENT_ANGLE].number,
+        .features = (he_segment_features)args[SEGMENT_FEATURES].choice};
+    he_segmented done;
+    he_status status = he_segment(m, &options, &done, err);
+    if (status == HE_OK) {
+        he_results_set_number(out, SEGMENT_OUT_PATCHES, done.patches);
+        he_results_set_number(out, SEGMENT_OUT_FEATURES, done.features);
+        he_results_set_number(out, SEGMENT_OUT_DEVIATION, done.deviation);
     }
     return status;
 }
@@ -316,6 +340,67 @@ const he_op he_select_rows[] = {
         .change = {0, 0, 0},
         .pace = 5,
         .run = run_select,
+    },
+    {
+        .name = "segment",
+        .doc =
+            "Divide the faces into connected patches, write the number of the patch of each face "
+            "into an int attribute, and mark the edges between patches as feature edges. A patch "
+            "is a set that other operations take, as {\"patch\":3}.",
+        .size = HE_OP_WHOLE,
+        .params =
+            {[SEGMENT_ANGLE] =
+                 {.name = "angle",
+                  .type = HE_PARAM_NUMBER,
+                  .flags =
+                      HE_REQUIRED |
+                      HE_RANGE,
+                  .group =
+                      'a',
+                  .max =
+                      HE_PI,
+                  .doc =
+                      "Patches end at edges at which the normals of the faces differ by more than "
+                      "this angle, in radians. Edges of this sort inside a patch are marked, "
+                      "too."},
+             [SEGMENT_PLANES] =
+                 {.name = "planes",
+                  .type = HE_PARAM_NUMBER,
+                  .flags = HE_REQUIRED | HE_RANGE | HE_WHOLE,
+                  .group = 'a',
+                  .min = 1,
+                  .max = HE_MAX_ROWS,
+                  .doc = "The number of patches, which planes approximate as well as possible "
+                         "(variational shape approximation). Every component gets at least one; if "
+                         "all patches are flat, there are fewer."},
+             [SEGMENT_FEATURES] =
+                 {.name = "features",
+                  .type = HE_PARAM_CHOICE,
+                  .choices = features,
+                  .doc =
+                      "add: patches also end at edges whose bool attribute `feature` is true, and "
+                      "these stay marked. replace: such marks are ignored and replaced. ignore: "
+                      "they are neither read nor written."},
+             [SEGMENT_INTO] = {.name = "into",
+                               .type = HE_PARAM_TEXT,
+                               .doc =
+                                   "The attribute of faces that gets the numbers of patches, from "
+                                   "1; it is created if it does not exist. Default: `patch`."}},
+        .results = {[SEGMENT_OUT_PATCHES] = {"patches", HE_RESULT_NUMBER, HE_FACE,
+                                             "How many patches there are."},
+                    [SEGMENT_OUT_FEATURES] = {"features", HE_RESULT_NUMBER, HE_EDGE,
+                                              "How many edges are marked as feature edges "
+                                              "afterwards; 0 if features is ignore."},
+                    [SEGMENT_OUT_DEVIATION] =
+                        {
+                            "deviation", HE_RESULT_NUMBER, HE_FACE,
+                            "How far the patches are from flat: the root mean square, weighted by "
+                            "area, of the distance between the unit normals of a face and of its "
+                            "patch."}},
+        .refusals = {HE_BAD_VALUE, HE_ATTRIBUTE_CLASH},
+        .change = {0, 0, 0},
+        .pace = 3,
+        .run = run_segment,
     },
     {.name = NULL},
 };

@@ -1,5 +1,6 @@
 #include "query/topology.h"
 
+#include "base/forest.h"
 #include "mesh/walk.h"
 
 static uint32_t halfedge_end(const he_mesh *m)
@@ -20,31 +21,6 @@ static he_status broken(he_kind kind, uint32_t id, he_error *err)
 }
 
 /* --- components: union-find in one array --- */
-
-/* Returns the root of the union-find tree of element i, with path halving (van Leeuwen and van der
- * Weide 1977). The root is the element with the lowest id in the tree. No ranks are needed to keep
- * paths short, because elements of one component usually have close ids. */
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    return i;
-}
-
-/* Joins the trees of elements a and b. Returns true if these were two different trees. */
-static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = root_of(parent, a);
-    b = root_of(parent, b);
-    if (a < b) {
-        parent[b] = a;
-    } else {
-        parent[a] = b;
-    }
-    return a != b;
-}
 
 /* Makes a union-find forest whose trees are the connected components. For HE_VERTEX its elements
  * are the vertices, joined by edges; for HE_FACE its elements are the faces, joined where they
@@ -73,7 +49,7 @@ static he_status join_all(const he_mesh *m, he_kind kind, uint32_t **out, uint32
         }
         uint32_t a = side[2u * e], b = side[2u * e + 1u];
         if (a < issued && b < issued) {
-            count += unite(parent, a, b);
+            count += he_forest_unite(parent, a, b);
         } else if (kind == HE_VERTEX || (a >= issued && a != HE_NONE) ||
                    (b >= issued && b != HE_NONE)) {
             he_mem_free(parent);
@@ -115,7 +91,7 @@ static he_status add_component(he_components *list, he_component component, he_e
 /* Returns the root of the union-find tree to which face f belongs. */
 static uint32_t tree_of(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t f)
 {
-    return root_of(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
+    return he_forest_root(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
 }
 
 /* Numbers the components, which are the trees of the union-find forest, in the order of their
@@ -161,7 +137,7 @@ static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *pa
             continue;
         }
         if (by == HE_JOINED_BY_VERTEX) {
-            uint32_t component = label[root_of(parent, v)];
+            uint32_t component = label[he_forest_root(parent, v)];
             if (component >= list->count) {
                 return broken(HE_VERTEX, v, err);
             }
@@ -175,7 +151,7 @@ static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *pa
             }
             uint32_t f = m->c.face[h];
             if (f < m->c.faces.issued) {
-                uint32_t component = label[root_of(parent, f)];
+                uint32_t component = label[he_forest_root(parent, f)];
                 if (component >= list->count) {
                     return broken(HE_FACE, f, err);
                 }

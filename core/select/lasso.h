@@ -2,8 +2,7 @@
  *
  * The matrix M has four rows of four numbers. It maps the point (x, y, z) to
  *
- *     (X, Y, Z, W) = M (x, y, z, 1)     and on to the point (X / W, Y / W) in the plane of the
- * polygon
+ *     (X, Y, Z, W) = M (x, y, z, 1),    which stands for (X / W, Y / W) in the polygon's plane,
  *
  * so it may be the product of a camera's projection and view. A point with W <= 0 is behind the
  * camera and never inside. Z is not used.

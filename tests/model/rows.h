@@ -29,5 +29,6 @@ extern const md_row md_remesh_rows[];
 extern const md_row md_smooth_rows[];
 extern const md_row md_material_rows[];
 extern const md_row md_select_rows[];
+extern const md_row md_segment_rows[];
 
 #endif

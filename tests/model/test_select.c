@@ -1,11 +1,13 @@
-/* Random selections on random meshes, each element compared with the oracle: meshes of all families
- * of starts.h and of the corpus, some of them flattened to slivers, moved far from the origin, or
- * with coordinates rounded to whole numbers. A selection that is cancelled at a random time, or out
- * of memory, must change nothing; undo and redo must lead back and forth bit for bit.
+/* Random selections and segmentations of random meshes, compared with the oracle element by
+ * element: meshes of all families of starts.h and of the corpus, some of them flattened to slivers,
+ * moved far from the origin, or with coordinates rounded to whole numbers. An operation that is
+ * cancelled at a random time, or out of memory, must change nothing; undo and redo must lead back
+ * and forth bit for bit.
  *
  * MESHES (1000) and SEED (from the clock) come from the environment. */
 #include "mesh/check.h"
 #include "mesh/delta.h"
+#include "model/calls_segment.h"
 #include "model/calls_select.h"
 #include "model/marks.h"
 #include "model/shapes.h"
@@ -23,7 +25,7 @@
 
 #include <cmocka.h>
 
-enum { SELECTIONS = 8 };
+enum { TIMES = 8 }; /* how many operations on each mesh */
 
 typedef struct world {
     md_random random;
@@ -32,7 +34,7 @@ typedef struct world {
     const char *start, *shape;
     uint64_t round;
     md_call call;
-    /* How many selections were made, refused, cancelled and out of memory, and how many elements
+    /* How many operations were made, refused, cancelled and out of memory, and how many elements
      * were compared and left to rounding. */
     uint64_t made, refused, cancelled, starved, compared, vague;
 } world;
@@ -139,7 +141,7 @@ static void cancel(world *w, const he_mesh *before)
     he_status status = run(w, &results, NULL);
     he_mesh_set_progress(w->mesh, NULL);
     if (status == HE_CANCELLED) {
-        require(w, he_mesh_equal(w->mesh, before), "a cancelled selection changed the mesh");
+        require(w, he_mesh_equal(w->mesh, before), "a cancelled operation changed the mesh");
         w->cancelled++;
     }
     he_delta_rollback(w->mesh, mark);
@@ -191,19 +193,14 @@ static void compare(world *w, const he_mesh *before, const or_verdict *verdict,
             "the numbers reported are wrong");
 }
 
-static void select_once(world *w)
+/* Runs the call that was drawn, and perhaps before that with a watch that cancels it or without
+ * memory. `refused` is the set of refusals that apply. Returns whether it succeeded; then the mesh
+ * has changed, and undo and redo have been tried. */
+static bool run_checked(world *w, uint64_t refused, const he_mesh *before, he_results *results)
 {
-    static or_verdict verdict[OR_ROWS];
-    md_draft draft = {&w->call, w->oracle, w->mesh, &w->random, false};
-    he_mesh *before = copy_of(w);
     he_delta *delta = he_delta_new();
-    he_results results = {0};
     he_error err = {0};
     assert_non_null(delta);
-    he_op_defaults(w->call.op, w->call.args);
-    (void)md_select_draw(&draft);
-    md_read_marks(w->oracle, w->mesh);
-    const uint64_t refused = md_select_foresee(&w->call, w->oracle, w->mesh, verdict);
     (void)he_mesh_record(w->mesh, delta);
     if (md_chance(&w->random, 30)) {
         cancel(w, before);
@@ -211,7 +208,7 @@ static void select_once(world *w)
     if (md_chance(&w->random, 20)) {
         starve(w, before);
     }
-    const he_status status = run(w, &results, &err);
+    const he_status status = run(w, results, &err);
     (void)he_mesh_record(w->mesh, NULL);
     if (status != HE_OK) {
         if ((refused & OR_BIT(status)) == 0) {
@@ -222,7 +219,6 @@ static void select_once(world *w)
         w->refused++;
     } else {
         require(w, refused == 0, "is not refused");
-        compare(w, before, verdict, &results);
         he_mesh *after = copy_of(w);
         he_delta_undo(delta, w->mesh);
         require(w, he_mesh_equal(w->mesh, before), "undo led elsewhere");
@@ -231,21 +227,62 @@ static void select_once(world *w)
         he_mesh_free(after);
         w->made++;
     }
-    he_results_clear(&results);
     he_delta_free(delta);
+    return status == HE_OK;
+}
+
+static void begin(world *w, const char *operation)
+{
+    w->call.op = he_op_find(operation, strlen(operation));
+    assert_non_null(w->call.op);
+    w->call.row = he_op_number(w->call.op);
+    he_op_defaults(w->call.op, w->call.args);
+    md_read_marks(w->oracle, w->mesh);
+}
+
+static void select_once(world *w)
+{
+    static or_verdict verdict[OR_ROWS];
+    md_draft draft = {&w->call, w->oracle, w->mesh, &w->random, false};
+    he_mesh *before = copy_of(w);
+    he_results results = {0};
+    begin(w, "select");
+    (void)md_select_draw(&draft);
+    const uint64_t refused = md_select_foresee(&w->call, w->oracle, w->mesh, verdict);
+    if (run_checked(w, refused, before, &results)) {
+        compare(w, before, verdict, &results);
+    }
+    he_results_clear(&results);
     he_mesh_free(before);
 }
 
-static void each_rule_selects_what_the_oracle_selects(void **state)
+static void segment_once(world *w)
 {
-    (void)state;
+    md_draft draft = {&w->call, w->oracle, w->mesh, &w->random, false};
+    he_mesh *before = copy_of(w);
+    he_results results = {0};
+    char text[OR_TEXT] = "";
+    begin(w, "segment");
+    (void)md_segment_draw(&draft);
+    if (run_checked(w, md_segment_refusals(&w->call, w->mesh), before, &results)) {
+        w->compared += he_mesh_faces(w->mesh);
+        if (!md_segment_is_right(&w->call, w->oracle, w->mesh, text)) {
+            stop(w, text, "");
+        }
+        require(w, isfinite(results.number[2]) && results.number[2] >= 0,
+                "the deviation is not a number");
+    }
+    he_results_clear(&results);
+    he_mesh_free(before);
+}
+
+static void each_result_is_that_of_the_oracle(void (*once)(world *w), const char *what)
+{
     world *w = calloc(1, sizeof *w);
     assert_non_null(w);
     const uint64_t seed = seed_of_run(), meshes = seed_setting("MESHES", 1000);
     w->oracle = or_new();
-    w->call.op = he_op_find("select", strlen("select"));
-    assert_true(w->oracle != NULL && w->call.op != NULL);
-    w->call.row = he_op_number(w->call.op);
+    assert_non_null(w->oracle);
     md_starts starts = md_starts_find();
     for (w->round = 0; w->round < meshes; w->round++) {
         w->random.state = seed + w->round;
@@ -255,8 +292,8 @@ static void each_rule_selects_what_the_oracle_selects(void **state)
             continue;
         }
         assert_true(md_mark(w->mesh, &w->random));
-        for (int i = 0; i < SELECTIONS; i++) {
-            select_once(w);
+        for (int i = 0; i < TIMES; i++) {
+            once(w);
         }
         he_problem problem;
         size_t problems = 0;
@@ -264,10 +301,10 @@ static void each_rule_selects_what_the_oracle_selects(void **state)
                 "the check fails");
         he_mesh_free(w->mesh);
     }
-    printf("note: %" PRIu64 " meshes, %" PRIu64 " selections, %" PRIu64 " refused, %" PRIu64
+    printf("note: %" PRIu64 " meshes, %" PRIu64 " %s, %" PRIu64 " refused, %" PRIu64
            " cancelled, %" PRIu64 " out of memory; %" PRIu64 " elements compared, %" PRIu64
            " left to rounding\n",
-           meshes, w->made, w->refused, w->cancelled, w->starved, w->compared, w->vague);
+           meshes, w->made, what, w->refused, w->cancelled, w->starved, w->compared, w->vague);
     assert_true(w->vague * 5 < w->compared);
     assert_true(w->made > w->refused && w->cancelled > 0 && w->starved > 0);
     md_starts_clear(&starts);
@@ -275,8 +312,23 @@ static void each_rule_selects_what_the_oracle_selects(void **state)
     free(w);
 }
 
+static void each_rule_selects_what_the_oracle_selects(void **state)
+{
+    (void)state;
+    each_result_is_that_of_the_oracle(select_once, "selections");
+}
+
+static void patches_are_connected_and_end_where_they_must(void **state)
+{
+    (void)state;
+    each_result_is_that_of_the_oracle(segment_once, "segmentations");
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_rule_selects_what_the_oracle_selects)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_rule_selects_what_the_oracle_selects),
+        cmocka_unit_test(patches_are_connected_and_end_where_they_must),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

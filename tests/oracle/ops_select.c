@@ -505,6 +505,17 @@ static void by_boundary(const or_mesh *o, const or_rule *rule, or_verdict verdic
     free(in);
 }
 
+or_verdict or_is_smooth(const or_mesh *o, uint32_t e, double angle)
+{
+    const uint32_t f = o->left[o->edge[e].a][o->edge[e].b];
+    const uint32_t g = o->left[o->edge[e].b][o->edge[e].a];
+    if (f == OR_NONE || g == OR_NONE) {
+        return OR_NO;
+    }
+    const normal a = normal_of_face(o, f), b = normal_of_face(o, g);
+    return a.vague || b.vague ? OR_EITHER : within(angle_between(a.n, b.n), angle);
+}
+
 void or_select(const or_mesh *o, const or_rule *rule, or_verdict verdict[OR_ROWS])
 {
     or_verdict *first = calloc(OR_ROWS, sizeof *first);

@@ -327,6 +327,10 @@ enum { OR_ROWS = OR_EDGES };
  * OR_ROWS elements. The rule must be one that hedge accepts. */
 void or_select(const or_mesh *o, const or_rule *rule, or_verdict verdict[OR_ROWS]);
 
+/* Returns whether the normals of the two faces of an edge differ by at most `angle`; OR_NO if the
+ * edge has only one face. */
+or_verdict or_is_smooth(const or_mesh *o, uint32_t e, double angle);
+
 /* or_delaunay_flip applies one flip that hedge's delaunay reports; hedge chooses the order. Returns
  * false, and writes a sentence to `text`, unless the edge lies between two triangles, the opposite
  * angles require a flip, and edge_flip allows it. `looked[e]` is set for the edges to examine at

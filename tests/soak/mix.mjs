@@ -290,6 +290,7 @@ export class Mix {
             () => ({ op: 'delaunay' }),
             () => (small ? { op: 'append', mesh: this.keeper.id } : { op: 'dual' }),
             () => ({ op: 'weld', tolerance: 1e-9 }),
+            () => ({ op: 'segment', angle: 0.5, features: 'ignore' }),
             () => ({ op: 'select', by: 'half_space', point: [0, 0, 0], normal: [1, 1, this.below(9)] }),
         ])();
         const { status } = await this.client.send('POST', this.path(mesh, '/edits'), [204, 422], {

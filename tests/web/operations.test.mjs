@@ -21,7 +21,7 @@ async function goThrough({ daemon, page }, scenario) {
     const { revision, counts } = await get(daemon, `/${mesh}`);
     await fillForm({ daemon, page, mesh }, scenario);
     const verdict = page.locator('#verdict').filter({ hasText: /./ });
-    assert.match(await verdict.textContent(), /^Would (make|change|replace|select)/, scenario.name);
+    assert.match(await verdict.textContent(), /^Would (make|change|replace|select|divide)/, scenario.name);
     await page.getByRole('button', { name: 'Apply' }).click();
     await waitForFrame(page, { mesh, revision: revision + 1 });
     if (scenario.name === 'compact') {

@@ -158,6 +158,13 @@ test('the lines about sets work as pasted', async (t) => {
     assert.equal(lid, '"selected":1,"added":1,"removed":0');
     assert.ok(block.includes(`# ${rim}`), rim);
     assert.equal(same, '"selected":1,"added":0,"removed":0');
+    const patches = shellWith('"op":"segment"', url);
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
+    t.after(() => rm(folder, { recursive: true }));
+    const [found, status] = await runCurls(`cd ${folder}\n${patches}`);
+    const [, beginning] = /# ("patches":.*),\.\.\.$/m.exec(patches);
+    assert.ok(found.startsWith(beginning), found);
+    assert.equal(status, '200');
 });
 
 test('no line floods a terminal, ends without a line end or changes a sample', async (t) => {

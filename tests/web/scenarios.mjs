@@ -104,6 +104,7 @@ export const SCENARIOS = [
         by: 'region', face: [MIDDLE], angle: '0.5', cross_features: true, elements: 'edges',
         into: 'part',
     }],
+    ['segment', CUBES, { angle: '0.5', features: 'replace', into: 'side' }],
     ['delaunay', LONG, { edge: [edge(0, 2)] }],
     ['compact', GRID, {}, HOLE],
     ['vertex_weld', GRID, { vertex: [vertex(5), vertex(6)], position: 'lowest' }],

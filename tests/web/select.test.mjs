@@ -180,6 +180,27 @@ test('Esc gives up a lasso, and a click without a drag draws none', async (t) =>
     await waitForFrame(page, { selection: '' });
 });
 
+test('patches are counted, and their borders are shown', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CAN);
+    await choose(page, 'segment');
+    assert.deepEqual(await shown(page), ['angle', 'planes', 'features', 'into']);
+    assert.equal(await page.locator('#parameters .or:not([hidden])').count(), 1);
+    await field(page, 'angle').fill('0.6');
+    await expectVerdict(page, 'Would divide the faces into 3 patches, with 24 feature edges.');
+    await checkAccessible(page, 'segment', '#details');
+    await apply(page);
+    await expectToast(page, 'The faces are divided into 3 patches, with 24 feature edges.');
+    const edges = await getAll(daemon, mesh, 'edges');
+    const { values } = await get(daemon, `/${mesh}/attributes/edges/feature`);
+    const marked = edges.filter((_, i) => values[i]).map(({ id }) => id);
+    await expectSelection(page, 'edge', marked);
+    // The number of planes takes the place of the angle.
+    await field(page, 'planes').fill('14');
+    assert.equal(await field(page, 'angle').inputValue(), '');
+    await field(page, 'features').selectOption('ignore');
+    await expectVerdict(page, 'Would divide the faces into 14 patches.');
+});
+
 test('a set that is too large for the page is named instead', async (t) => {
     const { page } = await openMesh(t, { shape: 'grid', columns: 40, rows: 40 });
     await choose(page, 'select');

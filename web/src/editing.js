@@ -8,7 +8,7 @@ import { begin, drag } from './gesture.js';
 import { Lasso } from './lasso.js';
 import { isIn, markOf, readAll } from './selection.js';
 import { Tools } from './tools.js';
-import { Trial, selectionOf, wordsOf } from './trial.js';
+import { Trial, patchesOf, selectionOf, wordsOf } from './trial.js';
 import { clipMatrixOf } from './view.js';
 import { Work } from './work.js';
 
@@ -196,9 +196,13 @@ export class Editing {
         this.#work.start(operation.op, false);
         try {
             const answer = await this.#session.run(operation, this.#work);
-            const result = answer?.results?.find(({ selected }) => selected !== undefined);
-            if (result !== undefined) {
+            const [result] = answer?.results ?? [];
+            if (result?.selected !== undefined) {
                 await this.#showSelected(operation, result);
+                return;
+            }
+            if (result?.patches !== undefined) {
+                await this.#showPatches(operation, result);
                 return;
             }
             const { revision, history } = this.#session.shown;
@@ -228,6 +232,16 @@ export class Editing {
         const ids = await api.getSet(this.#session.mesh, kind, into, value);
         const one = Object.entries(PLURALS).find(([, plural]) => plural === kind)[0];
         await this.#session.selection.selectAll(one, ids);
+    }
+
+    // Says what the operation `segment` has found, and selects the feature edges in the page, so that
+    // the patches can be seen.
+    async #showPatches(operation, result) {
+        this.#toasts.tell(operation.op, `The faces are divided into ${patchesOf(result)}.`);
+        if (result.features > 0 && result.features <= MOST_MARKED) {
+            const ids = await api.getSet(this.#session.mesh, 'edges', 'feature');
+            await this.#session.selection.selectAll('edge', ids);
+        }
     }
 
     // --- the lasso ---

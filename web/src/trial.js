@@ -95,6 +95,10 @@ function changesOf(answer) {
     if (chosen !== undefined) {
         return `Would select: ${selectionOf(chosen)}.`;
     }
+    const divided = answer.results.find(({ patches }) => patches !== undefined);
+    if (divided !== undefined) {
+        return `Would divide the faces into ${patchesOf(divided)}.`;
+    }
     const signs = [
         ['+', created],
         ['\u2212', deleted],
@@ -120,6 +124,13 @@ export function selectionOf({ selected, added, removed }) {
     ].flatMap(([sign, count]) => (count > 0 ? [`${sign}${formatCount(count)}`] : []));
     const end = ` (${changes.length > 0 ? changes.join(' ') : 'as before'})`;
     return `${formatCount(selected)} ${selected === 1 ? 'element' : 'elements'}${end}`;
+}
+
+// Returns the result of a segmentation in words.
+export function patchesOf({ patches, features }) {
+    const count = (number, one, many) => `${formatCount(number)} ${number === 1 ? one : many}`;
+    const marked = features > 0 ? `, with ${count(features, 'feature edge', 'feature edges')}` : '';
+    return `${count(patches, 'patch', 'patches')}${marked}`;
 }
 
 function tally(found) {
