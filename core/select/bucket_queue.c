@@ -29,7 +29,7 @@ static uint32_t find_entry(he_bucket_queue *queue)
     }
     if (queue->count == queue->capacity) {
         size_t capacity = he_mem_grown(queue->capacity, (size_t)queue->count + 1);
-        he_candidate *grown =
+        he_queued *grown =
             capacity < HE_NO_CANDIDATE ? he_mem_array(queue->pool, capacity, sizeof *grown) : NULL;
         if (grown == NULL) {
             return HE_NO_CANDIDATE;
@@ -49,7 +49,7 @@ he_status he_bucket_queue_add(he_bucket_queue *queue, float error, uint32_t face
     if (entry == HE_NO_CANDIDATE) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to grow patches");
     }
-    queue->pool[entry] = (he_candidate){face, patch, HE_NO_CANDIDATE};
+    queue->pool[entry] = (he_queued){face, patch, HE_NO_CANDIDATE};
     if (queue->full[bucket >> 6] >> (bucket & 63) & 1) {
         queue->pool[queue->last[bucket]].next = entry;
     } else {
@@ -61,7 +61,7 @@ he_status he_bucket_queue_add(he_bucket_queue *queue, float error, uint32_t face
     return HE_OK;
 }
 
-bool he_bucket_queue_take(he_bucket_queue *queue, he_candidate *out)
+bool he_bucket_queue_take(he_bucket_queue *queue, he_queued *out)
 {
     uint32_t high = 0;
     const uint32_t highs = sizeof queue->words / sizeof queue->words[0];

@@ -14,13 +14,13 @@
 enum { HE_BUCKETS = 1 << 13, HE_BUCKET_SHIFT = 18, HE_BUCKET_WORDS = HE_BUCKETS / 64 };
 
 /* A face that a patch may take next. */
-typedef struct he_candidate {
+typedef struct he_queued {
     uint32_t face, patch;
     uint32_t next; /* index of the next candidate in the bucket, or in the list of free entries */
-} he_candidate;
+} he_queued;
 
 typedef struct he_bucket_queue {
-    he_candidate *pool;
+    he_queued *pool;
     uint32_t count, capacity;
     uint32_t unused; /* the first entry of the list of free entries; HE_NO_CANDIDATE: none */
     uint32_t first[HE_BUCKETS], last[HE_BUCKETS];
@@ -39,6 +39,6 @@ void he_bucket_queue_free(he_bucket_queue *queue);
 HE_NODISCARD he_status he_bucket_queue_add(he_bucket_queue *queue, float error, uint32_t face,
                                            uint32_t patch, he_error *err);
 /* Takes a candidate of the first bucket that is not empty. Returns false if the queue is empty. */
-bool he_bucket_queue_take(he_bucket_queue *queue, he_candidate *out);
+bool he_bucket_queue_take(he_bucket_queue *queue, he_queued *out);
 
 #endif

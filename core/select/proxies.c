@@ -6,6 +6,7 @@
 #include "mesh/walk.h"
 #include "select/bucket_queue.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,6 +79,7 @@ static he_status grow(fitting *f, he_error *err)
 {
     const he_mesh *m = f->task->m;
     he_status status = HE_OK;
+    assert(f->proxies != NULL);
     for (uint32_t i = 0; i < m->c.faces.issued; i++) {
         f->labels[i] = HE_NONE;
         f->least[i] = INFINITY;
@@ -88,7 +90,7 @@ static he_status grow(fitting *f, he_error *err)
     for (uint32_t p = 0; p < f->count && status == HE_OK; p++) {
         status = take(f, f->proxies[p].seed, p, err);
     }
-    he_candidate c;
+    he_queued c;
     for (uint64_t i = 0; status == HE_OK && he_bucket_queue_take(f->queue, &c); i++) {
         status = he_progress_at(m->progress, i, 4 * (uint64_t)m->c.faces.live, err);
         if (status == HE_OK && f->labels[c.face] == HE_NONE) {
