@@ -143,8 +143,13 @@ he_status he_column_extend(he_column *column, size_t rows, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    for (size_t i = 0; i < rows; i++) {
-        memcpy(he_column_row(column, column->rows + i), column->fallback, column->row_bytes);
+    static const unsigned char zero[HE_COLUMN_ROW_BYTES];
+    if (rows > 0 && memcmp(column->fallback, zero, column->row_bytes) == 0) {
+        memset(he_column_row(column, column->rows), 0, rows * column->row_bytes);
+    } else {
+        for (size_t i = 0; i < rows; i++) {
+            memcpy(he_column_row(column, column->rows + i), column->fallback, column->row_bytes);
+        }
     }
     column->rows += rows;
     return HE_OK;

@@ -273,6 +273,11 @@ void he_results_set_number(he_results *out, size_t slot, double number)
     out->number[slot] = number;
 }
 
+void he_results_omit(he_results *out, size_t slot)
+{
+    out->present[slot] = false;
+}
+
 he_status he_results_reserve(he_results *out, size_t slot, size_t count, he_error *err)
 {
     return he_ids_reserve(&out->list[slot], count, err);

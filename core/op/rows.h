@@ -42,6 +42,8 @@ size_t he_table_number(const he_op *op);
 /* Sets the result in a slot to the id of an element (or HE_NONE), or to the index of a choice. */
 void he_results_set(he_results *out, size_t slot, uint32_t id);
 void he_results_set_number(he_results *out, size_t slot, double number);
+/* Leaves out a result that the operation does not have with the arguments of this call. */
+void he_results_omit(he_results *out, size_t slot);
 /* Reserves memory for a result that is a list of at most `count` ids. An adapter must call it
  * before the edit, because nothing may fail after the edit.
  * Returns HE_NO_MEMORY if memory is out. */

@@ -132,6 +132,9 @@ static he_status run_segment(he_mesh *m, const he_arg *args, he_results *out, he
         he_results_set_number(out, SEGMENT_OUT_PATCHES, done.patches);
         he_results_set_number(out, SEGMENT_OUT_FEATURES, done.features);
         he_results_set_number(out, SEGMENT_OUT_DEVIATION, done.deviation);
+        if (options.planes == 0) {
+            he_results_omit(out, SEGMENT_OUT_DEVIATION);
+        }
     }
     return status;
 }
@@ -392,11 +395,11 @@ const he_op he_select_rows[] = {
                                               "How many edges are marked as feature edges "
                                               "afterwards; 0 if features is ignore."},
                     [SEGMENT_OUT_DEVIATION] =
-                        {
-                            "deviation", HE_RESULT_NUMBER, HE_FACE,
-                            "How far the patches are from flat: the root mean square, weighted by "
-                            "area, of the distance between the unit normals of a face and of its "
-                            "patch."}},
+                        {"deviation", HE_RESULT_NUMBER, HE_FACE,
+                         "Only for planes: how far the patches are from flat, as the root mean "
+                         "square, weighted by "
+                         "area, of the distance between the unit normals of a face and of its "
+                         "patch."}},
         .refusals = {HE_BAD_VALUE, HE_ATTRIBUTE_CLASH},
         .change = {0, 0, 0},
         .pace = 3,

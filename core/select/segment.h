@@ -38,9 +38,10 @@ typedef struct he_segment_options {
 typedef struct he_segmented {
     uint32_t patches;
     uint32_t features; /* number of edges that are marked afterwards; 0 with HE_FEATURES_IGNORE */
-    /* Root mean square, weighted by area, of the distance between the unit normal of a face and
-     * that of its patch, the mean of its faces: 0 if all patches are flat, about the mean angle in
-     * radians if it is small. */
+    /* How far patches by planes are from flat; 0 for patches by angle. It is the root mean square,
+     * weighted by area, of the distance between the unit normal of a face and that of its patch,
+     * the mean of its faces: 0 if all patches are flat, about the angle in radians if it is
+     * small. */
     double deviation;
 } he_segmented;
 

@@ -61,7 +61,7 @@ static values values_of(const he_set_into *into)
 /* --- the changes --- */
 
 /* Compares the set that the attribute has with the one it is to have, and appends the ids of the
- * elements that differ. `column` may be NULL: then the set is empty. */
+ * elements that differ. */
 static he_status compare(const he_mesh *m, const he_column *column, const he_set_into *into,
                          const he_set *found, he_ids *changed, he_set_counts *out, he_error *err)
 {
@@ -72,8 +72,7 @@ static he_status compare(const he_mesh *m, const he_column *column, const he_set
         if (status != HE_OK || !he_mesh_is_live(m, found->kind, id)) {
             continue;
         }
-        const bool was =
-            column != NULL && memcmp(he_column_value(column, id), v.in, column->row_bytes) == 0;
+        const bool was = memcmp(he_column_value(column, id), v.in, column->row_bytes) == 0;
         const bool is = he_set_has(found, id);
         const bool will = into->mode == HE_SET_ONLY  ? is
                           : into->mode == HE_SET_ADD ? was || is
@@ -89,20 +88,25 @@ static he_status compare(const he_mesh *m, const he_column *column, const he_set
 }
 
 /* Adds a new column with the set to the mesh. */
-static he_status put_column(he_mesh *m, he_kind kind, const he_set_into *into,
-                            const he_ids *changed, he_error *err)
+static he_status put_column(he_mesh *m, const he_set_into *into, const he_set *set,
+                            he_set_counts *out, he_error *err)
 {
     const values v = values_of(into);
     const he_type type = into->value == 0 ? HE_BOOL : HE_INT32;
     he_column *made = NULL;
     he_status status =
-        he_column_new(&(he_column_schema){into->name, kind, type, 1, HE_COPY}, &made, err);
+        he_column_new(&(he_column_schema){into->name, set->kind, type, 1, HE_COPY}, &made, err);
     if (status == HE_OK) {
-        status = he_column_extend(made, he_mesh_issued(m, kind), err);
+        status = he_column_extend(made, set->issued, err);
     }
-    for (size_t i = 0; i < changed->count && status == HE_OK; i++) {
-        memcpy(he_column_row(made, changed->ids[i]), v.in, made->row_bytes);
+    for (uint32_t word = 0; word * 64 < set->issued && status == HE_OK; word++) {
+        for (uint64_t bits = set->bits[word]; bits != 0; bits &= bits - 1) {
+            const uint32_t id = word * 64 + (uint32_t)__builtin_ctzll(bits);
+            memcpy(he_column_row(made, id), v.in, made->row_bytes);
+            out->added++;
+        }
     }
+    out->selected = out->added;
     if (status == HE_OK) {
         status = he_attribute_put(m, made, err);
     }
@@ -141,12 +145,13 @@ he_status he_set_write(he_mesh *m, const he_set *set, const he_set_into *into, h
     he_ids changed = {0};
     he_set_counts done = {0, 0, 0};
     he_status status = find(m, set->kind, into, &column, err);
-    if (status == HE_OK) {
+    if (status == HE_OK && column == NULL) {
+        status = put_column(m, into, set, &done, err);
+    } else if (status == HE_OK) {
         status = compare(m, column, into, set, &changed, &done, err);
-    }
-    if (status == HE_OK) {
-        status = column == NULL ? put_column(m, set->kind, into, &changed, err)
-                                : write_values(m, column, into, &changed, err);
+        if (status == HE_OK) {
+            status = write_values(m, column, into, &changed, err);
+        }
     }
     if (status == HE_OK && out != NULL) {
         *out = done;

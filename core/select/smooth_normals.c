@@ -4,24 +4,19 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-static bool is_zero(he_vec3 a)
-{
-    return a.x == 0 && a.y == 0 && a.z == 0;
-}
-
 /* Appends the live faces without a normal that have a neighbour with one. */
 static he_status find_first(const he_mesh *m, const he_vec3 *normals, he_ids *queue, he_error *err)
 {
     he_status status = HE_OK;
     for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
-        if (!is_zero(normals[f]) || !he_face_is_live(m, (he_face){f})) {
+        if (!he_is_no_normal(normals[f]) || !he_face_is_live(m, (he_face){f})) {
             continue;
         }
         he_halfedge first = he_face_halfedge(m, (he_face){f}), h = first;
         bool found = false;
         do {
             uint32_t g = he_face_of(m, he_twin(h)).i;
-            found = g != HE_NONE && !is_zero(normals[g]);
+            found = g != HE_NONE && !he_is_no_normal(normals[g]);
             h = he_next(m, h);
         } while (!found && h.i != first.i);
         status = found ? he_ids_add(queue, f, err) : HE_OK;
@@ -37,14 +32,14 @@ static he_status take(const he_mesh *m, he_vec3 *normals, uint32_t f, he_ids *qu
     he_status status = HE_OK;
     do {
         uint32_t g = he_face_of(m, he_twin(h)).i;
-        if (g != HE_NONE && is_zero(normals[f])) {
+        if (g != HE_NONE && he_is_no_normal(normals[f])) {
             normals[f] = normals[g];
         }
         h = he_next(m, h);
     } while (h.i != first.i);
     do {
         uint32_t g = he_face_of(m, he_twin(h)).i;
-        if (g != HE_NONE && is_zero(normals[g])) {
+        if (g != HE_NONE && he_is_no_normal(normals[g])) {
             status = he_ids_add(queue, g, err);
         }
         h = he_next(m, h);
@@ -52,15 +47,15 @@ static he_status take(const he_mesh *m, he_vec3 *normals, uint32_t f, he_ids *qu
     return status;
 }
 
-/* Gives normals to the faces without one, breadth first. A face may be in the queue several times;
- * only the first time counts, so the queue has at most one entry for each half-edge. */
-static he_status spread(const he_mesh *m, he_vec3 *normals, he_error *err)
+/* Works breadth first. A face may be in the queue several times; only the first time counts, so the
+ * queue has at most one entry for each half-edge. */
+he_status he_normals_spread(const he_mesh *m, he_vec3 *normals, he_error *err)
 {
     he_ids queue = {0};
     he_status status = find_first(m, normals, &queue, err);
     for (size_t i = 0; i < queue.count && status == HE_OK; i++) {
         status = he_progress_at(m->progress, i, queue.count, err);
-        if (status == HE_OK && is_zero(normals[queue.ids[i]])) {
+        if (status == HE_OK && he_is_no_normal(normals[queue.ids[i]])) {
             status = take(m, normals, queue.ids[i], &queue, err);
         }
     }
@@ -77,7 +72,7 @@ he_status he_smooth_normals(const he_mesh *m, he_vec3 **out, he_error *err)
     }
     he_status status = he_face_normals(m, m->progress, normals, err);
     if (status == HE_OK) {
-        status = spread(m, normals, err);
+        status = he_normals_spread(m, normals, err);
     }
     if (status != HE_OK) {
         he_mem_free(normals);

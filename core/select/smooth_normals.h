@@ -15,6 +15,15 @@
  * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_smooth_normals(const he_mesh *m, he_vec3 **out, he_error *err);
 
+/* Gives normals to the faces that have none in an array from he_face_normals.
+ * Returns the errors of he_smooth_normals. */
+HE_NODISCARD he_status he_normals_spread(const he_mesh *m, he_vec3 *normals, he_error *err);
+
+static inline bool he_is_no_normal(he_vec3 a)
+{
+    return a.x == 0 && a.y == 0 && a.z == 0;
+}
+
 /* Unit vectors that make at most an angle between 0 and pi have at most the distance
  * 2 sin(angle / 2). The functions compare squares of such distances, which is as accurate for small
  * angles as for large ones. An angle counts as not above the limit if it exceeds it by less than

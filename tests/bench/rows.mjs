@@ -26,6 +26,8 @@
 //     errors   rows whose figures come from a row of ours, `by`, about what each program has left
 //              in the folder; `of` says which of its numbers; the smaller one is better
 
+import { segment } from './rows_segment.mjs';
+
 const M = 1e6;
 const rate = (unit, per = M) => ({ unit, per });
 
@@ -495,4 +497,5 @@ export const parts = [
             stored('a megabyte of mesh read', 'content_read', 'µs', 1e-6, 2500),
         ],
     },
+    ...segment,
 ];

@@ -162,8 +162,7 @@ test('the lines about sets work as pasted', async (t) => {
     const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
     t.after(() => rm(folder, { recursive: true }));
     const [found, status] = await runCurls(`cd ${folder}\n${patches}`);
-    const [, beginning] = /# ("patches":.*),\.\.\.$/m.exec(patches);
-    assert.ok(found.startsWith(beginning), found);
+    assert.ok(patches.includes(`# ${found}`), found);
     assert.equal(status, '200');
 });
 

@@ -35,5 +35,6 @@ extern const bench_row cgal_kernel_rows[];
 extern const bench_row cgal_edit_rows[];
 extern const bench_row cgal_file_rows[];
 extern const bench_row cgal_whole_rows[];
+extern const bench_row cgal_segment_rows[];
 
 #endif

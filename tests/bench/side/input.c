@@ -104,6 +104,39 @@ static void make_grid(bench_input *in, uint32_t side, bool holes)
     }
 }
 
+/* Returns the height of a zigzag of 32 slopes after `i` of `side` steps; it rises and falls by one
+ * step each. */
+static double zigzag(uint32_t side, uint32_t i)
+{
+    int height = 0;
+    for (uint32_t k = 0; k < i; k++) {
+        height += (uint64_t)k * 32 / side % 2 == 0 ? 1 : -1;
+    }
+    return (double)height / side;
+}
+
+static void make_roofs(bench_input *in, uint32_t side)
+{
+    const uint32_t row = side + 1;
+    double *heights = (double *)array(row, sizeof *heights);
+    allocate(in, row * row, 2 * side * side, 3);
+    for (uint32_t i = 0; i < row; i++) {
+        heights[i] = zigzag(side, i);
+    }
+    for (uint32_t v = 0; v < row * row; v++) {
+        const uint32_t i = v / row, j = v % row;
+        place(in, v, (double)j / side, (double)i / side, heights[i] + heights[j]);
+    }
+    uint32_t *to = in->corners;
+    for (uint32_t q = 0; q < side * side; q++) {
+        const uint32_t a = q / side * row + q % side;
+        const uint32_t two[6] = {a, a + 1, a + row + 1, a, a + row + 1, a + row};
+        memcpy(to, two, sizeof two);
+        to += 6;
+    }
+    free(heights);
+}
+
 static void shuffle(bench_input *in)
 {
     uint64_t state = 88172645463325252u;
@@ -133,6 +166,8 @@ void bench_input_make(const char *name, bool shuffled, uint32_t side, bench_inpu
         fill_torus(out, side, 0, 0, 0);
     } else if (strcmp(name, "grid") == 0 || strcmp(name, "holes") == 0) {
         make_grid(out, side, name[0] == 'h');
+    } else if (strcmp(name, "roofs") == 0) {
+        make_roofs(out, side);
     } else if (strcmp(name, "pieces") == 0) {
         uint32_t part = side / 8;
         allocate(out, 64 * part * part, 128 * part * part, 3);

@@ -5,6 +5,7 @@
  *     grid     side * side quads, with a boundary
  *     holes    the grid less one face in a hundred
  *     pieces   64 tori, together about as many triangles as the torus
+ *     roofs    a sheet of 2 * side * side triangles, folded to 32 by 32 flat patches
  *
  * In natural order the elements are numbered row by row; in shuffled order the ids of vertices and
  * faces are permuted at random. Coordinates are floats widened to doubles, so that no file format
