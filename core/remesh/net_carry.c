@@ -157,14 +157,14 @@ he_status he_net_carry(const he_net *n, const he_ground *g, const he_mesh *m, he
     if (he_has_columns(m, HE_VERTEX)) {
         for (uint32_t v = 0; v < n->vertex_count && status == HE_OK; v++) {
             status = he_progress_at(m->progress, v + 1, n->vertex_count, err);
-            if (has_moved(n, v)) {
+            if (has_moved(n, v) && !he_net_has(n, v, HE_NET_DEAD)) {
                 carry_vertex(&w, v);
             }
         }
     }
     for (uint32_t t = 0; t < n->triangle_count && (faces || corners) && status == HE_OK; t++) {
         status = he_progress_at(m->progress, t + 1, n->triangle_count, err);
-        if (has_changed(&w, t)) {
+        if (!he_net_is_gone(n, t) && has_changed(&w, t)) {
             carry_face(&w, t, corners);
         }
     }

@@ -20,37 +20,64 @@ static uint32_t corner_of(const he_mesh *m, const uint32_t *number, uint32_t h)
     return 4 * number[f] + i;
 }
 
-static he_status add_face(const he_mesh *m, const he_marks *marks, uint32_t f, uint32_t *number,
-                          he_net *n, he_error *err)
+/* Marks a chosen face, which has no number yet, by the number HE_DEAD. */
+static he_status mark_face(const he_mesh *m, const he_marks *marks, uint32_t f, uint32_t *number,
+                           he_error *err)
 {
-    if (number[f] != HE_NONE || he_is_locked(marks, HE_FACE, f)) {
+    if (he_is_locked(marks, HE_FACE, f)) {
         return HE_OK;
     }
     if (!he_is_triangle(m, he_face_halfedge(m, (he_face){f}))) {
         return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
                        "face %u has more than three corners: triangulate first", f);
     }
-    n->ids[n->triangle_count].face = f;
-    number[f] = n->triangle_count++;
+    number[f] = HE_DEAD;
     return HE_OK;
 }
 
-/* Numbers the chosen faces. */
-static he_status choose(const he_mesh *m, const he_net_choice *choice, uint32_t *number, he_net *n,
-                        he_error *err)
+static he_status mark_faces(const he_mesh *m, const he_net_choice *choice, uint32_t *number,
+                            he_error *err)
 {
     he_marks marks = {.feature = NULL};
     he_status status = HE_OK;
     (void)he_marks_find(m, &marks);
-    if (choice->faces != NULL) {
-        for (size_t i = 0; i < choice->face_count && status == HE_OK; i++) {
-            status = add_face(m, &marks, choice->faces[i], number, n, err);
-        }
-        return status;
+    for (size_t i = 0; i < choice->face_count && choice->faces != NULL && status == HE_OK; i++) {
+        status = mark_face(m, &marks, choice->faces[i], number, err);
     }
-    for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
+    for (uint32_t f = 0; f < m->c.faces.issued && choice->faces == NULL && status == HE_OK; f++) {
         if (he_face_is_live(m, (he_face){f})) {
-            status = add_face(m, &marks, f, number, n, err);
+            status = mark_face(m, &marks, f, number, err);
+        }
+    }
+    return status;
+}
+
+static void number_face(uint32_t f, uint32_t *number, he_net *n)
+{
+    n->ids[n->triangle_count].face = f;
+    number[f] = n->triangle_count++;
+}
+
+/* Numbers the marked faces in the order in which a search from neighbour to neighbour finds them,
+ * so that neighbours are near in memory. */
+static he_status number_faces(const he_mesh *m, uint32_t *number, he_net *n, he_error *err)
+{
+    he_status status = HE_OK;
+    uint32_t handled = 0;
+    for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
+        status = he_progress_at(m->progress, f, m->c.faces.issued, err);
+        if (number[f] == HE_DEAD) {
+            number_face(f, number, n);
+        }
+        for (; handled < n->triangle_count; handled++) {
+            uint32_t h = m->c.face_halfedge[n->ids[handled].face];
+            for (unsigned i = 0; i < 3; i++) {
+                uint32_t beside = m->c.face[h ^ 1];
+                if (beside != HE_NONE && number[beside] == HE_DEAD) {
+                    number_face(beside, number, n);
+                }
+                h = m->c.next[h];
+            }
         }
     }
     return status;
@@ -119,6 +146,7 @@ static void link_vertices(he_net *n)
         if (n->corner[v] == HE_NONE || border) {
             n->corner[v] = c;
         }
+        n->ground[v] = c >> 2;
     }
 }
 
@@ -172,7 +200,10 @@ he_status he_net_make(const he_mesh *m, const he_net_choice *choice, he_net *out
     }
     memset(number, 0xFF, m->c.faces.issued * sizeof *number);
     memset(vertex_number, 0xFF, m->c.vertices.issued * sizeof *vertex_number);
-    status = choose(m, choice, number, &n, err);
+    status = mark_faces(m, choice, number, err);
+    if (status == HE_OK) {
+        status = number_faces(m, number, &n, err);
+    }
     if (status != HE_OK) {
         goto out;
     }
@@ -182,13 +213,6 @@ he_status he_net_make(const he_mesh *m, const he_net_choice *choice, he_net *out
     place_vertices(m, &n);
     link_vertices(&n);
     find_outside(m, number, vertex_number, &n);
-    status = he_net_tidy(&n, err);
-    if (status != HE_OK) {
-        goto out;
-    }
-    for (uint32_t v = 0; v < n.vertex_count; v++) {
-        n.ground[v] = n.corner[v] >> 2;
-    }
     status = he_net_hold(&n, m, choice, err);
     if (status == HE_OK) {
         status = he_net_find_lines(&n, m, choice->crease, err);

@@ -19,7 +19,7 @@ static uint32_t number_edges(he_net *n, uint32_t *final)
         final[i] = HE_NONE;
     }
     for (uint32_t t = 0; t < n->triangle_count; t++) {
-        for (unsigned i = 0; i < 3; i++) {
+        for (unsigned i = 0; i < 3 && !he_net_is_gone(n, t); i++) {
             uint32_t *h = &n->ids[t].halfedge[i], e = *h >> 1;
             if (e >= n->first_edge) {
                 uint32_t *to = &final[e - n->first_edge];
@@ -61,12 +61,12 @@ static he_status give_ids(he_net *n, const he_mesh *m, fresh *out, he_error *err
     he_mem_free(final);
     out->vertices = out->faces = 0;
     for (uint32_t v = 0; v < n->vertex_count; v++) {
-        if (n->vertex_id[v] == HE_NONE) {
+        if (n->vertex_id[v] == HE_NONE && !he_net_has(n, v, HE_NET_DEAD)) {
             n->vertex_id[v] = m->c.vertices.issued + out->vertices++;
         }
     }
     for (uint32_t t = 0; t < n->triangle_count; t++) {
-        if (n->ids[t].face == HE_NONE) {
+        if (n->ids[t].face == HE_NONE && !he_net_is_gone(n, t)) {
             n->ids[t].face = m->c.faces.issued + out->faces++;
         }
     }
@@ -229,10 +229,7 @@ he_status he_net_write(he_net *n, const he_ground *g, const he_mesh *m, he_mesh 
 {
     fresh made = {0, 0, 0};
     he_mesh *copy = NULL;
-    he_status status = he_net_tidy(n, err);
-    if (status == HE_OK) {
-        status = give_ids(n, m, &made, err);
-    }
+    he_status status = give_ids(n, m, &made, err);
     if (status == HE_OK) {
         status = make_copy(m, &made, &copy, err);
     }
@@ -242,15 +239,19 @@ he_status he_net_write(he_net *n, const he_ground *g, const he_mesh *m, he_mesh 
     he_content *c = &copy->c;
     mark_old(g, m, c);
     for (uint32_t t = 0; t < n->triangle_count; t++) {
-        write_triangle(n, m, c, t);
+        if (!he_net_is_gone(n, t)) {
+            write_triangle(n, m, c, t);
+        }
     }
     for (uint32_t at = 0; at < 4 * n->triangle_count; at++) {
-        if ((at & 3) != 3 && he_net_twin(n, at) == HE_NONE) {
+        if ((at & 3) != 3 && he_net_twin(n, at) == HE_NONE && !he_net_is_gone(n, at >> 2)) {
             write_border(n, m, c, at);
         }
     }
     for (uint32_t v = 0; v < n->vertex_count; v++) {
-        write_vertex(n, m, c, v);
+        if (!he_net_has(n, v, HE_NET_DEAD)) {
+            write_vertex(n, m, c, v);
+        }
     }
     delete_old(g, m, c);
     *out = copy;

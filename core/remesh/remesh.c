@@ -140,33 +140,55 @@ static bool has_settled(const he_remeshing *r)
            r->moved <= SMALL_MOVES * r->net.live_vertices;
 }
 
-static he_status step(he_remeshing *r, he_error *err)
+/* How often all edges are tested for flips in the first step, and at the end. */
+enum { FIRST_SWEEPS = 3, LAST_SWEEPS = 4 };
+
+/* The net is put into order again when this fraction of its triangles are new, or were deleted. */
+static const double MUCH_CHANGED = 0.5;
+
+/* Renumbers the net if neighbours are not near in memory any more. `ordered` is the number of
+ * triangles after the last time. */
+static he_status tidy(he_net *n, uint32_t *ordered, he_error *err)
+{
+    uint32_t gone = n->triangle_count - n->live_triangles, made = n->triangle_count - *ordered;
+    if (gone <= MUCH_CHANGED * n->triangle_count && made <= MUCH_CHANGED * n->triangle_count) {
+        return HE_OK;
+    }
+    he_status status = he_net_tidy(n, err);
+    *ordered = n->triangle_count;
+    return status;
+}
+
+static he_status step(he_remeshing *r, bool first, he_error *err)
 {
     r->changes = 0;
     r->moved = 0;
-    he_status status = he_remesh_split(r, err);
+    he_status status = he_remesh_split(r, first, err);
     if (status == HE_OK) {
-        status = he_remesh_collapse(r, err);
+        status = tidy(&r->net, &r->ordered, err);
     }
     if (status == HE_OK) {
-        status = he_remesh_flip(r, HE_FLIP_DEGREES, err);
+        status = he_remesh_collapse(r, first, err);
     }
     if (status == HE_OK) {
-        status = he_remesh_relax(r, err);
+        status = tidy(&r->net, &r->ordered, err);
     }
-    return status == HE_OK ? he_net_tidy(&r->net, err) : status;
+    if (status == HE_OK) {
+        status = he_remesh_flip(r, HE_FLIP_DEGREES, first ? FIRST_SWEEPS : 1, err);
+    }
+    return status == HE_OK ? he_remesh_relax(r, err) : status;
 }
 
 /* Makes angles even: what the steps leave are edges that bring degrees nearer to 6, but not
  * angles. */
 static he_status finish_angles(he_remeshing *r, he_error *err)
 {
-    he_status status = he_remesh_flip(r, HE_FLIP_ANGLES, err);
+    he_status status = he_remesh_flip(r, HE_FLIP_ANGLES, LAST_SWEEPS, err);
     if (status == HE_OK) {
         status = he_remesh_relax(r, err);
     }
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {
-        status = he_remesh_flip(r, HE_FLIP_ANGLES, err);
+        status = he_remesh_flip(r, HE_FLIP_ANGLES, LAST_SWEEPS, err);
         if (status == HE_OK) {
             status = he_remesh_round(r, err);
         }
@@ -189,7 +211,7 @@ static he_status run_steps(he_remeshing *r, const he_remesh_options *options, do
     set_sizes(&r->net, length);
     /* Short edges are collapsed before the first split: otherwise long edges beside them would be
      * cut into more pieces than are needed. */
-    he_status status = he_remesh_collapse(r, err);
+    he_status status = he_remesh_collapse(r, true, err);
     if (status == HE_OK && options->by_length) {
         status = require_few(&r->net, options, length, err);
     }
@@ -200,7 +222,7 @@ static he_status run_steps(he_remeshing *r, const he_remesh_options *options, do
             status = he_progress_phase(r->progress, "remeshing", to, err);
         }
         if (status == HE_OK) {
-            status = step(r, err);
+            status = step(r, i == 0, err);
         }
         if (status == HE_OK && !options->by_length) {
             double wrong = sqrt((double)r->net.live_triangles / options->target_faces);
@@ -234,6 +256,7 @@ static he_status compute(const he_mesh *m, const he_remesh_options *options, he_
     }
     if (status == HE_OK) {
         r->net.most_triangles = HE_REMESH_FACES;
+        r->ordered = r->net.triangle_count;
         status = he_ground_copy(&r->net, &r->ground, err);
     }
     return status == HE_OK ? run_steps(r, options, length, stop, err) : status;

@@ -113,13 +113,14 @@ static bool are_shapes_good(const he_net *n, const he_net_ring *ring, uint32_t o
 {
     double longest = 0;
     for (uint32_t i = 0; i < ring->count; i++) {
-        longest = fmax(longest, he_remesh_square(how->from, he_net_place(n, ring->vertex[i])));
+        double square = he_remesh_square(how->from, he_net_place(n, ring->vertex[i]));
+        longest = square > longest ? square : longest;
     }
     for (uint32_t i = 0; i < ring->count; i++) {
         const he_net_vertex *at = &n->vertices[ring->vertex[i]];
-        double wanted = fmin(how->size, (double)at->size) * how->most;
-        if (ring->vertex[i] != other &&
-            he_remesh_square(how->to, at->p) > fmax(wanted * wanted, longest)) {
+        double wanted = he_remesh_least(how->size, (double)at->size) * how->most;
+        double square = he_remesh_square(how->to, at->p);
+        if (ring->vertex[i] != other && square > wanted * wanted && square > longest) {
             return false;
         }
     }
@@ -129,17 +130,17 @@ static bool are_shapes_good(const he_net *n, const he_net_ring *ring, uint32_t o
         uint32_t a = ring->vertex[i], b = ring->vertex[next];
         he_vec3 at_a = he_net_place(n, a), at_b = he_net_place(n, b);
         he_roundness old = he_remesh_roundness(how->from, at_a, at_b);
-        worst_old = fmin(worst_old, old.round);
+        worst_old = he_remesh_least(worst_old, old.round);
         if (a == other || b == other) {
             continue;
         }
         he_roundness new = he_remesh_roundness(how->to, at_a, at_b);
-        worst_new = fmin(worst_new, new.round);
+        worst_new = he_remesh_least(worst_new, new.round);
         if (!he_remesh_agree(old.area, new.area)) {
             return false;
         }
     }
-    return worst_new >= fmin(LEAST_ROUND, worst_old);
+    return worst_new >= he_remesh_least(LEAST_ROUND, worst_old);
 }
 
 /* Returns true if a line stays near its place without vertex u. */
@@ -326,7 +327,7 @@ static double find_shortest(const he_net *n)
     for (uint32_t t = 0; t < n->triangle_count; t++) {
         const he_net_triangle *of = &n->triangles[t];
         for (unsigned i = 0; i < 3 && (of->marks & HE_NET_GONE) == 0; i++) {
-            shortest = fmin(shortest, ratio(n, of->v[i], of->v[i == 2 ? 0 : i + 1]));
+            shortest = he_remesh_least(shortest, ratio(n, of->v[i], of->v[i == 2 ? 0 : i + 1]));
         }
     }
     return shortest;
@@ -335,17 +336,15 @@ static double find_shortest(const he_net *n)
 /* The first of the rounds collapses edges shorter than 2^-ROUNDS of the limit. */
 enum { ROUNDS = 6 };
 
-/* Edges are collapsed in rounds: first those that are much shorter than the limit, then those
- * shorter than twice as much, and so on, so that triangles grow evenly. */
-he_status he_remesh_collapse(he_remeshing *r, he_error *err)
+he_status he_remesh_collapse(he_remeshing *r, bool rounds, he_error *err)
 {
     he_net *n = &r->net;
-    double scale = 1, shortest = sqrt(find_shortest(n)) / HE_REMESH_SHORT;
+    double scale = 1, shortest = rounds ? sqrt(find_shortest(n)) / HE_REMESH_SHORT : 1;
     he_status status = HE_OK;
     for (unsigned i = 0; i < ROUNDS && shortest < 0.5 * scale; i++) {
         scale *= 0.5;
     }
-    for (; scale <= 1 && shortest < 1 && status == HE_OK; scale *= 2) {
+    for (; scale <= 1 && status == HE_OK; scale *= 2) {
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
             status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
             if (!he_net_is_gone(n, t)) {

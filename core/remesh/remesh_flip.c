@@ -7,18 +7,17 @@ typedef struct kite {
     uint32_t a, b, c, d;
 } kite;
 
-static int off(const he_net *n, uint32_t v, int change)
+/* Returns by how many edges a vertex has more than the ideal. */
+static int excess(const he_net *n, uint32_t v)
 {
-    int by = (int)n->vertices[v].degree + change - (int)n->vertices[v].ideal;
-    return by * by;
+    return (int)n->vertices[v].degree - (int)n->vertices[v].ideal;
 }
 
-/* Returns by how much a flip brings the degrees nearer to the ideal: the sum of the squared
- * differences before, less that after the flip. */
-static int gain(const he_net *n, const kite *k)
+/* Returns true if a flip brings the degrees nearer to the ideal: if the sum of the squares of the
+ * excesses, of which two fall and two rise by one, becomes less. */
+static bool evens_degrees(const he_net *n, const kite *k)
 {
-    return off(n, k->a, 0) - off(n, k->a, -1) + off(n, k->b, 0) - off(n, k->b, -1) +
-           off(n, k->c, 0) - off(n, k->c, 1) + off(n, k->d, 0) - off(n, k->d, 1);
+    return excess(n, k->a) + excess(n, k->b) - excess(n, k->c) - excess(n, k->d) > 2;
 }
 
 /* Returns true if a vertex keeps enough edges when it loses one. */
@@ -50,12 +49,11 @@ static const double LEAST_ROUND = 0.25;
 
 static bool is_wanted(const he_net *n, const kite *k, he_flip_aim aim)
 {
-    he_vec3 a = he_net_place(n, k->a), b = he_net_place(n, k->b);
-    he_vec3 c = he_net_place(n, k->c), d = he_net_place(n, k->d);
-    int better = gain(n, k);
-    if (aim == HE_FLIP_DEGREES && better <= 0) {
+    if (aim == HE_FLIP_DEGREES && !evens_degrees(n, k)) {
         return false;
     }
+    he_vec3 a = he_net_place(n, k->a), b = he_net_place(n, k->b);
+    he_vec3 c = he_net_place(n, k->c), d = he_net_place(n, k->d);
     he_roundness left = he_remesh_roundness(a, b, c), right = he_remesh_roundness(b, a, d);
     if (aim == HE_FLIP_ANGLES) {
         /* The cotangents of the two angles opposite the edge have a negative sum if the angles add
@@ -68,8 +66,9 @@ static bool is_wanted(const he_net *n, const kite *k, he_flip_aim aim)
         }
     }
     he_roundness fore = he_remesh_roundness(d, c, a), back = he_remesh_roundness(c, d, b);
-    double before = fmin(left.round, right.round), after = fmin(fore.round, back.round);
-    if (aim == HE_FLIP_DEGREES ? after < fmin(before, LEAST_ROUND) : after <= before) {
+    double before = he_remesh_least(left.round, right.round),
+           after = he_remesh_least(fore.round, back.round);
+    if (aim == HE_FLIP_DEGREES ? after < he_remesh_least(before, LEAST_ROUND) : after <= before) {
         return false;
     }
     he_vec3 old = he_vec3_add(left.area, right.area);
@@ -137,15 +136,12 @@ static bool try_flip(he_net *n, uint32_t e, he_flip_aim aim)
     return true;
 }
 
-/* The number of times that all edges are tested, unless there is nothing to flip any more. */
-enum { SWEEPS = 3 };
-
-he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, he_error *err)
+he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, unsigned sweeps, he_error *err)
 {
     he_net *n = &r->net;
     uint64_t flips = 1;
     he_status status = HE_OK;
-    for (unsigned sweep = 0; sweep < SWEEPS && flips > 0 && status == HE_OK; sweep++) {
+    for (unsigned sweep = 0; sweep < sweeps && flips > 0 && status == HE_OK; sweep++) {
         flips = 0;
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
             status = he_progress_at(r->progress, t + 1, n->triangle_count, err);

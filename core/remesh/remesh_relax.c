@@ -9,7 +9,7 @@ static const double LEAST_ROUND = 0.3;
  * fewer steps are needed. */
 static const double OVER = 1.3;
 /* Moves that are shorter than this fraction of the wanted length are not made. */
-static const double LEAST_MOVE = 1e-3;
+static const double LEAST_MOVE = 0.01;
 
 /* The surroundings of a vertex: positions of its neighbours, and facts about the faces between
  * them. */
@@ -19,7 +19,6 @@ typedef struct around {
     he_vec3 area[HE_NET_HUB + 1]; /* area vector of each face */
     he_vec3 normal;               /* sum of the area vectors */
     he_vec3 middle;               /* mean of the faces' centroids, weighed by area and size */
-    double worst;                 /* the least roundness */
     /* The line, if the vertex is inside one, else HE_NONE; where the two neighbours on the line are
      * on it, and the wanted lengths there. */
     uint32_t line;
@@ -68,21 +67,29 @@ static bool gather(const he_net *n, uint32_t v, around *out)
         find_line(n, &ring, out);
     }
     out->normal = (he_vec3){0, 0, 0};
-    out->worst = 1;
     for (uint32_t i = 0; i < ring.corners; i++) {
-        he_vec3 a = out->at[i], b = out->at[i + 1];
-        he_roundness own = he_remesh_roundness(p, a, b);
-        out->area[i] = own.area;
-        out->worst = fmin(out->worst, own.round);
-        out->normal = he_vec3_add(out->normal, own.area);
+        he_vec3 a = he_vec3_sub(out->at[i], p), b = he_vec3_sub(out->at[i + 1], p);
+        he_vec3 area = he_vec3_cross(a, b);
         double wanted = size + sizes[i] + sizes[i + 1];
-        double share = he_vec3_length(own.area) / (wanted * wanted);
+        double share = he_vec3_length(area) / (wanted * wanted);
+        out->area[i] = area;
+        out->normal = he_vec3_add(out->normal, area);
         weight += share;
-        he_vec3 centroid = he_vec3_add(he_vec3_sub(a, p), he_vec3_sub(b, p));
-        sum = he_vec3_add(sum, he_vec3_scale(centroid, share));
+        sum = he_vec3_add(sum, he_vec3_scale(he_vec3_add(a, b), share));
     }
     out->middle = weight > 0 ? he_vec3_add(p, he_vec3_scale(sum, 1 / (3 * weight))) : p;
     return true;
+}
+
+/* Returns the least roundness of the faces around a vertex at a place. */
+static double worst_at(const around *of, he_vec3 place)
+{
+    double worst = 1;
+    for (uint32_t i = 0; i < of->faces; i++) {
+        he_roundness own = he_remesh_roundness(place, of->at[i], of->at[i + 1]);
+        worst = he_remesh_least(worst, own.round);
+    }
+    return worst;
 }
 
 /* Returns true if the vertex may move to a place: no face turns over or gets a roundness below
@@ -158,7 +165,7 @@ static void relax_inside(he_remeshing *r, uint32_t v)
     if (!loose && he_vec3_dot(way, way) < least * least) {
         return;
     }
-    double worst = fmin(of.worst, LEAST_ROUND);
+    double worst = he_remesh_least(worst_at(&of, at->p), LEAST_ROUND);
     if (!try_place(r, v, &of, he_vec3_add(at->p, way), worst) &&
         !try_place(r, v, &of, he_vec3_add(at->p, he_vec3_scale(way, 0.5)), worst) && loose) {
         (void)try_place(r, v, &of, at->p, worst);
@@ -177,7 +184,8 @@ static void relax_line(he_remeshing *r, uint32_t v)
     double own[2] = {size + of.line_size[0], size + of.line_size[1]};
     double arc = (of.line_arc[0] * own[1] + of.line_arc[1] * own[0]) / (own[0] + own[1]);
     if (fabs(arc - n->arc[v]) >= LEAST_MOVE * size) {
-        (void)try_arc(r, v, &of, arc, fmin(of.worst, LEAST_ROUND));
+        double worst = worst_at(&of, n->vertices[v].p);
+        (void)try_arc(r, v, &of, arc, he_remesh_least(worst, LEAST_ROUND));
     }
 }
 
@@ -235,7 +243,7 @@ static bool improve(he_remeshing *r, uint32_t c)
     he_vec3 p = he_net_place(n, v);
     he_vec3 to = regular_place(p, he_net_place(n, he_net_target(n, c)),
                                he_net_place(n, he_net_opposite(n, c)));
-    double least = of.worst + 1e-3;
+    double least = worst_at(&of, p) + 1e-3;
     bool done = false;
     for (unsigned i = 0; i < sizeof steps / sizeof *steps && !done; i++) {
         if (!he_net_has(n, v, HE_NET_LINE)) {

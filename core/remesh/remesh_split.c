@@ -210,18 +210,16 @@ static double find_longest(const he_net *n)
     return longest;
 }
 
-/* Edges are split in rounds: first those that are longer than a large multiple of the limit, then
- * those longer than half of that, and so on, so that long edges are split before shorter ones. */
-he_status he_remesh_split(he_remeshing *r, he_error *err)
+he_status he_remesh_split(he_remeshing *r, bool rounds, he_error *err)
 {
     he_net *n = &r->net;
     const double least = HE_REMESH_LONG * HE_REMESH_LONG;
-    double most = least, longest = find_longest(n);
+    double most = least, longest = rounds ? find_longest(n) : 0;
     he_status status = HE_OK;
     while (most * 4 < longest) {
         most *= 4;
     }
-    for (; most >= least && longest > least && status == HE_OK; most /= 4) {
+    for (; most >= least && status == HE_OK; most /= 4) {
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
             status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
             if (status == HE_OK && !he_net_is_gone(n, t)) {

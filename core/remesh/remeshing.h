@@ -17,6 +17,7 @@ typedef struct he_remeshing {
     he_ground ground;
     he_progress *progress;
     bool project;
+    uint32_t ordered; /* number of triangles when the net was put into order last */
     uint64_t changes; /* number of splits, collapses and flips in this step */
     double moved;     /* the sum of the moves of all vertices in this step, in wanted lengths */
 } he_remeshing;
@@ -29,14 +30,27 @@ typedef enum he_flip_aim {
 
 /* Each returns HE_NO_MEMORY if memory is out, or HE_CANCELLED if the work was cancelled.
  * he_remesh_split also returns HE_LIMIT if there would be too many triangles. */
-HE_NODISCARD he_status he_remesh_split(he_remeshing *r, he_error *err);
-HE_NODISCARD he_status he_remesh_collapse(he_remeshing *r, he_error *err);
-HE_NODISCARD he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, he_error *err);
+/* If `rounds` is true, edges are split in rounds: first those that are longer than a large multiple
+ * of the limit, then those longer than half of that, and so on, so that long edges are split before
+ * shorter ones. Later steps find few long edges and need no rounds. */
+HE_NODISCARD he_status he_remesh_split(he_remeshing *r, bool rounds, he_error *err);
+/* If `rounds` is true, edges are collapsed in rounds: first those that are much shorter than the
+ * limit, then those shorter than twice as much, and so on, so that triangles grow evenly. */
+HE_NODISCARD he_status he_remesh_collapse(he_remeshing *r, bool rounds, he_error *err);
+/* Tests all edges `sweeps` times, or until there is nothing to flip any more. */
+HE_NODISCARD he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, unsigned sweeps,
+                                      he_error *err);
 HE_NODISCARD he_status he_remesh_relax(he_remeshing *r, he_error *err);
 /* Moves the corners of the triangles that are least round, so that they become rounder. */
 HE_NODISCARD he_status he_remesh_round(he_remeshing *r, he_error *err);
 
 /* --- shapes of triangles --- */
+
+/* Returns the lesser number. Unlike fmin, the compiler makes one instruction of it. */
+static inline double he_remesh_least(double a, double b)
+{
+    return a < b ? a : b;
+}
 
 static inline double he_remesh_square(he_vec3 a, he_vec3 b)
 {

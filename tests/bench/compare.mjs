@@ -131,8 +131,8 @@ async function round(row, part, start, sides, figures) {
         }
         figures[name] = [...(figures[name] ?? []), figureOf(row, result)];
         results[name] = row.after ? await sides.ours.run(row.after) : result;
-        if (row.errors && !(name in row.errors.told)) {
-            row.errors.told[name] = await sides.ours.run(row.errors.by);
+        for (const errors of row.errors ?? []) {
+            errors.told[name] ??= await sides.ours.run(errors.by);
         }
     }
     const { ours } = results;
@@ -254,21 +254,20 @@ async function runPart(part, folder) {
             continue;
         }
         const figures = {};
-        if (row.errors) {
-            row.errors.told = {};
+        for (const errors of row.errors ?? []) {
+            errors.told = {};
         }
         const runs = Math.min(row.runs ?? Infinity, Number(options.runs));
         for (let i = 0; i < runs; i++) {
             await round(row, part, start, sides, figures);
         }
         report(row, part, figures);
-        for (const error of row.errors?.rows ?? []) {
-            const told = Object.entries(row.errors.told);
-            report(
-                error,
-                part,
-                Object.fromEntries(told.map(([name, all]) => [name, [all[error.of] / error.per]])),
-            );
+        for (const { rows, told } of row.errors ?? []) {
+            for (const error of rows) {
+                const all = Object.entries(told);
+                const figure = ([name, one]) => [name, [one[error.of] / error.per]];
+                report(error, part, Object.fromEntries(all.map(figure)));
+            }
         }
     }
     for (const one of Object.values(sides)) {

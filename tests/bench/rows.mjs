@@ -23,8 +23,10 @@
 //     note     printed instead of a figure, if there is nothing to measure
 //     after    a row of ours that describes what a program has left in the folder, for comparison
 //     slow     programs that run only once
-//     errors   rows whose figures come from a row of ours, `by`, about what each program has left
-//              in the folder; `of` says which of its numbers; the smaller one is better
+//     errors   lists of rows whose figures come from a row of ours, `by`, about what each program
+//              has left in the folder; `of` says which of its numbers
+
+import { remesh } from './rows_remesh.mjs';
 
 import { segment } from './rows_segment.mjs';
 
@@ -388,26 +390,29 @@ export const parts = [
                 target: [['cgal', 10]],
                 runs: 3,
                 slow: ['openmesh', 'cgal'],
-                errors: {
-                    by: 'decimate_error',
-                    rows: [
-                        error('its error, root mean square', 'value', {
-                            target: [['cgal', 1]],
-                        }),
-                        error('its error, Hausdorff', 'near', {
-                            target: [['cgal', 1]],
-                            why: farthest,
-                        }),
-                        error('points of it where a face turned', 'amount', {
-                            unit: '',
-                            per: 1,
-                            limit: 0,
-                        }),
-                    ],
-                },
+                errors: [
+                    {
+                        by: 'decimate_error',
+                        rows: [
+                            error('its error, root mean square', 'value', {
+                                target: [['cgal', 1]],
+                            }),
+                            error('its error, Hausdorff', 'near', {
+                                target: [['cgal', 1]],
+                                why: farthest,
+                            }),
+                            error('points of it where a face turned', 'amount', {
+                                unit: '',
+                                per: 1,
+                                limit: 0,
+                            }),
+                        ],
+                    },
+                ],
             },
         ],
     },
+    ...remesh,
     {
         part: 'json',
         input: 'torus',

@@ -1,6 +1,6 @@
-/* Benchmark rows: the distance between a decimated mesh, made by any of the programs, and the
- * input, from points on each surface and their nearest points on the other, as in P. Cignoni, C.
- * Rocchini and R. Scopigno, "Metro: measuring error on simplified surfaces", 1998. */
+/* Benchmark rows: the distance between a changed mesh, made by any of the programs, and the input,
+ * from points on each surface and their nearest points on the other, as in P. Cignoni, C. Rocchini
+ * and R. Scopigno, "Metro: measuring error on simplified surfaces", 1998. */
 #include "bench/ours/ours.h"
 #include "geometry/vec3.h"
 #include "mesh/walk.h"
@@ -95,12 +95,12 @@ static sums sample(const he_mesh *from, const he_bvh *tree, const he_mesh *to)
 
 /* Reads a mesh and gives each face vertices of its own. Our mesh structure accepts only manifolds,
  * and the result of another program need not be a manifold while its faces share vertices. */
-static he_mesh *read_faces(const bench_side *side)
+static he_mesh *read_faces(const bench_side *side, const char *name)
 {
     he_import import;
     he_soup apart;
     he_mesh *mesh;
-    bench_read(side, "ply", "decimated.ply", &import);
+    bench_read(side, "ply", name, &import);
     he_soup_init(&apart, NULL);
     for (size_t i = 0; i < import.soup.corner_count; i++) {
         he_vec3 p = import.soup.positions[import.soup.corners[i]];
@@ -115,13 +115,10 @@ static he_mesh *read_faces(const bench_side *side)
     return mesh;
 }
 
-/* Measures the error of a decimated mesh in both directions and reports the larger one. VALUE: the
- * root mean square; NEAR: the farthest distance, which estimates the Hausdorff distance; AMOUNT:
- * points where a face is turned over. */
-static void decimate_error(bench_side *side, bench_result *out)
+void bench_distance(bench_side *side, const char *name, bench_result *out)
 {
     const he_mesh *input = bench_mesh(side);
-    he_mesh *result = read_faces(side);
+    he_mesh *result = read_faces(side, name);
     he_bvh *of_input, *of_result;
     bench_require(he_bvh_new(input, NULL, &of_input, NULL));
     bench_require(he_bvh_new(result, NULL, &of_result, NULL));
@@ -132,6 +129,11 @@ static void decimate_error(bench_side *side, bench_result *out)
     he_bvh_free(of_result);
     he_bvh_free(of_input);
     he_mesh_free(result);
+}
+
+static void decimate_error(bench_side *side, bench_result *out)
+{
+    bench_distance(side, "decimated.ply", out);
 }
 
 const bench_row bench_error_rows[] = {{"decimate_error", decimate_error}, {NULL, NULL}};

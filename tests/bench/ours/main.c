@@ -11,7 +11,7 @@ int main(int argc, char **argv)
                                               bench_error_rows,    bench_subdivide_rows,
                                               bench_memory_rows,   bench_growth_rows,
                                               bench_scaling_rows,  bench_stored_rows,
-                                              bench_segment_rows,  NULL};
+                                              bench_segment_rows, bench_remesh_rows, NULL};
     /* The program allocates memory as the daemon does: memory is counted, and large blocks are
      * mappings of their own. */
     st_memory_install(0);

@@ -15,6 +15,7 @@ extern const bench_row bench_file_rows[];
 extern const bench_row bench_document_rows[];
 extern const bench_row bench_decimate_rows[];
 extern const bench_row bench_error_rows[];
+extern const bench_row bench_remesh_rows[];
 extern const bench_row bench_scaling_rows[];
 extern const bench_row bench_subdivide_rows[];
 extern const bench_row bench_memory_rows[];
@@ -33,6 +34,11 @@ void bench_read(const bench_side *side, const char *format, const char *name, he
 /* Writes the mesh to a file of the benchmark's folder; `encoding` may be empty. */
 void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
                  const char *name);
+/* Measures the distance in both directions between the input and a mesh of triangles in a PLY file
+ * of the benchmark's folder, and reports the larger one. VALUE: the root mean square; NEAR: the
+ * farthest distance, which estimates the Hausdorff distance; AMOUNT: points where a face is turned
+ * over. */
+void bench_distance(bench_side *side, const char *name, bench_result *out);
 /* Returns a hash of the vertices, edges, faces and the corners of every face. */
 uint64_t bench_mesh_hash(const he_mesh *m);
 

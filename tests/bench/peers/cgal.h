@@ -36,5 +36,6 @@ extern const bench_row cgal_edit_rows[];
 extern const bench_row cgal_file_rows[];
 extern const bench_row cgal_whole_rows[];
 extern const bench_row cgal_segment_rows[];
+extern const bench_row cgal_remesh_rows[];
 
 #endif

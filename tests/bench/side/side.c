@@ -1,6 +1,7 @@
 #include "bench/side/side.h"
 
 #include <malloc.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -87,6 +88,13 @@ double bench_seconds(void)
     read_meters();
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double bench_remesh_length(const bench_side *side)
+{
+    /* the area of the torus, and that of a regular triangle with sides of length 1 */
+    const double area = 119.861, regular = 0.4330127018922193;
+    return sqrt(area / (regular * side->input.faces));
 }
 
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)

@@ -55,6 +55,10 @@ int bench_serve(int argc, char **argv, const bench_row *const *tables);
  * It is called at the beginning and the end of a row's work. */
 double bench_seconds(void);
 
+/* Returns the length of edges with which the torus of the input is remeshed: regular triangles with
+ * such sides, as many as the input has faces, have the area of the torus. */
+double bench_remesh_length(const bench_side *side);
+
 /* Writes the path of a file in the benchmark's folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
 /* Opens a file of the benchmark's folder; ends the program if that fails. */
