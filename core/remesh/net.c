@@ -73,7 +73,8 @@ he_status he_net_reserve_more(he_net *n, he_error *err)
 uint32_t he_net_new_vertex(he_net *n, he_vec3 place)
 {
     uint32_t v = n->vertex_count++;
-    n->vertices[v] = (he_net_vertex){.p = place, .ideal = 6, .flags = HE_NET_MOVED};
+    n->vertices[v] =
+        (he_net_vertex){.p = place, .ideal = 6, .flags = HE_NET_MOVED | HE_NET_RESTLESS};
     n->vertex_id[v] = HE_NONE;
     n->live_vertices++;
     return v;

@@ -56,7 +56,9 @@ enum {
     HE_NET_MOVED = 16, /* the position of the vertex is not that of the mesh */
     HE_NET_LOOSE =
         32, /* the vertex was made in the middle of an edge and not yet put on the ground */
-    HE_NET_DEAD = 64 /* the vertex was removed */
+    HE_NET_DEAD = 64, /* the vertex was removed */
+    /* The vertex, or something around it, has changed since it was relaxed last. */
+    HE_NET_RESTLESS = 128
 };
 
 /* A vertex with more edges is a hub: turning about it would take too long. As long as it has so
@@ -220,9 +222,11 @@ static inline bool he_net_has(const he_net *n, uint32_t v, uint32_t flag)
 {
     return (n->vertices[v].flags & flag) != 0;
 }
+/* Adds `change` to the degree of a vertex. */
 static inline void he_net_add_degree(he_net *n, uint32_t v, int change)
 {
     int degree = n->vertices[v].degree;
+    n->vertices[v].flags |= HE_NET_RESTLESS;
     if (degree < UINT16_MAX) {
         degree += change;
         n->vertices[v].degree = (uint16_t)(degree < UINT16_MAX ? degree : UINT16_MAX);

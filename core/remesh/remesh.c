@@ -34,21 +34,22 @@ static he_status check(const he_mesh *m, const he_remesh_options *options, he_er
                                                     HE_REPEATED_ELEMENT, err);
 }
 
-/* The area of a triangle with sides of length 1. */
-static const double REGULAR_AREA = 0.43301270189221932;
+/* The mean area of triangles if the wanted length is 1: that of regular triangles whose sides are
+ * as long as the mean of the edges that result, about 0.95. */
+static const double MEAN_AREA = 0.39;
 
 /* Estimates how many triangles with edges of a length are needed: so many as have the same area,
  * and for a triangle that is longer but much lower than the length, as many as fit along it. */
 static double estimate(const he_net *n, double length)
 {
-    double sum = 0, unit = REGULAR_AREA * length * length;
+    double sum = 0, unit = MEAN_AREA * length * length;
     for (uint32_t t = 0; t < n->triangle_count; t++) {
         if (he_net_is_gone(n, t)) {
             continue;
         }
         const uint32_t *v = n->triangles[t].v;
         he_vec3 a = he_net_place(n, v[0]), b = he_net_place(n, v[1]), c = he_net_place(n, v[2]);
-        double area = 0.5 * he_vec3_length(he_remesh_roundness(a, b, c).area);
+        double area = 0.5 * he_vec3_length(he_roundness_of(a, b, c).area);
         double longest = sqrt(
             fmax(he_remesh_square(a, b), fmax(he_remesh_square(b, c), he_remesh_square(c, a))));
         sum += area / unit;
@@ -143,40 +144,30 @@ static bool has_settled(const he_remeshing *r)
 /* How often all edges are tested for flips in the first step, and at the end. */
 enum { FIRST_SWEEPS = 3, LAST_SWEEPS = 4 };
 
-/* The net is put into order again when this fraction of its triangles are new, or were deleted. */
-static const double MUCH_CHANGED = 0.5;
-
-/* Renumbers the net if neighbours are not near in memory any more. `ordered` is the number of
- * triangles after the last time. */
-static he_status tidy(he_net *n, uint32_t *ordered, he_error *err)
-{
-    uint32_t gone = n->triangle_count - n->live_triangles, made = n->triangle_count - *ordered;
-    if (gone <= MUCH_CHANGED * n->triangle_count && made <= MUCH_CHANGED * n->triangle_count) {
-        return HE_OK;
-    }
-    he_status status = he_net_tidy(n, err);
-    *ordered = n->triangle_count;
-    return status;
-}
+/* The net is put into order again in the first step if this fraction of its triangles are new after
+ * the splits; and at the end of the first step, after which only few triangles change. */
+static const double MANY_NEW = 0.5;
 
 static he_status step(he_remeshing *r, bool first, he_error *err)
 {
+    he_net *n = &r->net;
+    uint32_t before = n->triangle_count;
     r->changes = 0;
     r->moved = 0;
     he_status status = he_remesh_split(r, first, err);
-    if (status == HE_OK) {
-        status = tidy(&r->net, &r->ordered, err);
+    if (status == HE_OK && n->triangle_count - before > MANY_NEW * n->triangle_count) {
+        status = he_net_tidy(n, err);
     }
     if (status == HE_OK) {
         status = he_remesh_collapse(r, first, err);
     }
     if (status == HE_OK) {
-        status = tidy(&r->net, &r->ordered, err);
-    }
-    if (status == HE_OK) {
         status = he_remesh_flip(r, HE_FLIP_DEGREES, first ? FIRST_SWEEPS : 1, err);
     }
-    return status == HE_OK ? he_remesh_relax(r, err) : status;
+    if (status == HE_OK) {
+        status = he_remesh_relax(r, err);
+    }
+    return status == HE_OK && first ? he_net_tidy(n, err) : status;
 }
 
 /* Makes angles even: what the steps leave are edges that bring degrees nearer to 6, but not
@@ -256,7 +247,6 @@ static he_status compute(const he_mesh *m, const he_remesh_options *options, he_
     }
     if (status == HE_OK) {
         r->net.most_triangles = HE_REMESH_FACES;
-        r->ordered = r->net.triangle_count;
         status = he_ground_copy(&r->net, &r->ground, err);
     }
     return status == HE_OK ? run_steps(r, options, length, stop, err) : status;

@@ -9,7 +9,7 @@
  *     surface that was given.
  *
  * At last edges are flipped so that angles become even. An edge is too long or too short if its
- * length is above 1.24 or below 0.78 times the wanted length.
+ * length is above 1.19 or below 0.75 times the wanted length.
  *
  * WHAT STAYS. Vertices never leave these LINES, along which they may move:
  *
@@ -41,7 +41,7 @@
 
 #include "mesh/mesh.h"
 
-enum { HE_REMESH_STEPS = 100, HE_REMESH_STEPS_USUAL = 10 };
+enum { HE_REMESH_STEPS = 100, HE_REMESH_STEPS_USUAL = 6 };
 
 /* The most triangles that may be made, and the least wanted length as a fraction of the largest
  * extent of the box around the faces. */

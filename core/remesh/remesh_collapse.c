@@ -12,6 +12,9 @@ static const double SLACK = 0.3;
  * the triangles before. */
 static const double LEAST_ROUND = 0.05;
 
+/* Flags of vertices that a collapse does not move. */
+enum { STILL = HE_NET_FIXED | HE_NET_LINE };
+
 /* A collapse of the edge of corner c: vertex u is removed; v stays.
  *
  *           w o                     If u is the target of c, there is no other triangle: then the
@@ -118,29 +121,30 @@ static bool are_shapes_good(const he_net *n, const he_net_ring *ring, uint32_t o
     }
     for (uint32_t i = 0; i < ring->count; i++) {
         const he_net_vertex *at = &n->vertices[ring->vertex[i]];
-        double wanted = he_remesh_least(how->size, (double)at->size) * how->most;
+        double size = (double)at->size, wanted = (size < how->size ? size : how->size) * how->most;
         double square = he_remesh_square(how->to, at->p);
         if (ring->vertex[i] != other && square > wanted * wanted && square > longest) {
             return false;
         }
     }
-    double worst_old = 1, worst_new = 1;
+    he_roundness worst_old = {.part = 1, .whole = 1}, worst_new = worst_old;
     for (uint32_t i = 0; i < ring->corners; i++) {
         uint32_t next = i + 1 < ring->count ? i + 1 : 0;
         uint32_t a = ring->vertex[i], b = ring->vertex[next];
         he_vec3 at_a = he_net_place(n, a), at_b = he_net_place(n, b);
-        he_roundness old = he_remesh_roundness(how->from, at_a, at_b);
-        worst_old = he_remesh_least(worst_old, old.round);
+        he_roundness old = he_roundness_of(how->from, at_a, at_b);
+        he_roundness_lower(&worst_old, &old);
         if (a == other || b == other) {
             continue;
         }
-        he_roundness new = he_remesh_roundness(how->to, at_a, at_b);
-        worst_new = he_remesh_least(worst_new, new.round);
+        he_roundness new = he_roundness_of(how->to, at_a, at_b);
+        he_roundness_lower(&worst_new, &new);
         if (!he_remesh_agree(old.area, new.area)) {
             return false;
         }
     }
-    return worst_new >= he_remesh_least(LEAST_ROUND, worst_old);
+    return !he_roundness_is_below(&worst_new, LEAST_ROUND) ||
+           !he_roundness_is_less(&worst_new, &worst_old);
 }
 
 /* Returns true if a line stays near its place without vertex u. */
@@ -247,16 +251,15 @@ static double longest_after(he_vec3 u, he_vec3 v, double size, double scale)
 /* Tries to remove an end of the edge of corner c: its origin, or on a border its target. */
 static bool try_removal(he_net *n, uint32_t c, bool target, double scale)
 {
-    removal e = {.c = c, .u = he_net_origin(n, c), .v = he_net_target(n, c)};
+    removal e; /* its rings are large, so only members that are used are set */
     uint32_t twin = he_net_twin(n, c);
+    e.c = c;
+    e.u = target ? he_net_target(n, c) : he_net_origin(n, c);
+    e.v = target ? he_net_origin(n, c) : he_net_target(n, c);
     e.w = he_net_opposite(n, c);
     e.x = twin == HE_NONE ? HE_NONE : he_net_opposite(n, twin);
     e.gone = target ? he_net_next(c) : he_net_prev(c);
     e.kept = target ? he_net_prev(c) : he_net_next(c);
-    if (target) {
-        e.u = e.v;
-        e.v = he_net_origin(n, c);
-    }
     if (e.w == e.x || !can_lose(n, e.w) || !can_lose(n, e.x) || !can_close(n, e.gone, e.kept) ||
         (twin != HE_NONE && !can_close(n, he_net_next(twin), he_net_prev(twin))) ||
         !he_net_turn(n, e.u, &e.ring) || e.ring.corners < (twin == HE_NONE ? 2U : 3U)) {
@@ -265,14 +268,13 @@ static bool try_removal(he_net *n, uint32_t c, bool target, double scale)
     if (!he_net_turn(n, e.v, &e.about)) {
         e.about.count = 0;
     }
-    const uint32_t still = HE_NET_FIXED | HE_NET_LINE;
-    e.moves = !he_net_has(n, e.u, still) && !he_net_has(n, e.v, still) && e.about.count > 0;
+    e.moves = !he_net_has(n, e.u, STILL) && !he_net_has(n, e.v, STILL) && e.about.count > 0;
     he_vec3 at_u = he_net_place(n, e.u), at_v = he_net_place(n, e.v);
     he_vec3 to = e.moves ? he_vec3_scale(he_vec3_add(at_u, at_v), 0.5) : at_v;
     double size = (double)n->vertices[e.v].size, most = longest_after(at_u, at_v, size, scale);
-    if (!are_links_good(n, &e) || !is_line_good(n, &e) ||
-        !are_shapes_good(n, &e.ring, e.v, &(moving){at_u, to, size, most}) ||
-        (e.moves && !are_shapes_good(n, &e.about, e.u, &(moving){at_v, to, size, most}))) {
+    if (!are_shapes_good(n, &e.ring, e.v, &(moving){at_u, to, size, most}) ||
+        (e.moves && !are_shapes_good(n, &e.about, e.u, &(moving){at_v, to, size, most})) ||
+        !are_links_good(n, &e) || !is_line_good(n, &e)) {
         return false;
     }
     collapse(n, &e);
@@ -284,7 +286,7 @@ static bool try_removal(he_net *n, uint32_t c, bool target, double scale)
 }
 
 /* Tries to collapse the edge of corner c. The end with fewer edges is removed if possible, else the
- * other one. */
+ * other one; if both ends would move to the middle, it makes no difference which one is removed. */
 static bool try_edge(he_net *n, uint32_t c, double scale)
 {
     uint32_t u = he_net_origin(n, c), v = he_net_target(n, c), twin = he_net_twin(n, c);
@@ -294,6 +296,9 @@ static bool try_edge(he_net *n, uint32_t c, double scale)
     }
     bool u_goes = may_go(n, u, held), v_goes = may_go(n, v, held);
     bool u_first = n->vertices[u].degree <= n->vertices[v].degree;
+    if (u_goes && v_goes && !he_net_has(n, u, STILL) && !he_net_has(n, v, STILL)) {
+        return try_removal(n, u_first ? c : twin, false, scale);
+    }
     return (u_goes && u_first && try_removal(n, c, false, scale)) ||
            (v_goes && try_removal(n, border ? c : twin, border, scale)) ||
            (u_goes && !u_first && try_removal(n, c, false, scale));
@@ -306,6 +311,14 @@ static double ratio(const he_net *n, uint32_t a, uint32_t b)
     return he_remesh_square(from->p, to->p) / (size * size);
 }
 
+/* Returns true if something has changed around an end of the edge of a corner: else it has been
+ * tried before. */
+static bool is_restless(const he_net *n, uint32_t c)
+{
+    return ((n->vertices[he_net_origin(n, c)].flags | n->vertices[he_net_target(n, c)].flags) &
+            HE_NET_RESTLESS) != 0;
+}
+
 /* Collapses edges of a triangle that are shorter than `scale` times the limit. */
 static void collapse_triangle(he_remeshing *r, uint32_t t, double scale)
 {
@@ -313,7 +326,7 @@ static void collapse_triangle(he_remeshing *r, uint32_t t, double scale)
     const double limit = HE_REMESH_SHORT * scale;
     for (uint32_t i = 0; i < 3 && !he_net_is_gone(n, t); i++) {
         uint32_t c = 4 * t + i, twin = he_net_twin(n, c);
-        if ((twin == HE_NONE || c < twin) &&
+        if ((twin == HE_NONE || c < twin) && is_restless(n, c) &&
             ratio(n, he_net_origin(n, c), he_net_target(n, c)) < limit * limit &&
             try_edge(n, c, scale)) {
             r->changes++;
@@ -327,7 +340,7 @@ static double find_shortest(const he_net *n)
     for (uint32_t t = 0; t < n->triangle_count; t++) {
         const he_net_triangle *of = &n->triangles[t];
         for (unsigned i = 0; i < 3 && (of->marks & HE_NET_GONE) == 0; i++) {
-            shortest = he_remesh_least(shortest, ratio(n, of->v[i], of->v[i == 2 ? 0 : i + 1]));
+            shortest = fmin(shortest, ratio(n, of->v[i], of->v[i == 2 ? 0 : i + 1]));
         }
     }
     return shortest;

@@ -47,6 +47,21 @@ static bool are_joined(const he_net *n, uint32_t c, uint32_t d)
  * roundness of the triangles before. */
 static const double LEAST_ROUND = 0.25;
 
+/* Returns true if the angles at c and d, opposite the edge from a to b, add up to more than pi:
+ * then the sum of their cotangents is negative. */
+static bool is_crooked(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
+{
+    he_vec3 ca = he_vec3_sub(a, c), cb = he_vec3_sub(b, c);
+    he_vec3 da = he_vec3_sub(a, d), db = he_vec3_sub(b, d);
+    double at_c = he_vec3_dot(ca, cb), at_d = he_vec3_dot(da, db);
+    if (at_c >= 0 && at_d >= 0) {
+        return false;
+    }
+    double left = he_vec3_length(he_vec3_cross(ca, cb));
+    double right = he_vec3_length(he_vec3_cross(da, db));
+    return at_c * right + at_d * left < -1e-9 * (left * right);
+}
+
 static bool is_wanted(const he_net *n, const kite *k, he_flip_aim aim)
 {
     if (aim == HE_FLIP_DEGREES && !evens_degrees(n, k)) {
@@ -54,21 +69,16 @@ static bool is_wanted(const he_net *n, const kite *k, he_flip_aim aim)
     }
     he_vec3 a = he_net_place(n, k->a), b = he_net_place(n, k->b);
     he_vec3 c = he_net_place(n, k->c), d = he_net_place(n, k->d);
-    he_roundness left = he_remesh_roundness(a, b, c), right = he_remesh_roundness(b, a, d);
-    if (aim == HE_FLIP_ANGLES) {
-        /* The cotangents of the two angles opposite the edge have a negative sum if the angles add
-         * up to more than pi. */
-        double at_c = he_vec3_dot(he_vec3_sub(a, c), he_vec3_sub(b, c));
-        double at_d = he_vec3_dot(he_vec3_sub(a, d), he_vec3_sub(b, d));
-        double l = he_vec3_length(left.area), r = he_vec3_length(right.area);
-        if (!(at_c * r + at_d * l < -1e-9 * (l * r))) {
-            return false;
-        }
+    if (aim == HE_FLIP_ANGLES && !is_crooked(a, b, c, d)) {
+        return false;
     }
-    he_roundness fore = he_remesh_roundness(d, c, a), back = he_remesh_roundness(c, d, b);
-    double before = he_remesh_least(left.round, right.round),
-           after = he_remesh_least(fore.round, back.round);
-    if (aim == HE_FLIP_DEGREES ? after < he_remesh_least(before, LEAST_ROUND) : after <= before) {
+    he_roundness left = he_roundness_of(a, b, c), right = he_roundness_of(b, a, d);
+    he_roundness fore = he_roundness_of(d, c, a), back = he_roundness_of(c, d, b);
+    he_roundness before = left, after = fore;
+    he_roundness_lower(&before, &right);
+    he_roundness_lower(&after, &back);
+    bool rounder = he_roundness_is_less(&before, &after);
+    if (!rounder && (aim == HE_FLIP_ANGLES || he_roundness_is_below(&after, LEAST_ROUND))) {
         return false;
     }
     he_vec3 old = he_vec3_add(left.area, right.area);
@@ -136,6 +146,14 @@ static bool try_flip(he_net *n, uint32_t e, he_flip_aim aim)
     return true;
 }
 
+/* Returns true if something has changed around a corner of a triangle. */
+static bool is_restless(const he_net *n, uint32_t t)
+{
+    const uint32_t *v = n->triangles[t].v;
+    return ((n->vertices[v[0]].flags | n->vertices[v[1]].flags | n->vertices[v[2]].flags) &
+            HE_NET_RESTLESS) != 0;
+}
+
 he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, unsigned sweeps, he_error *err)
 {
     he_net *n = &r->net;
@@ -145,7 +163,8 @@ he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, unsigned sweeps, he_e
         flips = 0;
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
             status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
-            for (uint32_t c = 4 * t; c < 4 * t + 3 && !he_net_is_gone(n, t); c++) {
+            bool looks = !he_net_is_gone(n, t) && (aim == HE_FLIP_ANGLES || is_restless(n, t));
+            for (uint32_t c = 4 * t; c < 4 * t + 3 && looks; c++) {
                 uint32_t twin = he_net_twin(n, c);
                 if (twin != HE_NONE && c < twin && !he_net_is_held(n, c)) {
                     flips += try_flip(n, c, aim);

@@ -10,15 +10,18 @@ static const double LEAST_ROUND = 0.3;
 static const double OVER = 1.3;
 /* Moves that are shorter than this fraction of the wanted length are not made. */
 static const double LEAST_MOVE = 0.01;
+/* A move that is longer than this fraction makes the vertices around it restless. */
+static const double STIR = 0.05;
 
 /* The surroundings of a vertex: positions of its neighbours, and facts about the faces between
  * them. */
 typedef struct around {
-    uint32_t count, faces;
-    he_vec3 at[HE_NET_HUB + 2];
+    he_net_ring ring;
+    he_vec3 at[HE_NET_HUB + 2];   /* the first one again after the last, if the fan is closed */
     he_vec3 area[HE_NET_HUB + 1]; /* area vector of each face */
     he_vec3 normal;               /* sum of the area vectors */
     he_vec3 middle;               /* mean of the faces' centroids, weighed by area and size */
+    he_roundness worst;           /* the least roundness */
     /* The line, if the vertex is inside one, else HE_NONE; where the two neighbours on the line are
      * on it, and the wanted lengths there. */
     uint32_t line;
@@ -41,74 +44,83 @@ static void find_line(const he_net *n, const he_net_ring *ring, around *out)
     out->line = found == 2 ? line : HE_NONE;
 }
 
+/* Adds a face of the surroundings, between the neighbours i and i + 1. Returns its weight. */
+static double add_face(around *out, uint32_t i, he_vec3 p, double wanted)
+{
+    he_vec3 a = he_vec3_sub(out->at[i], p), b = he_vec3_sub(out->at[i + 1], p);
+    he_vec3 area = he_vec3_cross(a, b), side = he_vec3_sub(b, a);
+    double square = he_vec3_dot(area, area);
+    double sum = he_vec3_dot(a, a) + he_vec3_dot(b, b) + he_vec3_dot(side, side);
+    he_roundness own = {area, 12 * square, sum > 0 ? sum * sum : 1};
+    he_roundness_lower(&out->worst, &own);
+    out->area[i] = area;
+    out->normal = he_vec3_add(out->normal, area);
+    double share = sqrt(square) / (wanted * wanted);
+    out->middle = he_vec3_add(out->middle, he_vec3_scale(he_vec3_add(a, b), share));
+    return share;
+}
+
 /* Collects the surroundings. Returns false if the vertex cannot be walked around. */
 static bool gather(const he_net *n, uint32_t v, around *out)
 {
-    he_net_ring ring;
+    he_net_ring *ring = &out->ring;
     double weight = 0, size = (double)n->vertices[v].size;
-    he_vec3 p = he_net_place(n, v), sum = {0, 0, 0};
+    he_vec3 p = he_net_place(n, v);
     double sizes[HE_NET_HUB + 2];
-    if (!he_net_turn(n, v, &ring)) {
+    if (!he_net_turn(n, v, ring)) {
         return false;
     }
-    for (uint32_t i = 0; i < ring.count; i++) {
-        const he_net_vertex *w = &n->vertices[ring.vertex[i]];
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const he_net_vertex *w = &n->vertices[ring->vertex[i]];
         out->at[i] = w->p;
         sizes[i] = (double)w->size;
     }
-    out->count = ring.count;
-    out->faces = ring.corners;
-    if (ring.corners == ring.count) {
-        out->at[ring.count] = out->at[0];
-        sizes[ring.count] = sizes[0];
+    if (ring->corners == ring->count) {
+        out->at[ring->count] = out->at[0];
+        sizes[ring->count] = sizes[0];
     }
     out->line = HE_NONE;
     if (he_net_has(n, v, HE_NET_LINE)) {
-        find_line(n, &ring, out);
+        find_line(n, ring, out);
     }
-    out->normal = (he_vec3){0, 0, 0};
-    for (uint32_t i = 0; i < ring.corners; i++) {
-        he_vec3 a = he_vec3_sub(out->at[i], p), b = he_vec3_sub(out->at[i + 1], p);
-        he_vec3 area = he_vec3_cross(a, b);
-        double wanted = size + sizes[i] + sizes[i + 1];
-        double share = he_vec3_length(area) / (wanted * wanted);
-        out->area[i] = area;
-        out->normal = he_vec3_add(out->normal, area);
-        weight += share;
-        sum = he_vec3_add(sum, he_vec3_scale(he_vec3_add(a, b), share));
+    out->normal = out->middle = (he_vec3){0, 0, 0};
+    out->worst = (he_roundness){.part = 1, .whole = 1};
+    for (uint32_t i = 0; i < ring->corners; i++) {
+        weight += add_face(out, i, p, size + sizes[i] + sizes[i + 1]);
     }
-    out->middle = weight > 0 ? he_vec3_add(p, he_vec3_scale(sum, 1 / (3 * weight))) : p;
+    double factor = weight > 0 ? 1 / (3 * weight) : 0;
+    out->middle = he_vec3_add(p, he_vec3_scale(out->middle, factor));
     return true;
 }
 
-/* Returns the least roundness of the faces around a vertex at a place. */
-static double worst_at(const around *of, he_vec3 place)
+/* Returns the roundness below which no face may fall when a vertex is relaxed. */
+static double least_round(const around *of)
 {
-    double worst = 1;
-    for (uint32_t i = 0; i < of->faces; i++) {
-        he_roundness own = he_remesh_roundness(place, of->at[i], of->at[i + 1]);
-        worst = he_remesh_least(worst, own.round);
-    }
-    return worst;
+    return he_roundness_is_below(&of->worst, LEAST_ROUND) ? of->worst.part / of->worst.whole
+                                                          : LEAST_ROUND;
 }
 
 /* Returns true if the vertex may move to a place: no face turns over or gets a roundness below
  * `least`. */
 static bool is_good(const around *of, he_vec3 place, double least)
 {
-    for (uint32_t i = 0; i < of->faces; i++) {
-        he_roundness new = he_remesh_roundness(place, of->at[i], of->at[i + 1]);
-        if (new.round < least || !he_remesh_agree(of->area[i], new.area)) {
+    for (uint32_t i = 0; i < of->ring.corners; i++) {
+        he_roundness new = he_roundness_of(place, of->at[i], of->at[i + 1]);
+        if (he_roundness_is_below(&new, least) || !he_remesh_agree(of->area[i], new.area)) {
             return false;
         }
     }
     return true;
 }
 
-static void move(he_remeshing *r, uint32_t v, he_vec3 place)
+static void move(he_remeshing *r, uint32_t v, const around *of, he_vec3 place)
 {
     he_net_vertex *at = &r->net.vertices[v];
-    r->moved += sqrt(he_remesh_square(at->p, place)) / (double)at->size;
+    double far = sqrt(he_remesh_square(at->p, place)) / (double)at->size;
+    r->moved += far;
+    for (uint32_t i = 0; i < of->ring.count && far > STIR; i++) {
+        r->net.vertices[of->ring.vertex[i]].flags |= HE_NET_RESTLESS;
+    }
     at->p = place;
     at->flags |= HE_NET_MOVED;
     at->flags &= (uint8_t)~HE_NET_LOOSE;
@@ -127,7 +139,7 @@ static bool try_place(he_remeshing *r, uint32_t v, const around *of, he_vec3 pla
     if (!is_good(of, place, least)) {
         return false;
     }
-    move(r, v, place);
+    move(r, v, of, place);
     r->net.ground[v] = ground;
     return true;
 }
@@ -141,7 +153,7 @@ static bool try_arc(he_remeshing *r, uint32_t v, const around *of, double arc, d
     if (!is_good(of, place, least)) {
         return false;
     }
-    move(r, v, place);
+    move(r, v, of, place);
     n->arc[v] = arc;
     n->ground[v] = ground;
     return true;
@@ -165,7 +177,7 @@ static void relax_inside(he_remeshing *r, uint32_t v)
     if (!loose && he_vec3_dot(way, way) < least * least) {
         return;
     }
-    double worst = he_remesh_least(worst_at(&of, at->p), LEAST_ROUND);
+    double worst = least_round(&of);
     if (!try_place(r, v, &of, he_vec3_add(at->p, way), worst) &&
         !try_place(r, v, &of, he_vec3_add(at->p, he_vec3_scale(way, 0.5)), worst) && loose) {
         (void)try_place(r, v, &of, at->p, worst);
@@ -184,8 +196,7 @@ static void relax_line(he_remeshing *r, uint32_t v)
     double own[2] = {size + of.line_size[0], size + of.line_size[1]};
     double arc = (of.line_arc[0] * own[1] + of.line_arc[1] * own[0]) / (own[0] + own[1]);
     if (fabs(arc - n->arc[v]) >= LEAST_MOVE * size) {
-        double worst = worst_at(&of, n->vertices[v].p);
-        (void)try_arc(r, v, &of, arc, he_remesh_least(worst, LEAST_ROUND));
+        (void)try_arc(r, v, &of, arc, least_round(&of));
     }
 }
 
@@ -196,9 +207,10 @@ he_status he_remesh_relax(he_remeshing *r, he_error *err)
     for (uint32_t v = 0; v < n->vertex_count && status == HE_OK; v++) {
         uint32_t flags = n->vertices[v].flags;
         status = he_progress_at(r->progress, v + 1, n->vertex_count, err);
-        if ((flags & (HE_NET_FIXED | HE_NET_DEAD)) != 0) {
+        if ((flags & (HE_NET_FIXED | HE_NET_DEAD)) != 0 || (flags & HE_NET_RESTLESS) == 0) {
             continue;
         }
+        n->vertices[v].flags &= (uint8_t)~HE_NET_RESTLESS;
         if ((flags & HE_NET_LINE) != 0) {
             relax_line(r, v);
         } else {
@@ -243,7 +255,7 @@ static bool improve(he_remeshing *r, uint32_t c)
     he_vec3 p = he_net_place(n, v);
     he_vec3 to = regular_place(p, he_net_place(n, he_net_target(n, c)),
                                he_net_place(n, he_net_opposite(n, c)));
-    double least = worst_at(&of, p) + 1e-3;
+    double least = of.worst.part / of.worst.whole + 1e-3;
     bool done = false;
     for (unsigned i = 0; i < sizeof steps / sizeof *steps && !done; i++) {
         if (!he_net_has(n, v, HE_NET_LINE)) {
@@ -259,28 +271,39 @@ static bool improve(he_remeshing *r, uint32_t c)
     return done;
 }
 
-/* The most sweeps over all triangles. */
+/* Returns true if a triangle is to be improved. */
+static bool is_bad(const he_net *n, uint32_t t)
+{
+    const uint32_t *v = n->triangles[t].v;
+    he_roundness own =
+        he_roundness_of(he_net_place(n, v[0]), he_net_place(n, v[1]), he_net_place(n, v[2]));
+    return he_roundness_is_below(&own, ROUND);
+}
+
+/* The most sweeps over the triangles that are to be improved. */
 enum { SWEEPS = 10 };
 
 he_status he_remesh_round(he_remeshing *r, he_error *err)
 {
     const he_net *n = &r->net;
+    he_ids bad = {0};
     he_status status = HE_OK;
     bool any = true;
+    for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
+        status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
+        if (status == HE_OK && !he_net_is_gone(n, t) && is_bad(n, t)) {
+            status = he_ids_add(&bad, t, err);
+        }
+    }
     for (unsigned sweep = 0; sweep < SWEEPS && any && status == HE_OK; sweep++) {
         any = false;
-        for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
-            status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
-            if (he_net_is_gone(n, t)) {
-                continue;
-            }
-            const uint32_t *v = n->triangles[t].v;
-            he_roundness own = he_remesh_roundness(he_net_place(n, v[0]), he_net_place(n, v[1]),
-                                                   he_net_place(n, v[2]));
-            for (uint32_t c = 4 * t; c < 4 * t + 3 && own.round < ROUND; c++) {
+        for (size_t i = 0; i < bad.count && status == HE_OK; i++) {
+            status = he_progress_at(r->progress, i + 1, bad.count, err);
+            for (uint32_t c = 4 * bad.ids[i]; c < 4 * bad.ids[i] + 3 && is_bad(n, c >> 2); c++) {
                 any |= improve(r, c);
             }
         }
     }
+    he_ids_clear(&bad);
     return status;
 }

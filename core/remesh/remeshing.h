@@ -8,16 +8,15 @@
 
 /* An edge is too long if it is longer than HE_REMESH_LONG times the wanted length, and too short if
  * it is shorter than HE_REMESH_SHORT times that length. With these limits, the mean length becomes
- * about the wanted one. */
-#define HE_REMESH_LONG  1.24
-#define HE_REMESH_SHORT 0.78
+ * a little less than the wanted one, as with the limits 4/3 and 4/5 of Botsch and Kobbelt. */
+#define HE_REMESH_LONG  1.19
+#define HE_REMESH_SHORT 0.75
 
 typedef struct he_remeshing {
     he_net net;
     he_ground ground;
     he_progress *progress;
     bool project;
-    uint32_t ordered; /* number of triangles when the net was put into order last */
     uint64_t changes; /* number of splits, collapses and flips in this step */
     double moved;     /* the sum of the moves of all vertices in this step, in wanted lengths */
 } he_remeshing;
@@ -46,12 +45,6 @@ HE_NODISCARD he_status he_remesh_round(he_remeshing *r, he_error *err);
 
 /* --- shapes of triangles --- */
 
-/* Returns the lesser number. Unlike fmin, the compiler makes one instruction of it. */
-static inline double he_remesh_least(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 static inline double he_remesh_square(he_vec3 a, he_vec3 b)
 {
     he_vec3 d = he_vec3_sub(b, a);
@@ -59,20 +52,34 @@ static inline double he_remesh_square(he_vec3 a, he_vec3 b)
 }
 
 /* A triangle's area vector, twice as long as its area, and its roundness: the square of 4 sqrt(3)
- * area / (sum of the squared sides), which is 1 for a regular triangle, and 0 for one without
- * area. */
+ * area / (sum of the squared sides), which is 1 for a regular triangle, and 0 for one without area.
+ * It is stored as a fraction, because a division takes as long as many products. */
 typedef struct he_roundness {
     he_vec3 area;
-    double round;
+    double part, whole; /* the roundness is part / whole; `whole` is above 0 */
 } he_roundness;
 
-static inline he_roundness he_remesh_roundness(he_vec3 a, he_vec3 b, he_vec3 c)
+static inline he_roundness he_roundness_of(he_vec3 a, he_vec3 b, he_vec3 c)
 {
     he_vec3 ab = he_vec3_sub(b, a), ac = he_vec3_sub(c, a), bc = he_vec3_sub(c, b);
     he_vec3 area = he_vec3_cross(ab, ac);
     double sum = he_vec3_dot(ab, ab) + he_vec3_dot(ac, ac) + he_vec3_dot(bc, bc);
-    double square = 12 * he_vec3_dot(area, area);
-    return (he_roundness){area, sum > 0 ? square / (sum * sum) : 0};
+    return (he_roundness){area, 12 * he_vec3_dot(area, area), sum > 0 ? sum * sum : 1};
+}
+static inline bool he_roundness_is_less(const he_roundness *a, const he_roundness *b)
+{
+    return a->part * b->whole < b->part * a->whole;
+}
+static inline bool he_roundness_is_below(const he_roundness *a, double limit)
+{
+    return a->part < limit * a->whole;
+}
+/* Lowers *worst to the roundness of `a` if that is less. */
+static inline void he_roundness_lower(he_roundness *worst, const he_roundness *a)
+{
+    if (he_roundness_is_less(a, worst)) {
+        *worst = *a;
+    }
 }
 
 /* Returns true if the directions of two area vectors differ by at most 60 degrees, or if one of
