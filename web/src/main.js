@@ -93,7 +93,7 @@ const stage = new Stage(
         modes: byId('pick-modes'),
     },
     {
-        geometry: () => session.shown?.geometry ?? null,
+        content: () => session.shown,
         onPick: (chosen, also) => editing.pick(chosen, also).catch(fail),
         onRest: () => address.write(),
         onError: fail,

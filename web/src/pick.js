@@ -4,13 +4,18 @@
 // visible there. From it the renderer reads which triangles and vertices are near the pointer. In
 // edge mode only edges can be picked, in vertex mode only vertices, and so on. In these two modes a
 // visible edge or vertex near the pointer is chosen; if there is none, an edge or a corner of the
-// face under the pointer.
+// face under the pointer. holes.js chooses the half-edges of holes.
 
 import { edgesOfTriangles, faceOf, pointAt, trianglesOfFace } from './geometry.js';
+import { holeAt, holeAround } from './holes.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
 
 // An edge or vertex is chosen if it is visible within this many CSS pixels of the pointer.
 export const REACH = 8;
+
+// Arrows of half-edges are drawn beside their edges. The arrow of a boundary half-edge is in the
+// hole, so a boundary half-edge is also chosen if its edge is within this many CSS pixels.
+export const HOLE_REACH = 20;
 
 // Numbers for the kinds of elements in the id buffer, see shaders.js.
 const TRIANGLE = 1;
@@ -47,7 +52,10 @@ export function readSquare(ids, size) {
 // Returns the element to pick at the pointer: {kind: 'face', id}, {kind: 'vertex', id}, {kind:
 // 'edge', from, to} or {kind: 'halfedge', from, to}, or null if there is none. `mode` is the kind
 // that may be picked, `seen` a result of readSquare(), and `screen` {matrix, width, height, x, y}:
-// the camera's matrix, and the size of the canvas and the place of the pointer in CSS pixels.
+// the camera's matrix, and the size of the canvas and the place of the pointer in CSS pixels. For
+// half-edges, `seen` must reach HOLE_REACH, and `screen` has in addition `boundary`, the boundary
+// half-edges of the mesh as in Content, and `look(x, y)`, which returns what readSquare() sees at
+// another place.
 export function choose(mode, geometry, seen, screen) {
     if (mode === 'face') {
         return seen.under < 0
@@ -63,33 +71,49 @@ export function choose(mode, geometry, seen, screen) {
 }
 
 function chooseEdge(geometry, seen, screen) {
-    const distance = ([from, to]) =>
-        distanceToSegment(
-            screen.matrix,
-            screen.width,
-            screen.height,
-            pointAt(geometry, from),
-            pointAt(geometry, to),
-            screen.x,
-            screen.y,
-        );
+    const distance = (edge) => pixelsTo(geometry, screen, edge);
     const [edge] =
         nearest(edgesOfTriangles(geometry.triangles, seen.triangles), distance, REACH) ??
         nearest(edgesUnder(geometry, seen), distance, Infinity) ?? [];
     return edge === undefined ? null : { kind: 'edge', from: edge[0], to: edge[1] };
 }
 
-// If a face is under the pointer, chooses its half-edge on the edge nearest to the pointer. If the
-// pointer is beside the surface, chooses from the nearest visible edge the half-edge on the side of
-// the pointer, which usually is a boundary half-edge.
+function pixelsTo(geometry, { matrix, width, height, x, y }, [from, to]) {
+    const ends = [pointAt(geometry, from), pointAt(geometry, to)];
+    return distanceToSegment(matrix, width, height, ...ends, x, y);
+}
+
+// If the pointer is in a hole and near the hole's rim, chooses the boundary half-edge there,
+// whatever is visible through the hole. Else, if a face is under the pointer, chooses its half-edge
+// on the edge nearest to the pointer; but if the face is seen from behind through a hole, and none
+// of its edges is near, the nearest half-edge of the hole. If the pointer is beside the surface,
+// chooses from the nearest visible edge the half-edge on the side of the pointer, which usually is
+// a boundary half-edge.
 function chooseHalfedge(geometry, seen, screen) {
-    if (seen.under >= 0 && seen.away === 0) {
-        const face = trianglesOfFace(geometry, faceOf(geometry.triangles, seen.under));
-        const edge = chooseEdge(geometry, { under: seen.under, triangles: face }, screen);
-        return edge && { ...edge, kind: 'halfedge' };
+    const near = chooseNear(geometry, seen, screen);
+    const hole = holeAt(geometry, seen, screen);
+    if (hole !== null && hole.distance <= Math.min(HOLE_REACH, near?.distance ?? Infinity)) {
+        return { kind: 'halfedge', from: hole.from, to: hole.to };
     }
-    const edge = chooseEdge(geometry, seen, screen);
-    return edge && { kind: 'halfedge', from: edge.to, to: edge.from };
+    if (seen.under < 0 || seen.away > 0) {
+        const edge = near ?? (seen.away <= REACH ? chooseEdge(geometry, seen, screen) : null);
+        return edge && { kind: 'halfedge', from: edge.to, to: edge.from };
+    }
+    const around = near === null ? holeAround(geometry, seen, screen) : null;
+    if (around !== null) {
+        return { kind: 'halfedge', ...around };
+    }
+    const face = trianglesOfFace(geometry, faceOf(geometry.triangles, seen.under));
+    const edge = chooseEdge(geometry, { under: seen.under, triangles: face }, screen);
+    return edge && { ...edge, kind: 'halfedge' };
+}
+
+// Returns the visible edge that is nearest to the pointer, as {from, to, distance}, or null if none
+// is within REACH.
+function chooseNear(geometry, seen, screen) {
+    const edges = edgesOfTriangles(geometry.triangles, seen.triangles);
+    const found = nearest(edges, (edge) => pixelsTo(geometry, screen, edge), REACH);
+    return found && { from: found[0][0], to: found[0][1], distance: found[1] };
 }
 
 function chooseVertex(geometry, seen, screen) {

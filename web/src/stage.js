@@ -1,7 +1,7 @@
 // stage.js - the 3D view: the renderer, which is missing if the browser has no WebGL, and clicks.
 
 import { NoWebGL, Renderer } from './gl/render.js';
-import { REACH, choose } from './pick.js';
+import { HOLE_REACH, REACH, choose } from './pick.js';
 
 // If the pointer moved further than this many CSS pixels between press and release, it turned the
 // camera; otherwise it clicked.
@@ -14,20 +14,20 @@ const REST = 250;
 export class Stage {
     #canvas;
     #modes;
-    #geometryNow;
+    #contentNow;
     #renderer = null;
     #isLevel = false; // a level of detail is shown, which has no ids
     #acts;
     #timer = 0;
 
     // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
-    // for the kind of element to pick. `geometry()` returns the arrays that are shown, or null.
+    // for the kind of element to pick. `content()` returns the Content that is shown, or null.
     // `onPick(chosen, also)` is called after a click with the result of choose(); `also` says that
     // the Shift key was held. `onRest()` is called when the camera has come to rest.
-    constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onRest, onError }) {
+    constructor(canvas, { noWebGL, contextLost, modes }, { content, onPick, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;
-        this.#geometryNow = geometry;
+        this.#contentNow = content;
         this.#acts = { onPick, onRest, onError };
         try {
             this.#renderer = new Renderer(canvas, {
@@ -222,7 +222,7 @@ export class Stage {
             const { clientX: x, clientY: y } = event;
             const isClick =
                 down !== null && Math.hypot(x - down.clientX, y - down.clientY) <= CLICK_PIXELS;
-            if (isClick && this.#marked !== null && this.#geometryNow() !== null) {
+            if (isClick && this.#marked !== null && this.#contentNow() !== null) {
                 this.#acts.onPick(this.#choose(x, y), event.shiftKey);
             }
         });
@@ -233,8 +233,11 @@ export class Stage {
         const box = this.#canvas.getBoundingClientRect();
         const [x, y] = [clientX - box.left, clientY - box.top];
         const { matrix } = this.#renderer;
-        const seen = this.#renderer.look(x, y, REACH);
-        const screen = { matrix, width: box.width, height: box.height, x, y };
-        return choose(this.#pickMode, this.#geometryNow(), seen, screen);
+        const mode = this.#pickMode;
+        const { geometry, boundary } = this.#contentNow();
+        const seen = this.#renderer.look(x, y, mode === 'halfedge' ? HOLE_REACH : REACH);
+        const look = (...place) => this.#renderer.look(...place, REACH);
+        const screen = { matrix, width: box.width, height: box.height, x, y, boundary, look };
+        return choose(mode, geometry, seen, screen);
     }
 }

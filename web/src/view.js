@@ -107,13 +107,20 @@ export function distanceToPoint(matrix, width, height, point, x, y) {
     return Math.hypot(px - x, py - y);
 }
 
-// Returns the distance in pixels from (x, y) on the screen to the part of a segment that is in
-// front of the camera.
-export function distanceToSegment(matrix, width, height, from, to, x, y) {
+// Returns the pixel [x, y] at which a point appears, or null if it is behind the camera.
+export function placeOnScreen({ matrix, width, height }, point) {
+    const clip = toClip(matrix, point);
+    return clip[3] < NEAREST ? null : toScreen(clip, width, height);
+}
+
+// Returns the point of a segment that is nearest to (x, y) on the screen, as {x, y, distance} in
+// pixels; only the part of the segment in front of the camera counts. Returns null if there is
+// none.
+export function nearestOnSegment({ matrix, width, height, x, y }, from, to) {
     let a = toClip(matrix, from);
     let b = toClip(matrix, to);
     if (a[3] < NEAREST && b[3] < NEAREST) {
-        return Infinity;
+        return null;
     }
     if (a[3] < NEAREST) {
         a = cutAtCamera(a, b);
@@ -127,7 +134,14 @@ export function distanceToSegment(matrix, width, height, from, to, x, y) {
     const length2 = dx * dx + dy * dy;
     const t = length2 > 0 ? ((x - ax) * dx + (y - ay) * dy) / length2 : 0;
     const s = Math.min(Math.max(t, 0), 1);
-    return Math.hypot(ax + s * dx - x, ay + s * dy - y);
+    const place = { x: ax + s * dx, y: ay + s * dy };
+    return { ...place, distance: Math.hypot(place.x - x, place.y - y) };
+}
+
+// Returns the distance in pixels from (x, y) on the screen to the part of a segment that is in
+// front of the camera; Infinity if it is behind the camera.
+export function distanceToSegment(matrix, width, height, from, to, x, y) {
+    return nearestOnSegment({ matrix, width, height, x, y }, from, to)?.distance ?? Infinity;
 }
 
 // Returns the point where a segment meets the plane at distance NEAREST in front of the camera; its
