@@ -182,6 +182,43 @@ test('a tool that fits nothing selected shows its form, a button arms as a key d
     assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
 });
 
+test('a number typed after a tool was selected by its key is the exact amount', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    await goAndFit(page, 'face', 1);
+    const mode = () => page.locator('input[name="pick"]:checked').getAttribute('value');
+    const send = async (keys) => {
+        const sent = page.waitForRequest(isEdit);
+        await page.locator('#canvas').focus();
+        for (const key of keys) {
+            await page.keyboard.press(key);
+        }
+        return (await sent).postDataJSON().ops;
+    };
+    assert.deepEqual(await send(['e', '0', '.', '3', 'Enter']), [
+        { op: 'face_extrude', face: 1, distance: 0.3, region: false },
+    ]);
+    await waitForFrame(page, { revision: 2, selection: 'face:1' });
+    assert.equal(await mode(), 'face');
+    assert.deepEqual(await send(['i', '.', '2', '5', 'Enter']), [
+        { op: 'face_inset', face: 1, factor: 0.25, region: false },
+    ]);
+    await waitForFrame(page, { revision: 3 });
+    // A digit that follows no tool still is the key of a pick mode.
+    await press(page, '1');
+    assert.equal(await mode(), 'vertex');
+    await goTo(page, 'vertex', 0);
+    const { position } = await get(daemon, `/${mesh}/vertices/0`);
+    const by = ['-', '1', 'Tab', '0', 'Tab', '2', 'Enter'];
+    assert.deepEqual(await send(['g', ...by]), [{ op: 'vertex_move', vertex: 0, by: [-1, 0, 2] }]);
+    await waitForFrame(page, { revision: 4 });
+    assert.deepEqual((await get(daemon, `/${mesh}/vertices/0`)).position, [
+        position[0] - 1,
+        position[1],
+        position[2] + 2,
+    ]);
+    assert.equal(await mode(), 'vertex');
+});
+
 test('what is selected is collapsed or deleted by a button too', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, GRID);
     const inner = (await getAll(daemon, mesh, 'edges')).find((edge) => !edge.boundary);

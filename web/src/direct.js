@@ -8,9 +8,9 @@ import { enable } from './dom.js';
 const CLICK_PIXELS = 4;
 
 const HINTS = {
-    move: 'Drag to move the selection.',
-    extrude: 'Drag to extrude, or click for a default distance.',
-    inset: 'Drag to inset, or click for a default amount.',
+    move: 'Drag to move the selection, or type how far.',
+    extrude: 'Drag to extrude, type a distance, or click for a default distance.',
+    inset: 'Drag to inset, type an amount, or click for a default amount.',
 };
 
 export class Direct {
@@ -43,6 +43,11 @@ export class Direct {
 
     get isArmed() {
         return this.#gesture !== null;
+    }
+
+    // The name of the operation that the selected tool runs, or null.
+    get operation() {
+        return this.#gesture?.op ?? null;
     }
 
     // Selects a tool; returns false if the tool cannot work on the selected elements.

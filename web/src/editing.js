@@ -23,6 +23,14 @@ const MOST_MARKED = 1000;
 // the name of the tool.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
 
+// The parameter that says how far a tool of the view goes, by the operation that the tool runs.
+const AMOUNTS = {
+    vertex_move: 'by',
+    edge_extrude: 'by',
+    face_extrude: 'distance',
+    face_inset: 'factor',
+};
+
 // The words for the elements that the user has to click, by kind: NAMES for one element, PLURALS
 // for several.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
@@ -353,6 +361,22 @@ export class Editing {
         ) {
             this.#tools.show(name);
         }
+    }
+
+    // Called when a key was pressed in the view. If the key begins a number and a tool is selected,
+    // moves the focus to the form's field for the tool's amount, where the browser then enters the
+    // key, and returns true.
+    typeAmount(key) {
+        const name = this.#direct.operation;
+        if (name === null || !/^[-.\d]$/.test(key) || !this.#tools.has(name)) {
+            return false;
+        }
+        this.#direct.cancel();
+        this.#tools.show(name);
+        if (name === 'face_extrude' && this.#session.selection.chosen.length > 1) {
+            this.#tools.tick('region'); // as in a drag, faces that share an edge move together
+        }
+        return this.#tools.focus(AMOUNTS[name]);
     }
 
     #open(name) {

@@ -4,7 +4,7 @@
 import { make } from './dom.js';
 
 // Each row is [the keys as the list shows them, the key in the notation of listenToKeys(),
-// description, name of the function in `acts`].
+// description, name of the function in `acts`]. A row without a function only informs.
 const KEYS = [
     ['1', '1', 'Pick vertices', 'pickVertex'],
     ['2', '2', 'Pick edges', 'pickEdge'],
@@ -19,6 +19,7 @@ const KEYS = [
     ['G', 'g', 'Move the selection by dragging', 'move'],
     ['E', 'e', 'Extrude faces or boundary edges by dragging', 'extrude'],
     ['I', 'i', 'Inset faces by dragging', 'inset'],
+    ['0-9', null, 'While a tool is selected: type the exact amount', null],
     ['S', 's', 'Split an edge, a face, or the face between two vertices', 'split'],
     ['X', 'x', 'Collapse an edge, delete a face or a vertex', 'remove'],
     ['Ctrl Z', 'ctrl+z', 'Undo', 'undo'],
@@ -27,9 +28,13 @@ const KEYS = [
     ['Esc', 'escape', 'Cancel, or clear the selection', 'clear'],
 ];
 
-// Listens to the keys; `acts` has the functions that the keys call.
+// Listens to the keys; `acts` has the functions that the keys call. Its function type(key) is asked
+// first; if it returns true, the key is part of a number and not a command.
 export function listenToKeys(canvas, acts) {
     canvas.addEventListener('keydown', (event) => {
+        if (!event.ctrlKey && !event.metaKey && !event.altKey && acts.type(event.key)) {
+            return;
+        }
         const control = event.ctrlKey || event.metaKey;
         const shift = control && event.shiftKey;
         const name = `${control ? 'ctrl+' : ''}${shift ? 'shift+' : ''}${event.key.toLowerCase()}`;

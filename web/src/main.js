@@ -295,6 +295,7 @@ const undo = () => !byId('undo').disabled && session.undo().catch(fail);
 const redo = () => !byId('redo').disabled && session.redo().catch(fail);
 
 listenToKeys(canvas, {
+    type: (key) => editing.typeAmount(key),
     pickVertex: () => stage.setPickMode('vertex'),
     pickEdge: () => stage.setPickMode('edge'),
     pickFace: () => stage.setPickMode('face'),

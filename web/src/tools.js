@@ -285,6 +285,22 @@ export class Tools {
         (main ?? this.#form.querySelector('button')).focus();
     }
 
+    // Ticks the field of a flag of the form, if the form has it.
+    tick(name) {
+        const node = this.#fields.get(name)?.control.node;
+        if (node?.type === 'checkbox') {
+            node.checked = true;
+        }
+    }
+
+    // Moves the focus to the field of a parameter of the form; returns false if there is none.
+    focus(name) {
+        const main = this.#fields.get(name)?.control.main;
+        main?.focus();
+        main?.select();
+        return main !== undefined;
+    }
+
     #build() {
         const { operation } = this.#chooser;
         this.disarm();
