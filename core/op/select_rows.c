@@ -274,12 +274,14 @@ const he_op he_select_rows[] = {
                       "(their share of the surface), a degree (number of edges), an "
                       "angle_defect, a mean_curvature and a gaussian_curvature. Angles are in "
                       "radians."},
-             [SELECT_ATTRIBUTE] = {.name = "attribute",
-                                   .type = HE_PARAM_TEXT,
-                                   .with = HE_WITH(HE_BY_ATTRIBUTE),
-                                   .needed = HE_WITH(HE_BY_ATTRIBUTE),
-                                   .doc = "The name of an attribute of the elements. A bool counts "
-                                          "as 0 or 1, a label as its index."},
+             [SELECT_ATTRIBUTE] =
+                 {.name = "attribute",
+                  .type = HE_PARAM_TEXT,
+                  .with = HE_WITH(HE_BY_ATTRIBUTE),
+                  .needed = HE_WITH(HE_BY_ATTRIBUTE),
+                  .doc = "The name of an attribute of the elements, or `position` for "
+                         "vertices. A bool counts "
+                         "as 0 or 1, a label as its index."},
              [SELECT_COMPONENT] = {.name = "component",
                                    .type = HE_PARAM_NUMBER,
                                    .flags = HE_RANGE | HE_WHOLE,
@@ -395,14 +397,15 @@ const he_op he_select_rows[] = {
                                               "How many edges are marked as feature edges "
                                               "afterwards; 0 if features is ignore."},
                     [SEGMENT_OUT_DEVIATION] =
-                        {"deviation", HE_RESULT_NUMBER, HE_FACE,
-                         "Only for planes: how far the patches are from flat, as the root mean "
-                         "square, weighted by "
-                         "area, of the distance between the unit normals of a face and of its "
-                         "patch."}},
+                        {
+                            "deviation", HE_RESULT_NUMBER, HE_FACE,
+                            "Only for planes: how far the patches are from flat, as the root mean "
+                            "square, weighted by "
+                            "area, of the distance between the unit normals of a face and of its "
+                            "patch."}},
         .refusals = {HE_BAD_VALUE, HE_ATTRIBUTE_CLASH},
         .change = {0, 0, 0},
-        .pace = 3,
+        .pace = 2,
         .run = run_segment,
     },
     {.name = NULL},

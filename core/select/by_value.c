@@ -270,7 +270,12 @@ he_status he_pick_attribute(const he_mesh *m, const he_select_rule *rule, he_set
     if (status != HE_OK) {
         return status;
     }
+    he_column positions;
     const he_column *column = he_mesh_find_column(m, rule->of, rule->attribute);
+    if (rule->of == HE_VERTEX && strcmp(rule->attribute, "position") == 0) {
+        he_mesh_position_column(m, &positions);
+        column = &positions;
+    }
     if (column == NULL) {
         return he_fail_plain(err, HE_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.80s\"", kinds,
                              rule->attribute);

@@ -17,7 +17,8 @@
  *                normal of a vertex is the mean of the normals of its faces, weighted by angles;
  *                that of an edge is the mean of those of its two faces.
  *   measure      Elements of which a measure is from `from` to `to`, both included.
- *   attribute    Elements of which a component of an attribute is from `from` to `to`.
+ *   attribute    Elements of which a component of an attribute, or of the "position" of vertices,
+ *                is from `from` to `to`.
  *   grow         The seeds, and all elements that can be reached from them in `steps` steps. A step
  *                leads from a vertex to the other end of one of its edges, from an edge or face to
  *                one with which it shares a vertex.

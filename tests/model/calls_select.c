@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const char *const names[] = {"selected", "locked", "part", "feature"};
-static const char *const numbers[] = {"number", "selected", "patch", "locked"};
+static const char *const numbers[] = {"number", "selected", "patch", "locked", "position"};
 static const char *const measures[] = {
     "area",           "length",       "dihedral",       "degree",
     "smallest_angle", "angle_defect", "mean_curvature", "gaussian_curvature",
@@ -260,9 +260,22 @@ static uint64_t check_measure(const or_rule *rule)
     return OR_BIT(HE_BAD_VALUE);
 }
 
+/* Finds the attribute in which a call looks for values; `own` holds that of positions. */
+static const he_column *values_of(const md_call *c, const or_rule *rule, const he_mesh *m,
+                                  he_column *own)
+{
+    const char *name = md_get(c, "attribute")->text;
+    if (rule->of == HE_VERTEX && strcmp(name, "position") == 0) {
+        he_mesh_position_column(m, own);
+        return own;
+    }
+    return he_mesh_find_column(m, rule->of, name);
+}
+
 static uint64_t check_attribute(const md_call *c, const or_rule *rule, const he_mesh *m)
 {
-    const he_column *column = he_mesh_find_column(m, rule->of, md_get(c, "attribute")->text);
+    he_column own;
+    const he_column *column = values_of(c, rule, m, &own);
     if (column == NULL) {
         return OR_BIT(HE_NO_SUCH_ATTRIBUTE);
     }
@@ -396,7 +409,8 @@ uint64_t md_select_foresee(const md_call *c, or_mesh *o, const he_mesh *m,
     }
     const uint32_t rows = he_mesh_issued(m, rule.of);
     if (is_by(c, "attribute")) {
-        const he_column *column = he_mesh_find_column(m, rule.of, md_get(c, "attribute")->text);
+        he_column own;
+        const he_column *column = values_of(c, &rule, m, &own);
         for (uint32_t id = 0; id < rows; id++) {
             values[id] = number_in(column, id, (size_t)md_get(c, "component")->number);
         }
