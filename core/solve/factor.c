@@ -1,16 +1,14 @@
 #include "solve/factor.h"
 
-#include "solve/dense.h"
-#include "solve/factor_pattern.h"
+#include "solve/factor_values.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
-struct he_factor {
-    he_pattern pattern;
-    double *values;
-    size_t most_below; /* of a supernode */
-};
+/* A pivot that is smaller than this part of the matrix's diagonal entry is rounding alone: the
+ * matrix is then singular as far as doubles can tell. */
+static const double LEAST_PIVOT = 16 * DBL_EPSILON;
 
 void he_factor_free(he_factor *factor)
 {
@@ -42,7 +40,8 @@ typedef struct scratch {
     uint32_t *place; /* of a row in the dense matrix of the present supernode */
     uint32_t *head;  /* the first supernode in the list of a supernode; UINT32_MAX: none */
     uint32_t *next;
-    uint32_t *used; /* rows below a supernode that earlier supernodes of its lists have had */
+    uint32_t *used;   /* rows below a supernode that earlier supernodes of its lists have had */
+    double *diagonal; /* of the matrix, for the columns of the present supernode */
     double *product;
     size_t room; /* of product */
 } scratch;
@@ -53,6 +52,7 @@ static void clear_scratch(scratch *w)
     he_mem_free(w->head);
     he_mem_free(w->next);
     he_mem_free(w->used);
+    he_mem_free(w->diagonal);
     he_mem_free(w->product);
 }
 
@@ -62,19 +62,14 @@ static he_status make_scratch(const he_pattern *s, scratch *w, he_error *err)
     *w = (scratch){.place = he_mem_array(NULL, room, sizeof(uint32_t)),
                    .head = he_mem_array(NULL, room, sizeof(uint32_t)),
                    .next = he_mem_array(NULL, room, sizeof(uint32_t)),
-                   .used = he_mem_zero(room, sizeof(uint32_t))};
-    if (w->place == NULL || w->head == NULL || w->next == NULL || w->used == NULL) {
+                   .used = he_mem_zero(room, sizeof(uint32_t)),
+                   .diagonal = he_mem_array(NULL, room, sizeof(double))};
+    if (w->place == NULL || w->head == NULL || w->next == NULL || w->used == NULL ||
+        w->diagonal == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to factor a matrix of %u rows", s->n);
     }
     memset(w->head, 0xFF, room * sizeof *w->head);
     return HE_OK;
-}
-
-static he_panel dense_of(const he_factor *f, uint32_t s)
-{
-    const size_t columns = he_pattern_columns(&f->pattern, s);
-    const size_t rows = columns + he_pattern_below(&f->pattern, s);
-    return (he_panel){f->values + f->pattern.values[s], rows, columns, rows};
 }
 
 /* Writes the entries of the matrix into the dense matrix of supernode s, and notes the place of
@@ -84,7 +79,7 @@ static void fill(const he_sparse *a, he_factor *f, uint32_t s, scratch *w)
     const he_pattern *pattern = &f->pattern;
     const uint32_t begin = pattern->begins[s], end = pattern->begins[s + 1];
     const uint32_t *below = pattern->below + pattern->starts[s];
-    const he_panel d = dense_of(f, s);
+    const he_panel d = he_factor_dense(f, s);
     for (uint32_t j = begin; j < end; j++) {
         w->place[j] = j - begin;
     }
@@ -99,6 +94,7 @@ static void fill(const he_sparse *a, he_factor *f, uint32_t s, scratch *w)
                 d.at[w->place[row] + (j - begin) * d.step] = a->values[i];
             }
         }
+        w->diagonal[j - begin] = d.at[(j - begin) * (d.step + 1)];
     }
 }
 
@@ -110,7 +106,7 @@ static he_status subtract(he_factor *f, uint32_t s, uint32_t from, scratch *w, h
     const uint32_t begin = pattern->begins[s], end = pattern->begins[s + 1], used = w->used[from];
     const uint32_t *rows = pattern->below + pattern->starts[from] + used;
     const uint32_t count = he_pattern_below(pattern, from) - used;
-    const he_panel d = dense_of(f, s), source = dense_of(f, from);
+    const he_panel d = he_factor_dense(f, s), source = he_factor_dense(f, from);
     uint32_t columns = 0;
     while (columns < count && rows[columns] < end) {
         columns++;
@@ -165,8 +161,12 @@ static he_status factor_supernode(const he_sparse *a, he_factor *f, uint32_t s, 
         }
         enlist(&f->pattern, from, w);
     }
-    const he_panel d = dense_of(f, s);
-    const size_t bad = he_dense_factor(d);
+    const he_panel d = he_factor_dense(f, s);
+    size_t bad = he_dense_factor(d);
+    for (size_t j = 0; j < bad; j++) {
+        const double root = d.at[j * (d.step + 1)];
+        bad = root * root > LEAST_PIVOT * w->diagonal[j] ? bad : j;
+    }
     if (bad < d.columns) {
         return he_fail_plain(err, HE_BAD_VALUE, "the matrix is not positive definite at row %u",
                              f->pattern.order[f->pattern.begins[s] + bad]);
@@ -215,158 +215,4 @@ he_status he_factor_make(const he_sparse *a, he_progress *progress, he_factor **
     }
     *out = f;
     return HE_OK;
-}
-
-/* --- solutions --- */
-
-/* Replaces x, in the new numbering, by the solution of L y = x. `sums` has room for the rows below
- * a supernode. */
-static void solve_down(const he_factor *f, double *x, double *sums)
-{
-    const he_pattern *pattern = &f->pattern;
-    for (uint32_t s = 0; s < pattern->supernodes; s++) {
-        const he_panel d = dense_of(f, s);
-        const uint32_t *below = pattern->below + pattern->starts[s];
-        double *own = x + pattern->begins[s];
-        const size_t count = d.rows - d.columns;
-        memset(sums, 0, count * sizeof *sums);
-        for (size_t j = 0; j < d.columns; j++) {
-            const double *column = d.at + j * d.step;
-            const double value = own[j] /= column[j];
-            for (size_t i = j + 1; i < d.columns; i++) {
-                own[i] -= column[i] * value;
-            }
-            for (size_t i = 0; i < count; i++) {
-                sums[i] += column[d.columns + i] * value;
-            }
-        }
-        for (size_t i = 0; i < count; i++) {
-            x[below[i]] -= sums[i];
-        }
-    }
-}
-
-/* Replaces x by the solution of L' y = x. */
-static void solve_up(const he_factor *f, double *x, double *rest)
-{
-    const he_pattern *pattern = &f->pattern;
-    for (uint32_t s = pattern->supernodes; s-- > 0;) {
-        const he_panel d = dense_of(f, s);
-        const uint32_t *below = pattern->below + pattern->starts[s];
-        double *own = x + pattern->begins[s];
-        const size_t count = d.rows - d.columns;
-        for (size_t i = 0; i < count; i++) {
-            rest[i] = x[below[i]];
-        }
-        for (size_t j = d.columns; j-- > 0;) {
-            const double *column = d.at + j * d.step;
-            double value = own[j];
-            for (size_t i = 0; i < count; i++) {
-                value -= column[d.columns + i] * rest[i];
-            }
-            for (size_t i = j + 1; i < d.columns; i++) {
-                value -= column[i] * own[i];
-            }
-            own[j] = value / column[j];
-        }
-    }
-}
-
-/* Scratch memory of a solution: two vectors, and the rows below a supernode. */
-typedef struct vectors {
-    double *permuted, *left, *rows;
-} vectors;
-
-static void clear_vectors(vectors *v)
-{
-    he_mem_free(v->permuted);
-    he_mem_free(v->left);
-    he_mem_free(v->rows);
-}
-
-static he_status make_vectors(const he_factor *f, vectors *v, he_error *err)
-{
-    const size_t room = (size_t)f->pattern.n + 1;
-    *v = (vectors){.permuted = he_mem_array(NULL, room, sizeof(double)),
-                   .left = he_mem_array(NULL, room, sizeof(double)),
-                   .rows = he_mem_array(NULL, f->most_below + 1, sizeof(double))};
-    if (v->permuted == NULL || v->left == NULL || v->rows == NULL) {
-        clear_vectors(v);
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to solve for %u numbers", f->pattern.n);
-    }
-    return HE_OK;
-}
-
-/* Sets v->permuted to the solution for the right side `b`. */
-static void solve_one(const he_factor *f, const double *b, vectors *v)
-{
-    for (uint32_t i = 0; i < f->pattern.n; i++) {
-        v->permuted[i] = b[f->pattern.order[i]];
-    }
-    solve_down(f, v->permuted, v->rows);
-    solve_up(f, v->permuted, v->rows);
-}
-
-static double largest(const double *x, uint32_t n)
-{
-    double most = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        most = fabs(x[i]) > most ? fabs(x[i]) : most;
-    }
-    return most;
-}
-
-/* Sets v->left to b - A x. */
-static void leave(const he_sparse *a, const double *b, const double *x, double *left)
-{
-    he_sparse_multiply(a, x, left);
-    for (uint32_t i = 0; i < a->n; i++) {
-        left[i] = b[i] - left[i];
-    }
-}
-
-he_status he_factor_solve(const he_factor *factor, const he_sparse *a, he_right_sides sides,
-                          double *residual, he_error *err)
-{
-    const uint32_t n = factor->pattern.n;
-    vectors v;
-    he_status status = make_vectors(factor, &v, err);
-    if (status != HE_OK) {
-        return status;
-    }
-    double *copy = he_mem_array(NULL, (size_t)n + 1, sizeof *copy);
-    if (copy == NULL) {
-        clear_vectors(&v);
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to solve for %u numbers", n);
-    }
-    const double norm = he_sparse_norm(a);
-    double worst = 0;
-    for (uint32_t side = 0; side < sides.count && status == HE_OK; side++) {
-        double *solution = sides.solution + (size_t)side * n;
-        memcpy(copy, sides.right + (size_t)side * n, n * sizeof *copy); /* may be the solution */
-        solve_one(factor, copy, &v);
-        for (uint32_t i = 0; i < n; i++) {
-            solution[factor->pattern.order[i]] = v.permuted[i];
-        }
-        leave(a, copy, solution, v.left);
-        solve_one(factor, v.left, &v);
-        for (uint32_t i = 0; i < n; i++) {
-            solution[factor->pattern.order[i]] += v.permuted[i];
-        }
-        leave(a, copy, solution, v.left);
-        for (uint32_t i = 0; i < n && status == HE_OK; i++) {
-            if (!isfinite(solution[i])) {
-                status =
-                    he_fail_plain(err, HE_NOT_FINITE, "the solution is not finite at row %u", i);
-            }
-        }
-        const double scale = norm * largest(solution, n) + largest(copy, n);
-        worst = scale > 0 ? fmax(worst, largest(v.left, n) / scale) : worst;
-    }
-    if (residual != NULL) {
-        *residual = worst;
-    }
-    he_mem_free(copy);
-    clear_vectors(&v);
-    return status;
 }

@@ -15,7 +15,7 @@ typedef struct he_factor he_factor;
 
 /* Factors a matrix. The caller owns the factor. Takes the time and the memory of the entries of L:
  * for the surface of a mesh of n vertices about 30 n log2(n) / 10 entries.
- * Returns HE_BAD_VALUE if the matrix is not positive definite.
+ * Returns HE_BAD_VALUE if the matrix is not positive definite, or singular up to rounding.
  * Returns HE_LIMIT if L would be too large for its indices.
  * Returns HE_CANCELLED if the work was cancelled, and HE_NO_MEMORY. */
 HE_NODISCARD he_status he_factor_make(const he_sparse *a, he_progress *progress, he_factor **out,
@@ -34,10 +34,12 @@ typedef struct he_right_sides {
     uint32_t count;
 } he_right_sides;
 
-/* Solves A X = B. `a` is the matrix that was factored; each solution is improved once by solving
- * for what it leaves over. If `residual` is not NULL, it receives the largest of |A x - b| / (|A|
- * |x| + |b|) in the norm of the largest number. Returns HE_NOT_FINITE if a solution is not finite;
- * the solutions then have no meaning. Returns HE_NO_MEMORY. */
+/* Solves A X = B. `a` is the matrix that was factored; a solution whose error is larger
+ * than a few roundings is improved once, by solving for what it leaves over. Four sides take hardly
+ * longer than one, and a solution has the same bits whatever the other sides are. If `residual` is
+ * not NULL, it receives the largest of |A x - b| /
+ * (|A| |x| + |b|) in the norm of the largest number. Returns HE_NOT_FINITE if a solution is not
+ * finite; the solutions then have no meaning. Returns HE_NO_MEMORY. */
 HE_NODISCARD he_status he_factor_solve(const he_factor *factor, const he_sparse *a,
                                        he_right_sides sides, double *residual, he_error *err);
 

@@ -77,6 +77,49 @@ static he_status number_free(he_harmonic *h, const uint64_t *fixed, he_error *er
     return HE_OK;
 }
 
+/* Puts the vertices that an entry of the operator joins to vertex v on the stack, unless they are
+ * marked. */
+static void reach_neighbours(const he_sparse *m, uint32_t v, uint64_t *marked, uint32_t *stack,
+                             uint32_t *count)
+{
+    for (size_t i = m->starts[v]; i < m->starts[v + 1]; i++) {
+        const uint32_t other = m->rows[i];
+        if (m->values[i] != 0 && !he_bits_get(marked, other)) {
+            he_bits_set(marked, other);
+            stack[(*count)++] = other;
+        }
+    }
+}
+
+/* Checks that each free vertex is connected with a fixed one. */
+static he_status check_components(const he_sparse *m, const uint64_t *fixed, he_error *err)
+{
+    uint64_t *marked = he_bits_new((size_t)m->n + 1);
+    uint32_t *stack = he_mem_array(NULL, (size_t)m->n + 1, sizeof *stack), count = 0;
+    he_status status = HE_OK;
+    if (marked == NULL || stack == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a system of %u vertices", m->n);
+    }
+    for (uint32_t v = 0; v < m->n && status == HE_OK; v++) {
+        if (he_bits_get(fixed, v) && !he_bits_get(marked, v)) {
+            he_bits_set(marked, v);
+            stack[count++] = v;
+        }
+        while (count > 0) {
+            reach_neighbours(m, stack[--count], marked, stack, &count);
+        }
+    }
+    for (uint32_t v = 0; v < m->n && status == HE_OK; v++) {
+        if (!he_bits_get(marked, v)) {
+            status = he_fail(err, HE_BAD_VALUE, HE_VERTEX, v,
+                             "no vertex is fixed in the component of vertex %u", v);
+        }
+    }
+    he_mem_free(marked);
+    he_mem_free(stack);
+    return status;
+}
+
 he_status he_harmonic_make(const he_laplacian *l, unsigned k, const uint64_t *fixed,
                            he_progress *progress, he_harmonic **out, he_error *err)
 {
@@ -84,7 +127,10 @@ he_status he_harmonic_make(const he_laplacian *l, unsigned k, const uint64_t *fi
     if (h == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a system of equations");
     }
-    he_status status = make_power(l, k, &h->whole, progress, err);
+    he_status status = check_components(&l->matrix, fixed, err);
+    if (status == HE_OK) {
+        status = make_power(l, k, &h->whole, progress, err);
+    }
     if (status == HE_OK) {
         status = number_free(h, fixed, err);
     }

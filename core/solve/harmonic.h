@@ -14,10 +14,9 @@ typedef struct he_harmonic he_harmonic;
 
 /* Prepares the system of order `k`, 1 to 3. `fixed` is a bit set over the vertices of the operator;
  * vertices of mass 0 must be fixed. At least one vertex of each component must be fixed, or the
- * system has no single solution. The operator must not change or go away before the system is
- * freed. The caller owns the system; it can be solved often, for other fixed values.
- * Returns HE_BAD_VALUE if the system has no single solution, HE_LIMIT, HE_CANCELLED or
- * HE_NO_MEMORY. */
+ * system has no single solution. The system keeps nothing of the operator. The caller owns the
+ * system; it can be solved often, for other fixed values. Returns HE_BAD_VALUE if the system has no
+ * single solution, HE_LIMIT, HE_CANCELLED or HE_NO_MEMORY. */
 HE_NODISCARD he_status he_harmonic_make(const he_laplacian *l, unsigned k, const uint64_t *fixed,
                                         he_progress *progress, he_harmonic **out, he_error *err);
 void he_harmonic_free(he_harmonic *h);

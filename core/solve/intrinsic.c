@@ -31,58 +31,90 @@ static uint32_t prev_of(uint32_t side)
 
 /* --- neighbours --- */
 
-/* Lists the sides by their lower vertex: those of vertex v are lists[begins[v]] ...
- * lists[begins[v + 1] - 1]. */
-static void list_sides(const he_intrinsic *t, uint32_t vertices, uint32_t *begins, uint32_t *lists)
+/* The ends of a side's edge: LOW has the smaller number. */
+enum { LOW, HIGH };
+
+static uint32_t end_of(const he_intrinsic *t, uint32_t side, int which)
+{
+    const uint32_t a = t->corners[side], b = t->corners[next_of(side)];
+    return (a < b) == (which == LOW) ? a : b;
+}
+
+/* Where the sides of each vertex begin in a list that is sorted by vertices. */
+typedef struct places {
+    uint32_t vertices;
+    uint32_t *begins; /* vertices + 1 entries */
+} places;
+
+/* Sorts sides by one end of their edges; sides with the same end stay in their order. If `from` is
+ * NULL, they are in the order of their numbers. */
+static void sort_sides(const he_intrinsic *t, int by, places p, const uint32_t *from, uint32_t *to)
 {
     const uint32_t sides = 3 * t->triangles;
-    memset(begins, 0, ((size_t)vertices + 2) * sizeof *begins);
+    uint32_t *begins = p.begins;
+    memset(begins, 0, ((size_t)p.vertices + 1) * sizeof *begins);
     for (uint32_t s = 0; s < sides; s++) {
-        const uint32_t a = t->corners[s], b = t->corners[next_of(s)];
-        begins[(a < b ? a : b) + 2]++;
+        begins[end_of(t, s, by) + 1]++;
     }
-    for (uint32_t v = 0; v < vertices; v++) {
-        begins[v + 2] += begins[v + 1];
+    for (uint32_t v = 0; v < p.vertices; v++) {
+        begins[v + 1] += begins[v];
     }
-    for (uint32_t s = 0; s < sides; s++) {
-        const uint32_t a = t->corners[s], b = t->corners[next_of(s)];
-        lists[begins[(a < b ? a : b) + 1]++] = s;
+    for (uint32_t i = 0; i < sides; i++) {
+        const uint32_t s = from == NULL ? i : from[i];
+        to[begins[end_of(t, s, by)]++] = s;
     }
 }
 
-/* Pairs each side with the first side of the list that runs the other way and has no twin yet. */
-static void pair_sides(he_intrinsic *t, uint32_t vertices, const uint32_t *begins,
-                       const uint32_t *lists)
+/* Pairs the sides of one edge: the first that runs from its lower to its higher vertex with the
+ * first that runs the other way, the second with the second, and so on. */
+static void pair_edge(he_intrinsic *t, const uint32_t *sides, uint32_t count)
 {
-    memset(t->twins, 0xFF, 3 * (size_t)t->triangles * sizeof *t->twins);
-    for (uint32_t v = 0; v < vertices; v++) {
-        for (uint32_t i = begins[v]; i < begins[v + 1]; i++) {
-            const uint32_t s = lists[i];
-            for (uint32_t k = i + 1; k < begins[v + 1] && t->twins[s] == UINT32_MAX; k++) {
-                const uint32_t other = lists[k];
-                if (t->twins[other] == UINT32_MAX && t->corners[other] == t->corners[next_of(s)] &&
-                    t->corners[next_of(other)] == t->corners[s]) {
-                    t->twins[s] = other;
-                    t->twins[other] = s;
-                }
-            }
+    const uint32_t low = end_of(t, sides[0], LOW);
+    for (uint32_t up = 0, down = 0;; up++, down++) {
+        while (up < count && t->corners[sides[up]] != low) {
+            up++;
         }
+        while (down < count && t->corners[sides[down]] == low) {
+            down++;
+        }
+        if (up >= count || down >= count) {
+            return;
+        }
+        t->twins[sides[up]] = sides[down];
+        t->twins[sides[down]] = sides[up];
+    }
+}
+
+/* Pairs the sides of each edge. They follow each other in `lists`. */
+static void pair_sides(he_intrinsic *t, const uint32_t *lists)
+{
+    const uint32_t sides = 3 * t->triangles;
+    memset(t->twins, 0xFF, (size_t)sides * sizeof *t->twins);
+    for (uint32_t from = 0, to; from < sides; from = to) {
+        const uint32_t low = end_of(t, lists[from], LOW), high = end_of(t, lists[from], HIGH);
+        for (to = from + 1;
+             to < sides && end_of(t, lists[to], LOW) == low && end_of(t, lists[to], HIGH) == high;
+             to++) {
+        }
+        pair_edge(t, lists + from, to - from);
     }
 }
 
 static he_status find_twins(he_intrinsic *t, uint32_t vertices, he_error *err)
 {
-    uint32_t *begins = he_mem_array(NULL, (size_t)vertices + 2, sizeof *begins);
+    const places p = {vertices, he_mem_array(NULL, (size_t)vertices + 1, sizeof *p.begins)};
     uint32_t *lists = he_mem_array(NULL, 3 * (size_t)t->triangles + 1, sizeof *lists);
     he_status status = HE_OK;
-    if (begins == NULL || lists == NULL) {
+    if (p.begins == NULL || lists == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the sides of %u triangles",
                                t->triangles);
     } else {
-        list_sides(t, vertices, begins, lists);
-        pair_sides(t, vertices, begins, lists);
+        /* The array of the twins holds the first order until it is filled. */
+        sort_sides(t, HIGH, p, NULL, t->twins);
+        sort_sides(t, LOW, p, t->twins, lists);
+        pair_sides(t, lists);
     }
-    he_mem_free(begins);
+    he_mem_free(p.begins);
     he_mem_free(lists);
     return status;
 }

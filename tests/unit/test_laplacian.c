@@ -143,6 +143,98 @@ static void flips_keep_the_surface_and_make_it_delaunay(void **state)
     assert_true(flips > 1000);
 }
 
+/* Returns true if no point lies inside the circle of three points that turn counterclockwise. */
+static bool is_delaunay(const he_vec3 *points, uint32_t i, uint32_t j, uint32_t k)
+{
+    const he_vec3 a = points[i], b = points[j], c = points[k];
+    if ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) <= 1e-9) {
+        return false;
+    }
+    for (uint32_t v = 0; v < POINTS; v++) {
+        const double ax = a.x - points[v].x, ay = a.y - points[v].y;
+        const double bx = b.x - points[v].x, by = b.y - points[v].y;
+        const double cx = c.x - points[v].x, cy = c.y - points[v].y;
+        const double inside = (ax * ax + ay * ay) * (bx * cy - by * cx) -
+                              (bx * bx + by * by) * (ax * cy - ay * cx) +
+                              (cx * cx + cy * cy) * (ax * by - ay * bx);
+        if (v != i && v != j && v != k && inside > 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A sheet of which the vertices inside are moved, so that its outline stays a square. */
+static sheet square_sheet(md_random *r)
+{
+    sheet s = flat_sheet(), moved = random_sheet(r, true, 1);
+    for (uint32_t v = 0; v < POINTS; v++) {
+        const uint32_t x = v % SIDE, y = v / SIDE;
+        if (x > 0 && y > 0 && x + 1 < SIDE && y + 1 < SIDE) {
+            s.points[v] = moved.points[v];
+        }
+    }
+    return s;
+}
+
+static void flips_make_the_delaunay_triangulation_of_a_plane(void **state)
+{
+    (void)state;
+    md_random r = {seed_of_run()};
+    for (int round = 0; round < 5; round++) {
+        const sheet s = square_sheet(&r);
+        const he_surface surface = surface_of(&s);
+        uint32_t found = 0;
+        he_intrinsic t;
+        assert_int_equal(he_intrinsic_make(&surface, &t, NULL), HE_OK);
+        assert_int_equal(he_intrinsic_flip(&t, NULL, NULL), HE_OK);
+        for (uint32_t i = 0; i < t.triangles; i++) {
+            const uint32_t *c = t.corners + 3 * (size_t)i;
+            assert_true(is_delaunay(s.points, c[0], c[1], c[2]));
+        }
+        /* every triangle with an empty circle is there, because there are as many */
+        for (uint32_t i = 0; i < POINTS; i++) {
+            for (uint32_t j = i + 1; j < POINTS; j++) {
+                for (uint32_t k = i + 1; k < POINTS; k++) {
+                    found += is_delaunay(s.points, i, j, k);
+                }
+            }
+        }
+        assert_int_equal(found, t.triangles);
+        he_intrinsic_clear(&t);
+    }
+}
+
+/* A disc of very many triangles around vertex 0, in random order. */
+static void sides_around_a_hub_are_paired(void **state)
+{
+    (void)state;
+    enum { RIM = 200000 };
+    md_random r = {seed_of_run()};
+    uint32_t *corners = calloc((size_t)3 * RIM, sizeof *corners);
+    he_vec3 *points = calloc(RIM + 1, sizeof *points);
+    assert_true(corners != NULL && points != NULL);
+    for (uint32_t i = 0; i < RIM; i++) {
+        const double angle = 6.283185307179586 * i / RIM;
+        points[i + 1] = (he_vec3){cos(angle), sin(angle), 0};
+        const uint32_t k = md_below(&r, i + 1);
+        memcpy(corners + 3 * (size_t)i, corners + 3 * (size_t)k, 3 * sizeof *corners);
+        corners[3 * (size_t)k + 1] = i + 1;
+        corners[3 * (size_t)k + 2] = (i + 1) % RIM + 1;
+    }
+    const he_surface surface = {RIM + 1, RIM, corners, points};
+    uint32_t borders = 0;
+    he_intrinsic t;
+    assert_int_equal(he_intrinsic_make(&surface, &t, NULL), HE_OK);
+    for (uint32_t s = 0; s < 3 * t.triangles; s++) {
+        borders += t.twins[s] == UINT32_MAX;
+    }
+    assert_int_equal(borders, RIM);
+    he_intrinsic_clear(&t);
+    free(corners);
+    free(points);
+}
+
 static void assert_sound(const he_surface *surface)
 {
     he_laplacian l;
@@ -214,18 +306,34 @@ static void what_is_wrong_is_refused(void **state)
     assert_int_equal(he_laplacian_make(&wide, NULL, &l, NULL), HE_NOT_FINITE);
     assert_int_equal(he_laplacian_make(&heavy, NULL, &l, NULL), HE_NOT_FINITE);
     assert_int_equal(he_laplacian_make(&wrong, NULL, &l, NULL), HE_BAD_INDEX);
-    /* a system in which nothing is fixed has no single solution */
+}
+
+/* Two sheets, of which only the first has fixed vertices. */
+static void a_component_without_fixed_vertices_is_refused(void **state)
+{
+    (void)state;
     const sheet s = flat_sheet();
-    const he_surface surface = surface_of(&s);
-    const uint64_t fixed[(POINTS + 63) / 64] = {0};
+    static he_vec3 points[2 * POINTS];
+    static uint32_t corners[6 * TRIANGLES];
+    for (uint32_t v = 0; v < 2 * POINTS; v++) {
+        points[v] = s.points[v % POINTS];
+    }
+    for (uint32_t c = 0; c < 6 * TRIANGLES; c++) {
+        corners[c] = s.corners[c % (3 * TRIANGLES)] + (c < 3 * TRIANGLES ? 0 : POINTS);
+    }
+    const he_surface surface = {2 * POINTS, 2 * TRIANGLES, corners, points};
+    uint64_t fixed[(2 * POINTS + 63) / 64] = {0};
+    he_laplacian l;
+    he_error err;
     he_harmonic *h = NULL;
     assert_int_equal(he_laplacian_make(&surface, NULL, &l, NULL), HE_OK);
-    he_status status = he_harmonic_make(&l, 1, fixed, NULL, &h, NULL);
-    if (status == HE_OK) {
-        /* rounding may leave a tiny pivot, with which the solution is not unique but finite */
-        he_harmonic_free(h);
-    } else {
-        assert_int_equal(status, HE_BAD_VALUE);
+    for (unsigned k = 1; k <= 3; k++) {
+        fixed[0] = 0;
+        assert_int_equal(he_harmonic_make(&l, k, fixed, NULL, &h, &err), HE_BAD_VALUE);
+        assert_true(err.kind == HE_VERTEX && err.id == 0);
+        fixed[0] = 1;
+        assert_int_equal(he_harmonic_make(&l, k, fixed, NULL, &h, &err), HE_BAD_VALUE);
+        assert_true(err.kind == HE_VERTEX && err.id == POINTS);
     }
     he_laplacian_clear(&l);
 }
@@ -316,8 +424,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_grid_has_the_five_point_operator),
         cmocka_unit_test(flips_keep_the_surface_and_make_it_delaunay),
+        cmocka_unit_test(flips_make_the_delaunay_triangulation_of_a_plane),
+        cmocka_unit_test(sides_around_a_hub_are_paired),
         cmocka_unit_test(slivers_and_far_places_make_no_nan),
         cmocka_unit_test(what_is_wrong_is_refused),
+        cmocka_unit_test(a_component_without_fixed_vertices_is_refused),
         cmocka_unit_test(linear_functions_are_harmonic_in_a_plane),
         cmocka_unit_test(every_allocation_may_fail),
     };
