@@ -433,7 +433,7 @@ targets: $(FUZZERS)
 BENCH      ?=
 RUNS       ?= 5
 SCALE      ?= 1
-BENCH_PEERS := openmesh cgal meshoptimizer
+BENCH_PEERS := openmesh cgal meshoptimizer eigen
 PEER_FLAGS := -std=c++17 -O3 -fno-math-errno -DNDEBUG
 SIDES      := $(addprefix $(BUILD)/tests/bench/sides/,ours $(BENCH_PEERS))
 LIBS_openmesh      := -lOpenMeshTools -lOpenMeshCore
@@ -465,7 +465,7 @@ $(SPACE): $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(call object,tes
 
 -include $(patsubst %.cc,$(BUILD)/obj/%.d,$(PEER_CC))
 
-bench: $(SIDES) | $(INSTALLED) ## the kernel beside OpenMesh and CGAL; BENCH=build,files for parts
+bench: $(SIDES) | $(INSTALLED) ## the kernel beside OpenMesh, CGAL and Eigen; BENCH=build,files for parts
 	@node tests/bench/compare.mjs --programs $(BUILD)/tests/bench/sides --only "$(BENCH)" \
 	    --runs $(RUNS) --scale $(SCALE) --flags="$(filter -O% -f% -m%,$(CFLAGS))" \
 	    --peer-flags="$(PEER_FLAGS)"

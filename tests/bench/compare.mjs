@@ -37,6 +37,7 @@ const names = {
     openmesh: 'OpenMesh',
     cgal: 'CGAL',
     meshoptimizer: 'meshoptimizer',
+    eigen: 'Eigen',
     node: 'node',
     alone: 'one thread',
     plain: 'no list',
@@ -47,6 +48,7 @@ const packages = {
     openmesh: 'libopenmesh-dev',
     cgal: 'libcgal-dev',
     meshoptimizer: 'libmeshoptimizer-dev',
+    eigen: 'libeigen3-dev',
 };
 const problems = [];
 
@@ -213,7 +215,7 @@ function report(row, part, figures) {
         Object.entries(figures).map(([name, list]) => [name, median(list)]),
     );
     const { ratio: reached, target, says, near } = verdict(row, part, medians);
-    const other = ['meshoptimizer', 'node', ...own]
+    const other = ['meshoptimizer', 'eigen', 'node', ...own]
         .filter((name) => name in medians)
         .map((name) => `${names[name]} ${shown(medians[name])}`)
         .join();

@@ -20,7 +20,7 @@ const root = here('../../README.md');
 const sections = {
     bench: {
         about:
-            'The kernel beside OpenMesh, CGAL and meshoptimizer, all from Debian: the same inputs, in ' +
+            'The kernel beside OpenMesh, CGAL, meshoptimizer and Eigen, all from Debian: the same inputs, in ' +
             'turn, with results that must agree. A row that falls short of its target says why.',
         picture: ['growth.svg', 'Nanoseconds an element on meshes of 10 thousand to 10 million faces'],
     },

@@ -27,8 +27,8 @@
 //              has left in the folder; `of` says which of its numbers
 
 import { remesh } from './rows_remesh.mjs';
-
 import { segment } from './rows_segment.mjs';
+import { solve } from './rows_solve.mjs';
 
 const M = 1e6;
 const rate = (unit, per = M) => ({ unit, per });
@@ -503,4 +503,5 @@ export const parts = [
         ],
     },
     ...segment,
+    ...solve,
 ];
