@@ -2,11 +2,14 @@
 
 #include "remesh/remesh.h"
 
-#include <math.h>
+#include <float.h>
 
 enum {
     REMESH_EDGE_LENGTH,
     REMESH_TARGET_FACES,
+    REMESH_ERROR,
+    REMESH_MIN_LENGTH,
+    REMESH_MAX_LENGTH,
     REMESH_STEPS,
     REMESH_CREASE,
     REMESH_KEEP_BOUNDARY,
@@ -28,11 +31,14 @@ enum {
 static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     const he_arg *faces = &args[REMESH_FACES];
-    bool by_length = args[REMESH_EDGE_LENGTH].given;
-    he_remesh_options options = {.edge_length = by_length ? args[REMESH_EDGE_LENGTH].number : 0,
-                                 .by_length = by_length,
-                                 .target_faces =
-                                     by_length ? 0 : (uint32_t)args[REMESH_TARGET_FACES].number,
+    he_remesh_options options = {.by = args[REMESH_ERROR].given          ? HE_REMESH_BY_ERROR
+                                       : args[REMESH_TARGET_FACES].given ? HE_REMESH_BY_FACES
+                                                                         : HE_REMESH_BY_LENGTH,
+                                 .edge_length = args[REMESH_EDGE_LENGTH].number,
+                                 .target_faces = (uint32_t)args[REMESH_TARGET_FACES].number,
+                                 .error = args[REMESH_ERROR].number,
+                                 .min_length = args[REMESH_MIN_LENGTH].number,
+                                 .max_length = args[REMESH_MAX_LENGTH].number,
                                  .steps = (unsigned)args[REMESH_STEPS].number,
                                  .crease = args[REMESH_CREASE].number,
                                  .fixed_boundary = args[REMESH_KEEP_BOUNDARY].flag,
@@ -61,7 +67,7 @@ const he_op he_remesh_rows[] = {
         .doc = "Replace triangles by others of even size and shape that cover the same surface. "
                "Boundaries, edges whose bool attribute `feature` is true, creases and borders of "
                "materials keep their shape: vertices move only along them, and their corners stay. "
-               "What is `locked` does not change. A million faces take about 4 s.",
+               "What is `locked` does not change. A million faces take about 6 s.",
         .size = HE_OP_WHOLE,
         .params =
             {[REMESH_EDGE_LENGTH] = {.name = "edge_length",
@@ -70,7 +76,7 @@ const he_op he_remesh_rows[] = {
                                      .group = 's',
                                      .fallback = 1,
                                      .doc = "The wanted length of edges, above 0. The mean length "
-                                            "becomes about this."},
+                                            "becomes a little less."},
              [REMESH_TARGET_FACES] = {.name = "target_faces",
                                       .type = HE_PARAM_NUMBER,
                                       .flags = HE_REQUIRED | HE_RANGE | HE_WHOLE,
@@ -80,6 +86,28 @@ const he_op he_remesh_rows[] = {
                                       .doc =
                                           "The wanted number of faces, which is met within a few "
                                           "percent."},
+             [REMESH_ERROR] = {.name = "error",
+                               .type = HE_PARAM_NUMBER,
+                               .flags = HE_REQUIRED,
+                               .group = 's',
+                               .fallback = 0.01,
+                               .doc =
+                                   "Edges become shorter where the surface is more curved: about "
+                                   "how far the triangles may be from a smooth surface, above "
+                                   "0."},
+             [REMESH_MIN_LENGTH] =
+                 {.name = "min_length",
+                  .type = HE_PARAM_NUMBER,
+                  .flags = HE_RANGE | HE_DERIVED,
+                  .max = DBL_MAX,
+                  .doc = "With error: edges need not be shorter than this. Default: the error."},
+             [REMESH_MAX_LENGTH] =
+                 {.name = "max_length",
+                  .type = HE_PARAM_NUMBER,
+                  .flags = HE_RANGE | HE_DERIVED,
+                  .max = DBL_MAX,
+                  .doc = "With error: edges may not be longer than this. Default: a tenth of the "
+                         "largest extent of the faces."},
              [REMESH_STEPS] = {.name = "steps",
                                .type = HE_PARAM_NUMBER,
                                .flags = HE_RANGE | HE_WHOLE,
@@ -113,7 +141,8 @@ const he_op he_remesh_rows[] = {
         .results =
             {[REMESH_OUT_STOP] = {.name = "stop",
                                   .type = HE_RESULT_CHOICE,
-                                  .choices = he_remesh_stop_names,
+                                  .choices =
+                                      he_remesh_stop_names,
                                   .doc = "Why it stopped: the last step changed almost nothing, or "
                                          "all steps were done."},
              [REMESH_OUT_FACES_BEFORE] = {"faces_before", HE_RESULT_NUMBER, HE_FACE,

@@ -142,14 +142,16 @@ void he_ground_walk(const he_ground *g, he_vec3 place, uint32_t from, he_ground_
     }
 }
 
-he_status he_ground_copy(const he_net *n, he_ground *out, he_error *err)
+he_status he_ground_copy(const he_net *n, bool sizes, he_ground *out, he_error *err)
 {
     he_ground g = {.triangle_count = n->triangle_count, .vertex_count = n->vertex_count};
     g.triangles = he_mem_array(NULL, (size_t)n->triangle_count + 1, sizeof *g.triangles);
     g.place = he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *g.place);
     g.face = he_mem_array(NULL, (size_t)n->triangle_count + 1, sizeof *g.face);
     g.vertex = he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *g.vertex);
-    if (g.triangles == NULL || g.place == NULL || g.face == NULL || g.vertex == NULL) {
+    g.size = sizes ? he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *g.size) : NULL;
+    if (g.triangles == NULL || g.place == NULL || g.face == NULL || g.vertex == NULL ||
+        (sizes && g.size == NULL)) {
         he_ground_clear(&g);
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a copy of %u triangles",
                              n->triangle_count);
@@ -164,6 +166,9 @@ he_status he_ground_copy(const he_net *n, he_ground *out, he_error *err)
     for (uint32_t v = 0; v < n->vertex_count; v++) {
         g.place[v] = n->vertices[v].p;
         g.vertex[v] = n->vertex_id[v];
+        if (sizes) {
+            g.size[v] = n->vertices[v].size;
+        }
     }
     *out = g;
     return HE_OK;

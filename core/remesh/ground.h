@@ -16,8 +16,8 @@ typedef struct he_ground_triangle {
 
 typedef struct he_ground {
     he_ground_triangle *triangles;
-    he_vec3 *place;   /* position of each vertex, in coordinates of the net */
-    float *size;      /* the wanted length of edges at each vertex; NULL if it is `length` */
+    he_vec3 *place; /* position of each vertex, in coordinates of the net */
+    float *size; /* the wanted length of edges at each vertex; NULL if it is the same everywhere */
     uint32_t *face;   /* the face of the mesh that each triangle is */
     uint32_t *vertex; /* the vertex of the mesh that each vertex is */
     uint32_t triangle_count, vertex_count;
@@ -31,10 +31,17 @@ typedef struct he_ground_point {
     double square; /* squared distance */
 } he_ground_point;
 
-/* Copies the triangles of a net. The arrays `face` and `size` are left to the caller.
+/* Copies the triangles of a net, and the sizes of its vertices if `sizes` is true.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_ground_copy(const he_net *n, he_ground *out, he_error *err);
+HE_NODISCARD he_status he_ground_copy(const he_net *n, bool sizes, he_ground *out, he_error *err);
 void he_ground_clear(he_ground *g);
+/* Returns the wanted length at a point of the ground, which must have sizes. */
+static inline float he_ground_size(const he_ground *g, const he_ground_point *at)
+{
+    const uint32_t *v = g->triangles[at->triangle].v;
+    return (float)((double)g->size[v[0]] * at->weight[0] + (double)g->size[v[1]] * at->weight[1] +
+                   (double)g->size[v[2]] * at->weight[2]);
+}
 /* Finds the point of one triangle that is nearest to `place`. */
 void he_ground_nearest(const he_ground *g, he_vec3 place, uint32_t triangle, he_ground_point *out);
 /* Walks from triangle `from` to a triangle that is nearer to `place` than its neighbours, and finds

@@ -65,7 +65,7 @@ static he_status number_faces(const he_mesh *m, uint32_t *number, he_net *n, he_
     he_status status = HE_OK;
     uint32_t handled = 0;
     for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
-        status = he_progress_at(m->progress, f, m->c.faces.issued, err);
+        status = he_progress_at(m->progress, f + 1, m->c.faces.issued, err);
         if (number[f] == HE_DEAD) {
             number_face(f, number, n);
         }

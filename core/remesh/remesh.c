@@ -7,19 +7,52 @@
 #include "remesh/net_make.h"
 #include "remesh/net_write.h"
 #include "remesh/remeshing.h"
+#include "remesh/sizing.h"
 
 const char *const he_remesh_stop_names[HE_REMESH_STOP_COUNT + 1] = {"settled", "steps", NULL};
 
+static he_status require_positive(const char *name, double value, he_error *err)
+{
+    return value > 0 && isfinite(value)
+               ? HE_OK
+               : he_fail_plain(err, HE_BAD_VALUE, "%s must be above 0 and finite, not %g", name,
+                               value);
+}
+
 static he_status check(const he_mesh *m, const he_remesh_options *options, he_error *err)
 {
-    if (options->by_length && !(options->edge_length > 0 && isfinite(options->edge_length))) {
-        return he_fail_plain(err, HE_BAD_VALUE, "edge_length must be above 0 and finite, not %g",
-                             options->edge_length);
+    he_status status = HE_OK;
+    switch (options->by) {
+    case HE_REMESH_BY_LENGTH:
+        status = require_positive("edge_length", options->edge_length, err);
+        break;
+    case HE_REMESH_BY_FACES:
+        if (!(options->target_faces >= 1 && options->target_faces <= HE_REMESH_FACES)) {
+            return he_fail_plain(err, HE_BAD_VALUE, "target_faces must be from 1 to %u, not %u",
+                                 HE_REMESH_FACES, options->target_faces);
+        }
+        break;
+    case HE_REMESH_BY_ERROR:
+        status = require_positive("error", options->error, err);
+        break;
     }
-    if (!options->by_length &&
-        !(options->target_faces >= 1 && options->target_faces <= HE_REMESH_FACES)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "target_faces must be from 1 to %u, not %u",
-                             HE_REMESH_FACES, options->target_faces);
+    if (status == HE_OK && options->by != HE_REMESH_BY_ERROR &&
+        (options->min_length != 0 || options->max_length != 0)) {
+        status = he_fail_plain(err, HE_BAD_VALUE, "%s is only allowed together with error",
+                               options->min_length != 0 ? "min_length" : "max_length");
+    }
+    if (status == HE_OK && options->min_length != 0) {
+        status = require_positive("min_length", options->min_length, err);
+    }
+    if (status == HE_OK && options->max_length != 0) {
+        status = require_positive("max_length", options->max_length, err);
+    }
+    if (status == HE_OK && options->max_length != 0 && options->max_length < options->min_length) {
+        status = he_fail_plain(err, HE_BAD_VALUE, "max_length %g is less than min_length %g",
+                               options->max_length, options->min_length);
+    }
+    if (status != HE_OK) {
+        return status;
     }
     if (options->steps < 1 || options->steps > HE_REMESH_STEPS) {
         return he_fail_plain(err, HE_BAD_VALUE, "steps must be from 1 to %d, not %u",
@@ -38,21 +71,25 @@ static he_status check(const he_mesh *m, const he_remesh_options *options, he_er
  * as long as the mean of the edges that result, about 0.95. */
 static const double MEAN_AREA = 0.39;
 
-/* Estimates how many triangles with edges of a length are needed: so many as have the same area,
- * and for a triangle that is longer but much lower than the length, as many as fit along it. */
-static double estimate(const he_net *n, double length)
+/* Estimates how many triangles are needed if edges are `scale` times as long as wanted: so many as
+ * have the same area, and for a triangle that is longer but much lower than the length, as many as
+ * fit along it. */
+static double estimate(const he_net *n, double scale)
 {
-    double sum = 0, unit = MEAN_AREA * length * length;
+    double sum = 0;
     for (uint32_t t = 0; t < n->triangle_count; t++) {
         if (he_net_is_gone(n, t)) {
             continue;
         }
         const uint32_t *v = n->triangles[t].v;
-        he_vec3 a = he_net_place(n, v[0]), b = he_net_place(n, v[1]), c = he_net_place(n, v[2]);
-        double area = 0.5 * he_vec3_length(he_roundness_of(a, b, c).area);
-        double longest = sqrt(
-            fmax(he_remesh_square(a, b), fmax(he_remesh_square(b, c), he_remesh_square(c, a))));
-        sum += area / unit;
+        const he_net_vertex *p = &n->vertices[v[0]], *q = &n->vertices[v[1]];
+        const he_net_vertex *r = &n->vertices[v[2]];
+        double length = scale * (double)(p->size + q->size + r->size) / 3;
+        double area = 0.5 * he_vec3_length(he_roundness_of(p->p, q->p, r->p).area);
+        double longest =
+            sqrt(fmax(he_remesh_square(p->p, q->p),
+                      fmax(he_remesh_square(q->p, r->p), he_remesh_square(r->p, p->p))));
+        sum += area / (MEAN_AREA * length * length);
         if (longest > length && 2 * area < 0.5 * length * longest) {
             sum += longest / length;
         }
@@ -69,13 +106,21 @@ static double extent_of(const he_net *n)
     return 2 * most;
 }
 
+static void set_sizes(he_net *n, double length)
+{
+    for (uint32_t v = 0; v < n->vertex_count; v++) {
+        n->vertices[v].size = (float)length;
+    }
+}
+
 /* Finds the length with which about `target` triangles are needed, not below `least`. */
-static double length_for(const he_net *n, double target, double least)
+static double length_for(he_net *n, double target, double least)
 {
     double low = least, high = fmax(2 * extent_of(n), least);
     if (!(low > 0)) {
         return 1;
     }
+    set_sizes(n, 1);
     while (high > low * (1 + 1e-3)) {
         double middle = sqrt(low * high);
         if (estimate(n, middle) > target) {
@@ -87,47 +132,72 @@ static double length_for(const he_net *n, double target, double least)
     return high;
 }
 
-static he_status require_few(const he_net *n, const he_remesh_options *options, double length,
-                             he_error *err)
+static he_status require_few(const he_net *n, const he_remesh_options *options, he_error *err)
 {
-    double faces = estimate(n, length);
-    return faces <= HE_REMESH_FACES
-               ? HE_OK
-               : he_fail_plain(err, HE_LIMIT,
-                               "with edges of length %g there would be about %.3g faces; at most "
-                               "%u are allowed",
-                               options->edge_length, faces, HE_REMESH_FACES);
+    double faces = estimate(n, 1);
+    if (faces <= HE_REMESH_FACES) {
+        return HE_OK;
+    }
+    bool adaptive = options->by == HE_REMESH_BY_ERROR;
+    return he_fail_plain(err, HE_LIMIT,
+                         "with %s %g there would be about %.3g faces; at most %u are allowed",
+                         adaptive ? "error" : "edges of length",
+                         adaptive ? options->error : options->edge_length, faces, HE_REMESH_FACES);
 }
 
 /* Lengths in coordinates of the net are at most this, so that a float can hold their squares. */
 static const double MOST_LENGTH = 1e15;
 
-/* Finds the wanted length in coordinates of the net. */
-static he_status find_length(const he_net *n, const he_remesh_options *options, double *out,
-                             he_error *err)
+/* Converts a length to coordinates of the net, and refuses one that is too small. */
+static he_status convert(const he_net *n, const char *name, double length, double *out,
+                         he_error *err)
 {
     double least = HE_REMESH_LEAST * extent_of(n);
-    if (!options->by_length) {
-        *out = length_for(n, options->target_faces, least);
-        return HE_OK;
-    }
-    double length = fmin(ldexp(options->edge_length, -n->exponent), MOST_LENGTH);
-    if (length < least) {
-        return he_fail_plain(err, HE_BAD_VALUE,
-                             "edge_length %g is too small for faces in a box of extent %g: the "
-                             "least is %g",
-                             options->edge_length, ldexp(extent_of(n), n->exponent),
-                             ldexp(least, n->exponent));
-    }
-    *out = length;
-    return HE_OK;
+    *out = fmin(ldexp(length, -n->exponent), MOST_LENGTH);
+    return *out >= least
+               ? HE_OK
+               : he_fail_plain(err, HE_BAD_VALUE,
+                               "%s %g is too small for faces in a box of extent %g: the least is "
+                               "%g",
+                               name, length, ldexp(extent_of(n), n->exponent),
+                               ldexp(least, n->exponent));
 }
 
-static void set_sizes(he_net *n, double length)
+/* Finds sizes that depend on the curvature. */
+static he_status find_sizes(he_net *n, const he_remesh_options *options, he_progress *progress,
+                            he_error *err)
 {
-    for (uint32_t v = 0; v < n->vertex_count; v++) {
-        n->vertices[v].size = (float)length;
+    he_sizing s = {.most = extent_of(n) * HE_REMESH_MOST_LENGTH};
+    he_status status = convert(n, "error", options->error, &s.error, err);
+    s.least = fmin(s.error, s.most);
+    if (status == HE_OK && options->min_length > 0) {
+        status = convert(n, "min_length", options->min_length, &s.least, err);
     }
+    if (status == HE_OK && options->max_length > 0) {
+        status = convert(n, "max_length", options->max_length, &s.most, err);
+    }
+    s.most = fmax(s.most, s.least);
+    return status == HE_OK ? he_sizing_find(n, &s, progress, err) : status;
+}
+
+/* Sets the wanted length at each vertex; *length is the length if it is the same everywhere. */
+static he_status find_lengths(he_net *n, const he_remesh_options *options, he_progress *progress,
+                              double *length, he_error *err)
+{
+    he_status status = HE_OK;
+    *length = 0;
+    switch (options->by) {
+    case HE_REMESH_BY_LENGTH:
+        status = convert(n, "edge_length", options->edge_length, length, err);
+        break;
+    case HE_REMESH_BY_FACES:
+        *length = length_for(n, options->target_faces, HE_REMESH_LEAST * extent_of(n));
+        break;
+    case HE_REMESH_BY_ERROR:
+        return find_sizes(n, options, progress, err);
+    }
+    set_sizes(n, *length);
+    return status;
 }
 
 /* A step has changed almost nothing if it made fewer splits, collapses and flips than this fraction
@@ -199,12 +269,11 @@ static he_status run_steps(he_remeshing *r, const he_remesh_options *options, do
 {
     const double first = length;
     *stop = HE_REMESH_DONE;
-    set_sizes(&r->net, length);
     /* Short edges are collapsed before the first split: otherwise long edges beside them would be
      * cut into more pieces than are needed. */
     he_status status = he_remesh_collapse(r, true, err);
-    if (status == HE_OK && options->by_length) {
-        status = require_few(&r->net, options, length, err);
+    if (status == HE_OK && options->by != HE_REMESH_BY_FACES) {
+        status = require_few(&r->net, options, err);
     }
     for (unsigned i = 0; i < options->steps && status == HE_OK; i++) {
         double to = PREPARED + (STEPPED - PREPARED) * (i + 1) / options->steps;
@@ -215,7 +284,7 @@ static he_status run_steps(he_remeshing *r, const he_remesh_options *options, do
         if (status == HE_OK) {
             status = step(r, i == 0, err);
         }
-        if (status == HE_OK && !options->by_length) {
+        if (status == HE_OK && options->by == HE_REMESH_BY_FACES) {
             double wrong = sqrt((double)r->net.live_triangles / options->target_faces);
             length = fmin(fmax(length * wrong, first / MOST_CHANGE), first * MOST_CHANGE);
             set_sizes(&r->net, length);
@@ -243,11 +312,11 @@ static he_status compute(const he_mesh *m, const he_remesh_options *options, he_
         status = he_net_make(m, &choice, &r->net, err);
     }
     if (status == HE_OK) {
-        status = find_length(&r->net, options, &length, err);
+        status = find_lengths(&r->net, options, r->progress, &length, err);
     }
     if (status == HE_OK) {
         r->net.most_triangles = HE_REMESH_FACES;
-        status = he_ground_copy(&r->net, &r->ground, err);
+        status = he_ground_copy(&r->net, options->by == HE_REMESH_BY_ERROR, &r->ground, err);
     }
     return status == HE_OK ? run_steps(r, options, length, stop, err) : status;
 }

@@ -8,7 +8,8 @@
  *     moves each vertex along the surface towards the middle of its faces, and back onto the
  *     surface that was given.
  *
- * At last edges are flipped so that angles become even. An edge is too long or too short if its
+ * At last edges are flipped, and the corners of the worst triangles moved, so that angles become
+ * even. An edge is too long or too short if its
  * length is above 1.19 or below 0.75 times the wanted length.
  *
  * WHAT STAYS. Vertices never leave these LINES, along which they may move:
@@ -52,10 +53,25 @@ enum { HE_REMESH_STEPS = 100, HE_REMESH_STEPS_USUAL = 6 };
  * not decide about prisms of nine sides. */
 #define HE_REMESH_CREASE 0.7
 
+/* What decides about the length of edges. */
+typedef enum he_remesh_by {
+    HE_REMESH_BY_LENGTH, /* one length for all edges */
+    HE_REMESH_BY_FACES,  /* the length with which there are so many faces */
+    HE_REMESH_BY_ERROR   /* lengths that depend on the curvature (sizing.h) */
+} he_remesh_by;
+
+/* If lengths depend on the curvature, they are at most this fraction of the largest extent of the
+ * box around the faces, if `max_length` is not given. */
+#define HE_REMESH_MOST_LENGTH 0.1
+
 typedef struct he_remesh_options {
-    bool by_length;        /* a length of edges is wanted, not a number of faces */
-    double edge_length;    /* the wanted length, above 0 */
-    uint32_t target_faces; /* the wanted number of faces, from 1 to HE_REMESH_FACES */
+    he_remesh_by by;
+    double edge_length;    /* by length: the wanted length, above 0 */
+    uint32_t target_faces; /* by faces: the wanted number of faces, from 1 to HE_REMESH_FACES */
+    /* By error: about how far triangles may be from a smooth surface through the vertices, above 0;
+     * and the least and greatest wanted length, or 0 for the usual ones: the error, and
+     * HE_REMESH_MOST_LENGTH. */
+    double error, min_length, max_length;
     unsigned steps;        /* 1 to HE_REMESH_STEPS */
     bool project;          /* vertices are moved back onto the old surface */
     bool fixed_boundary;   /* boundary edges are not changed at all */

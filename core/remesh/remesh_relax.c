@@ -129,18 +129,21 @@ static void move(he_remeshing *r, uint32_t v, const around *of, he_vec3 place)
 /* Tries to move a vertex that is not on a line to a place near the surface. */
 static bool try_place(he_remeshing *r, uint32_t v, const around *of, he_vec3 place, double least)
 {
-    uint32_t ground = r->net.ground[v];
-    if (r->project) {
-        he_ground_point point;
-        he_ground_walk(&r->ground, place, ground, &point);
-        place = point.place;
-        ground = point.triangle;
+    he_ground_point point;
+    if (r->project || r->ground.size != NULL) {
+        he_ground_walk(&r->ground, place, r->net.ground[v], &point);
+        place = r->project ? point.place : place;
     }
     if (!is_good(of, place, least)) {
         return false;
     }
     move(r, v, of, place);
-    r->net.ground[v] = ground;
+    if (r->project || r->ground.size != NULL) {
+        r->net.ground[v] = point.triangle;
+    }
+    if (r->ground.size != NULL) {
+        r->net.vertices[v].size = he_ground_size(&r->ground, &point);
+    }
     return true;
 }
 
@@ -156,6 +159,11 @@ static bool try_arc(he_remeshing *r, uint32_t v, const around *of, double arc, d
     move(r, v, of, place);
     n->arc[v] = arc;
     n->ground[v] = ground;
+    if (r->ground.size != NULL) {
+        he_ground_point point;
+        he_ground_nearest(&r->ground, place, ground, &point);
+        n->vertices[v].size = he_ground_size(&r->ground, &point);
+    }
     return true;
 }
 

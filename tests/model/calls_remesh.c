@@ -74,6 +74,10 @@ static bool draw_remesh(md_draft *d)
     }
     if (md_chance(d->r, 75)) {
         md_give_number(d, "edge_length", md_chance(d->r, 5) ? 0 : length > 0 ? length : 1);
+    } else if (md_chance(d->r, 40) && length > 0) {
+        md_give_number(d, "error", length / 10);
+        md_give_number(d, "min_length", length);
+        md_give_number(d, "max_length", length * 2);
     } else {
         md_give_number(d, "target_faces", md_from(d->r, 1, 1 + 2 * he_mesh_faces(d->m)));
     }
@@ -96,7 +100,12 @@ static bool draw_remesh(md_draft *d)
 static he_status run(const md_call *c, he_mesh *m)
 {
     const he_arg *faces = md_get(c, "faces");
-    he_remesh_options options = {.by_length = md_get(c, "edge_length")->given,
+    he_remesh_options options = {.by = md_get(c, "error")->given         ? HE_REMESH_BY_ERROR
+                                       : md_get(c, "edge_length")->given ? HE_REMESH_BY_LENGTH
+                                                                         : HE_REMESH_BY_FACES,
+                                 .error = md_get(c, "error")->number,
+                                 .min_length = md_get(c, "min_length")->number,
+                                 .max_length = md_get(c, "max_length")->number,
                                  .edge_length = md_get(c, "edge_length")->number,
                                  .target_faces = (uint32_t)md_get(c, "target_faces")->number,
                                  .steps = (unsigned)md_get(c, "steps")->number,

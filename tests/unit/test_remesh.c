@@ -13,7 +13,7 @@ static const double PI = 3.14159265358979323846;
 
 static he_remesh_options usual(double edge_length)
 {
-    return (he_remesh_options){.by_length = edge_length > 0,
+    return (he_remesh_options){.by = edge_length > 0 ? HE_REMESH_BY_LENGTH : HE_REMESH_BY_FACES,
                                .edge_length = edge_length,
                                .steps = HE_REMESH_STEPS_USUAL,
                                .project = true,

@@ -124,13 +124,18 @@ static he_remesh_options draw(const he_mesh *m, md_random *r, he_ids *faces, uin
     (void)he_surface_box(m, &box);
     he_vec3 half = he_vec3_sub(he_vec3_scale(box.max, 0.5), he_vec3_scale(box.min, 0.5));
     double extent = 2 * he_vec3_extent(half);
-    he_remesh_options options = {.by_length = md_chance(r, 70),
+    he_remesh_options options = {.by = (he_remesh_by)md_below(r, 3),
+                                 .error = extent * pow(10, -1.5 - 1.5 * md_unit(r)),
                                  .edge_length = extent * pow(10, -1.7 * md_unit(r)),
                                  .target_faces = md_from(r, 1, 4000),
                                  .steps = md_from(r, 1, 6),
                                  .project = md_chance(r, 80),
                                  .fixed_boundary = md_chance(r, 20),
                                  .crease = md_chance(r, 70) ? HE_REMESH_CREASE : md_unit(r) * 3};
+    if (options.by == HE_REMESH_BY_ERROR) {
+        options.min_length = options.edge_length / 4;
+        options.max_length = md_chance(r, 50) ? 0 : options.edge_length * 2;
+    }
     bool some = md_chance(r, 30);
     *chosen = he_bits_new((size_t)he_mesh_issued(m, HE_FACE) + 1);
     assert_non_null(*chosen);
@@ -148,7 +153,8 @@ static he_remesh_options draw(const he_mesh *m, md_random *r, he_ids *faces, uin
         he_bits_set(*chosen, f);
     }
     if (!(options.edge_length > 0)) {
-        options.edge_length = 1;
+        options.edge_length = options.error = 1;
+        options.min_length = options.max_length = 0;
     }
     return options;
 }
@@ -180,18 +186,14 @@ static void play(const random_family *of, md_random *r)
         require_clean_cancel(m, &options, r);
     }
     if (getenv("VERBOSE") != NULL) {
-        printf("    %u faces, %s %g, %u steps\n", he_mesh_faces(m),
-               options.by_length ? "edge_length" : "target_faces",
-               options.by_length ? options.edge_length : options.target_faces, options.steps);
+        printf("    %u faces, by %d: %g, %u, %g, %u steps\n", he_mesh_faces(m), (int)options.by,
+               options.edge_length, options.target_faces, options.error, options.steps);
     }
     he_mesh_record(m, delta);
     he_status status = he_remesh(m, &options, &done, &err);
     he_mesh_record(m, NULL);
     if (status != HE_OK) {
-        fail_msg("%s, %s %g, %u steps: %s", of->name,
-                 options.by_length ? "edge_length" : "target_faces",
-                 options.by_length ? options.edge_length : options.target_faces, options.steps,
-                 err.text);
+        fail_msg("%s: %s", of->name, err.text);
     }
     fixture_check(m);
     require_locks(before, m, chosen);

@@ -10,7 +10,7 @@ static void run(bench_side *side, double times, bench_result *out)
 {
     he_mesh *m;
     bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
-    const he_remesh_options options = {.by_length = true,
+    const he_remesh_options options = {.by = HE_REMESH_BY_LENGTH,
                                        .edge_length = times * bench_remesh_length(side),
                                        .steps = HE_REMESH_STEPS_USUAL,
                                        .project = true,

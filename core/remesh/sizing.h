@@ -1,0 +1,28 @@
+/* sizing.h - wanted lengths of edges that depend on the curvature. */
+#ifndef HE_REMESH_SIZING_H
+#define HE_REMESH_SIZING_H
+
+#include "remesh/net.h"
+
+/* All are lengths in coordinates of the net. */
+typedef struct he_sizing {
+    double error;       /* how far the triangles may be from a smooth surface */
+    double least, most; /* limits of the wanted length */
+} he_sizing;
+
+/* Finds the wanted length at each vertex of a net that has not been changed yet (M. Dunyach, D.
+ * Vanderhaeghe, L. Barthe and M. Botsch, "Adaptive remeshing for real-time mesh deformation",
+ * 2013): an edge of the length sqrt(6 error / k - 3 error^2) on a surface of curvature k is about
+ * as far from the surface as `error`. The curvature is that of the greatest magnitude at the
+ * vertex: from the angles at the edges around it (D. Cohen-Steiner and J.-M. Morvan, "Restricted
+ * Delaunay triangulations and normal cycle", 2003), without the edges that are held, so that
+ * creases do not count; or that of the line on which the vertex is.
+ *
+ * Lengths change by at most HE_SIZING_SLOPE times the distance between vertices.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the work was cancelled. */
+#define HE_SIZING_SLOPE 0.4
+HE_NODISCARD he_status he_sizing_find(he_net *n, const he_sizing *sizing, he_progress *progress,
+                                      he_error *err);
+
+#endif
