@@ -159,7 +159,7 @@ echo 'core/attic' >>.ci/rooms
 expect 'a room without a row is found' 'core/README.md: no row of the room attic' pages
 sed -i '/attic/d' .ci/rooms
 sed -i '/^| `query` |/d' core/README.md
-expect 'a row that is missing is found' 'the room format/text stands where .ci/rooms has query' pages
+expect 'a row that is missing is found' 'the room solve stands where .ci/rooms has query' pages
 cp "$OLDPWD/core/README.md" core/README.md
 mkdir tests/attic && : >tests/attic/run.py
 expect 'a folder of tests without a row is found' 'no row of tests/attic' pages

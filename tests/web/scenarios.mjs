@@ -117,7 +117,7 @@ export const SCENARIOS = [
     ['dual', CUBES, {}],
     ['decimate', GRID, { faces: '4' }, [{ op: 'triangulate' }]],
     ['remesh', GRID, { target_faces: '30' }, [{ op: 'triangulate' }]],
-    ['smooth', GRID, { method: 'taubin', steps: '3' }],
+    ['smooth', { shape: 'cube' }, { method: 'taubin', steps: '3' }],
     ['append', GRID, { mesh: 'which mesh' }],
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));
