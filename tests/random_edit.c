@@ -102,6 +102,11 @@ static void put_whole(draft *d, const he_param *p)
 
 static void put_number(draft *d, const he_param *p)
 {
+    if (strcmp(p->name, "steps") == 0) {
+        /* Hundreds of steps would be a job, and two of subdivide make too many faces. */
+        put(d, "%u", 1U);
+        return;
+    }
     if (p->flags & HE_WHOLE) {
         put_whole(d, p);
         return;
@@ -110,6 +115,8 @@ static void put_number(draft *d, const he_param *p)
     double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
     /* the tolerance is small, because a large one would merge the whole mesh */
     high = strcmp(p->name, "tolerance") == 0 ? 0.05 : high;
+    /* remesh would make too many triangles of a smaller size */
+    low = strcmp(p->name, "edge_length") == 0 || strcmp(p->name, "error") == 0 ? 0.3 : low;
     put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
 }
 
