@@ -28,7 +28,9 @@ static void put_sides(const he_intrinsic *t, he_entry *entries, size_t *count)
         }
         double weight = he_intrinsic_cotangent(t, s) / 2;
         if (twin != UINT32_MAX) {
-            weight += he_intrinsic_cotangent(t, twin) / 2;
+            /* Less than 0 is a rounding error here, which beside masses of almost 0 would leave a
+             * matrix that is not positive definite. */
+            weight = fmax(weight + he_intrinsic_cotangent(t, twin) / 2, 0);
         }
         put_edge(entries, count, t->corners[s], t->corners[next], weight);
     }
