@@ -3,7 +3,6 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-#include <math.h>
 
 bool he_has_columns(const he_mesh *m, he_kind kind)
 {
@@ -18,69 +17,13 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
 void he_column_blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
                      unsigned char *out)
 {
-    size_t size = he_type_bytes(column->type);
     for (uint32_t k = 0; k < column->components; k++) {
         double sum = 0;
         for (size_t i = 0; i < n; i++) {
-            const unsigned char *from = he_column_value(column, rows[i]) + k * size;
-            double value = 0;
-            switch (column->type) {
-            case HE_BOOL:
-                value = *from;
-                break;
-            case HE_INT32: {
-                int32_t number;
-                memcpy(&number, from, sizeof number);
-                value = number;
-                break;
-            }
-            case HE_UINT32: {
-                uint32_t number;
-                memcpy(&number, from, sizeof number);
-                value = number;
-                break;
-            }
-            case HE_FLOAT: {
-                float number;
-                memcpy(&number, from, sizeof number);
-                value = (double)number;
-                break;
-            }
-            case HE_DOUBLE:
-                memcpy(&value, from, sizeof value);
-                break;
-            case HE_TYPE_COUNT:
-                break;
-            }
-            sum += (weights == NULL ? 1.0 / (double)n : weights[i]) * value;
+            const double weight = weights == NULL ? 1.0 / (double)n : weights[i];
+            sum += weight * he_column_number(column, rows[i], k);
         }
-        unsigned char *to = out + k * size;
-        switch (column->type) {
-        case HE_BOOL:
-            *to = sum >= 0.5;
-            break;
-        case HE_INT32: {
-            sum = fmax(INT32_MIN, fmin(sum, INT32_MAX));
-            int32_t number = (int32_t)(sum < 0 ? sum - 0.5 : sum + 0.5);
-            memcpy(to, &number, sizeof number);
-            break;
-        }
-        case HE_UINT32: {
-            uint32_t number = (uint32_t)(fmin(sum, UINT32_MAX) + 0.5);
-            memcpy(to, &number, sizeof number);
-            break;
-        }
-        case HE_FLOAT: {
-            float number = (float)sum;
-            memcpy(to, &number, sizeof number);
-            break;
-        }
-        case HE_DOUBLE:
-            memcpy(to, &sum, sizeof sum);
-            break;
-        case HE_TYPE_COUNT:
-            break;
-        }
+        he_column_put_number(column, k, sum, out);
     }
 }
 

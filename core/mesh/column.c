@@ -2,6 +2,7 @@
 
 #include "base/utf8.h"
 
+#include <math.h>
 #include <string.h>
 
 static const struct {
@@ -88,6 +89,66 @@ he_status he_column_like(const he_column *column, size_t rows, he_column **out, 
     }
     *out = like;
     return HE_OK;
+}
+
+double he_column_number(const he_column *column, size_t row, uint32_t component)
+{
+    const unsigned char *at = he_column_value(column, row) + component * types[column->type].bytes;
+    int32_t whole;
+    uint32_t natural;
+    float single;
+    double number = 0;
+    switch (column->type) {
+    case HE_BOOL:
+        return *at;
+    case HE_INT32:
+        memcpy(&whole, at, sizeof whole);
+        return whole;
+    case HE_UINT32:
+        memcpy(&natural, at, sizeof natural);
+        return natural;
+    case HE_FLOAT:
+        memcpy(&single, at, sizeof single);
+        return (double)single;
+    case HE_DOUBLE:
+        memcpy(&number, at, sizeof number);
+        break;
+    case HE_TYPE_COUNT:
+        break;
+    }
+    return number;
+}
+
+void he_column_put_number(const he_column *column, uint32_t component, double number,
+                          unsigned char *value)
+{
+    unsigned char *to = value + component * types[column->type].bytes;
+    int32_t whole;
+    uint32_t natural;
+    float single;
+    switch (column->type) {
+    case HE_BOOL:
+        *to = number >= 0.5;
+        break;
+    case HE_INT32:
+        number = fmax(INT32_MIN, fmin(number, INT32_MAX));
+        whole = (int32_t)(number < 0 ? number - 0.5 : number + 0.5);
+        memcpy(to, &whole, sizeof whole);
+        break;
+    case HE_UINT32:
+        natural = (uint32_t)(fmax(0, fmin(number, UINT32_MAX)) + 0.5);
+        memcpy(to, &natural, sizeof natural);
+        break;
+    case HE_FLOAT:
+        single = (float)number;
+        memcpy(to, &single, sizeof single);
+        break;
+    case HE_DOUBLE:
+        memcpy(to, &number, sizeof number);
+        break;
+    case HE_TYPE_COUNT:
+        break;
+    }
 }
 
 he_status he_column_copy(const he_column *column, he_column **out, he_error *err)

@@ -89,6 +89,12 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
 {
     return column->data + row * column->row_bytes;
 }
+/* Returns one component of the value of a row. */
+double he_column_number(const he_column *column, size_t row, uint32_t component);
+/* Writes a number, which must not be NaN, as one component of `value`, which has the type of the
+ * column: for integers and booleans it is rounded to the nearest value of their range. */
+void he_column_put_number(const he_column *column, uint32_t component, double number,
+                          unsigned char *value);
 /* Writes the weighted sum of the values of n rows to `out`, or their mean if `weights` is NULL. The
  * result has the type of the column: integers and booleans are rounded to the nearest value, and a
  * sum that rounding errors have pushed out of the type's range is clamped. */

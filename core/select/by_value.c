@@ -234,34 +234,6 @@ he_status he_pick_measure(const he_mesh *m, const he_select_rule *rule, he_set *
 
 /* --- attributes --- */
 
-static double value_of(const he_column *column, uint32_t id, uint32_t component)
-{
-    const unsigned char *at = he_column_value(column, id) + component * he_type_bytes(column->type);
-    int32_t whole;
-    uint32_t natural;
-    float single;
-    double number;
-    switch (column->type) {
-    case HE_BOOL:
-        return *at;
-    case HE_INT32:
-        memcpy(&whole, at, sizeof whole);
-        return whole;
-    case HE_UINT32:
-        memcpy(&natural, at, sizeof natural);
-        return natural;
-    case HE_FLOAT:
-        memcpy(&single, at, sizeof single);
-        return single;
-    case HE_DOUBLE:
-        memcpy(&number, at, sizeof number);
-        return number;
-    case HE_TYPE_COUNT:
-        break;
-    }
-    return NAN;
-}
-
 he_status he_pick_attribute(const he_mesh *m, const he_select_rule *rule, he_set *out,
                             he_error *err)
 {
@@ -290,7 +262,7 @@ he_status he_pick_attribute(const he_mesh *m, const he_select_rule *rule, he_set
     for (uint32_t id = 0; id < out->issued && status == HE_OK; id++) {
         status = he_progress_at(m->progress, id, out->issued, err);
         if (he_mesh_is_live(m, rule->of, id)) {
-            judge(rule, id, value_of(column, id, rule->component), out);
+            judge(rule, id, he_column_number(column, id, rule->component), out);
         }
     }
     return status;
