@@ -7,6 +7,7 @@
 
 #include <cjson/cJSON.h>
 
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -384,6 +385,10 @@ bool api_in_number_within(const api_in *in, double min, double max, bool exclusi
     double value = 0;
     if (!api_in_number(in, &value)) {
         return false;
+    }
+    if (max >= DBL_MAX && (exclusive ? !(value > min) : !(value >= min))) {
+        return api_in_fail(in, HE_BAD_VALUE, "the number must be %s %s, not %s",
+                           exclusive ? "above" : "at least", show(min).text, show(value).text);
     }
     if (exclusive ? !(value > min && value < max) : !(value >= min && value <= max)) {
         return api_in_fail(in, HE_BAD_VALUE, "%s is not %s %s and %s", show(value).text,

@@ -3,7 +3,6 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-
 bool he_has_columns(const he_mesh *m, he_kind kind)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {

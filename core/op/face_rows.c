@@ -1,6 +1,5 @@
 #include "op/rows.h"
 
-#include "edit/border/hole.h"
 #include "edit/local/cut.h"
 #include "edit/local/erase.h"
 #include "edit/local/face_add.h"
@@ -125,26 +124,6 @@ static he_status run_face_triangulate(he_mesh *m, const he_arg *args, he_results
         &out->list[FACE_TRIANGULATE_OUT_EDGES], &out->list[FACE_TRIANGULATE_OUT_FACES],
         &out->list[FACE_TRIANGULATE_OUT_DEGENERATE], err);
 }
-
-enum { HOLE_FILL_HALFEDGE, HOLE_FILL_METHOD };
-enum { HOLE_FILL_OUT_VERTEX, HOLE_FILL_OUT_EDGES, HOLE_FILL_OUT_FACES };
-
-static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
-{
-    he_filled filled;
-    he_status status = he_hole_fill(m, (he_halfedge){args[HOLE_FILL_HALFEDGE].id},
-                                    (he_fill)args[HOLE_FILL_METHOD].choice, &filled, err);
-    if (status == HE_OK) {
-        he_results_set(out, HOLE_FILL_OUT_VERTEX, filled.vertex.i);
-        he_results_set_list(out, HOLE_FILL_OUT_EDGES, &filled.edges);
-        he_results_set_list(out, HOLE_FILL_OUT_FACES, &filled.faces);
-        he_filled_clear(&filled);
-    }
-    return status;
-}
-
-/* The names that requests use for the values of he_fill, in the order of the enum. */
-static const char *const fill_methods[] = {"polygon", "fan", "triangulate", NULL};
 
 const he_op he_face_rows[] = {
     {
@@ -295,31 +274,6 @@ const he_op he_face_rows[] = {
         .change = {0, HE_VARIES, HE_VARIES},
         .pace = 40,
         .run = run_face_triangulate,
-    },
-    {
-        .name = "hole_fill",
-        .doc = "Fill a hole.",
-        .params = {[HOLE_FILL_HALFEDGE] = {.name = "halfedge",
-                                           .type = HE_PARAM_ELEMENT,
-                                           .kind = HE_HALFEDGE,
-                                           .flags = HE_REQUIRED,
-                                           .doc = "A boundary half-edge of the hole."},
-                   [HOLE_FILL_METHOD] =
-                       {.name = "method",
-                        .type = HE_PARAM_CHOICE,
-                        .choices = fill_methods,
-                        .doc = "How the hole is filled: with one face, with triangles around a new "
-                               "vertex, or with triangles between its corners."}},
-        .results = {[HOLE_FILL_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
-                                              "The new vertex, or null if there is none."},
-                    [HOLE_FILL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                                             "The new edges."},
-                    [HOLE_FILL_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                                             "The new faces."}},
-        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
-                     HE_DOUBLED_EDGE},
-        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
-        .run = run_hole_fill,
     },
     {.name = NULL},
 };

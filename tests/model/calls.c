@@ -341,44 +341,6 @@ static uint64_t play_face_triangulate(const md_call *c, or_mesh *o, const he_mes
     return or_face_triangulate(o, f->ids, start, (uint32_t)f->count);
 }
 
-static bool draw_hole_fill(md_draft *d)
-{
-    uint32_t loop[OR_CORNERS];
-    uint32_t h = md_chance(d->r, 85) ? md_boundary_halfedge(d) : md_pick(d, HE_HALFEDGE);
-    md_give_id(d, "halfedge", h);
-    if (md_chance(d->r, 80)) {
-        he_arg *method = &d->c->args[md_index(d->c, "method")];
-        method->given = true;
-        method->choice = (int)md_below(d->r, 3);
-    }
-    return !md_is_live_boundary(d->m, h) || md_hole(d->m, h, loop) != 0;
-}
-
-static uint64_t play_hole_fill(const md_call *c, or_mesh *o, const he_mesh *m)
-{
-    static const char *const names[] = {"polygon", "fan", "triangulate"};
-    uint32_t h = md_get(c, "halfedge")->id;
-    uint64_t refused = or_require(o, HE_HALFEDGE, h);
-    if (refused != 0) {
-        return refused;
-    }
-    uint32_t a = h % 2 == 0 ? o->edge[h / 2].a : o->edge[h / 2].b;
-    uint32_t b = h % 2 == 0 ? o->edge[h / 2].b : o->edge[h / 2].a;
-    if (o->left[a][b] != OR_NONE) {
-        return OR_BIT(HE_NOT_BOUNDARY);
-    }
-    size_t i = md_index(c, "method");
-    const char *choice = c->op->params[i].choices[c->args[i].choice];
-    or_fill method = OR_POLYGON;
-    while (strcmp(names[method], choice) != 0) {
-        method++;
-        assert(method <= OR_TRIANGULATE);
-    }
-    uint32_t loop[OR_CORNERS];
-    uint32_t count = md_hole(m, h, loop);
-    return or_hole_fill(o, loop, count, method);
-}
-
 static bool draw_edge_cut(md_draft *d)
 {
     if (md_chance(d->r, 70)) {
@@ -618,7 +580,6 @@ static const md_row rows[] = {
     {"face_join", -1, draw_face_join, play_face_join, NULL, true},
     {"face_poke", 1, draw_face_poke, play_face_poke, NULL, false},
     {"face_triangulate", 1, draw_face_triangulate, play_face_triangulate, NULL, false},
-    {"hole_fill", 1, draw_hole_fill, play_hole_fill, NULL, false},
     {"edge_bisect", 1, draw_edge_cut, play_edge_bisect, NULL, false},
     {"edge_join", -1, draw_edge_join, play_edge_join, NULL, false},
     {"edge_split", 1, draw_edge_cut, play_edge_split, NULL, false},
@@ -631,11 +592,10 @@ static const md_row rows[] = {
     {.name = NULL},
 };
 
-static const md_row *const groups[] = {rows,           md_border_rows,   md_weld_rows,
-                                       md_corner_rows, md_loop_rows,     md_region_rows,
-                                       md_refine_rows, md_decimate_rows, md_remesh_rows,
-                                       md_smooth_rows, md_material_rows, md_select_rows,
-                                       md_segment_rows};
+static const md_row *const groups[] = {
+    rows,           md_border_rows,   md_weld_rows,     md_corner_rows, md_loop_rows,
+    md_region_rows, md_refine_rows,   md_decimate_rows, md_remesh_rows, md_smooth_rows,
+    md_fill_rows,   md_material_rows, md_select_rows,   md_segment_rows};
 
 static const md_row *row_of(const char *name)
 {

@@ -1,4 +1,5 @@
 #include "model/rows.h"
+#include "model/adopt.h"
 
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
@@ -125,15 +126,6 @@ static void require(bool holds, const char *what, uint32_t id)
     }
 }
 
-static he_vertex corner(const he_mesh *m, uint32_t f, uint32_t i)
-{
-    he_halfedge h = he_face_halfedge(m, (he_face){f});
-    for (; i > 0; i--) {
-        h = he_next(m, h);
-    }
-    return he_origin(m, h);
-}
-
 /* Requires that what must stay has stayed: locked elements, faces that were not chosen, and the
  * vertices of both. */
 static void require_stays(const md_call *c, const or_mesh *o, const he_mesh *m, const he_mesh *made)
@@ -160,8 +152,8 @@ static void require_stays(const md_call *c, const or_mesh *o, const he_mesh *m, 
         }
         require(he_mesh_is_live(made, HE_FACE, f), "face", f);
         for (uint32_t i = 0; i < o->face[f].count; i++) {
-            he_vertex v = corner(m, f, i);
-            require(v.i == corner(made, f, i).i &&
+            he_vertex v = md_corner(m, f, i);
+            require(v.i == md_corner(made, f, i).i &&
                         or_same_point(he_position(m, v), he_position(made, v)),
                     "face", f);
         }
@@ -169,42 +161,6 @@ static void require_stays(const md_call *c, const or_mesh *o, const he_mesh *m, 
     int before = (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
     int after = (int)he_mesh_vertices(made) - (int)he_mesh_edges(made) + (int)he_mesh_faces(made);
     require(before == after, "the Euler characteristic, which was", (uint32_t)before);
-}
-
-/* Makes the oracle equal to a mesh. New edges and faces have no ids yet. */
-static void take(or_mesh *o, const he_mesh *made)
-{
-    for (uint32_t v = 0; v < he_mesh_issued(made, HE_VERTEX); v++) {
-        he_vec3 at = he_position(made, (he_vertex){v});
-        if (v >= o->vertices) {
-            (void)or_add_vertex(o, at);
-            continue;
-        }
-        o->vertex[v].alive = he_mesh_is_live(made, HE_VERTEX, v);
-        if (o->vertex[v].alive) {
-            o->vertex[v].at = at;
-        }
-    }
-    for (uint32_t e = 0; e < o->edges; e++) {
-        o->edge[e].alive = he_mesh_is_live(made, HE_EDGE, e);
-        if (o->edge[e].alive) {
-            o->edge[e].a = he_origin(made, (he_halfedge){2 * e}).i;
-            o->edge[e].b = he_target(made, (he_halfedge){2 * e}).i;
-        }
-    }
-    for (uint32_t f = 0; f < he_mesh_issued(made, HE_FACE); f++) {
-        if (f < o->faces) {
-            o->face[f].alive = he_mesh_is_live(made, HE_FACE, f);
-        }
-        for (uint32_t i = 0; f < o->faces && o->face[f].alive && i < o->face[f].count; i++) {
-            o->face[f].v[i] = corner(made, f, i).i;
-        }
-        if (f >= o->faces) {
-            const uint32_t v[3] = {corner(made, f, 0).i, corner(made, f, 1).i,
-                                   corner(made, f, 2).i};
-            (void)or_add_face(o, v, 3);
-        }
-    }
 }
 
 /* Runs a remeshing on the oracle. Hedge chooses the result, which a copy of its mesh shows; the
@@ -232,7 +188,7 @@ static uint64_t play_remesh(const md_call *c, or_mesh *o, const he_mesh *m)
         abort();
     }
     require_stays(c, o, m, made);
-    take(o, made);
+    md_adopt_mesh(o, made);
     he_mesh_free(made);
     return 0;
 }

@@ -18,6 +18,7 @@
 
 #include <cmocka.h>
 
+#define CORNERS "vertex_move vertices=0,1,2,3 to=0,0,0,0,1,0,1,1,0,1,0,0"
 #define QCUBE   "0123,7654,1045,2156,3267,0374"
 #define TETRA   "021,013,032,123"
 #define PILLOW  "012,021"
@@ -229,6 +230,34 @@ static const scenario scenarios[] = {
      HE_DOUBLED_EDGE,
      {0}},
     {"hole_fill halfedge=0-2 method=fan", CSASZAR, "vertex_delete vertex=6", HE_OK, {1, 6, 6}},
+    {"hole_fill halfedge=0-1 method=smooth edge_length=100",
+     QCUBE,
+     "face_delete face=0",
+     HE_OK,
+     {0, 1, 2}},
+    {"hole_fill halfedge=0-2 method=smooth edge_length=100",
+     CSASZAR,
+     "vertex_delete vertex=6",
+     HE_OK,
+     {1, 6, 6}},
+    {"hole_fill halfedge=0-1 method=smooth edge_length=1e-9 continuity=2",
+     QCUBE,
+     "face_delete face=0;" CORNERS,
+     HE_LIMIT,
+     {0}},
+    {"fill_holes", QCUBE, NULL, HE_OK, {0, 0, 0}},
+    {"fill_holes", "", NULL, HE_OK, {0, 0, 0}},
+    {"fill_holes", "012,034", NULL, HE_OK, {0, 0, 0}},
+    {"fill_holes max_edges=3", QCUBE, "face_delete face=0", HE_OK, {0, 0, 0}},
+    {"fill_holes method=polygon", QCUBE, "face_delete face=0", HE_OK, {0, 0, 1}},
+    {"fill_holes method=fan", QCUBE, "face_delete face=0", HE_OK, {1, 4, 4}},
+    {"fill_holes method=triangulate max_size=100", QCUBE, "face_delete face=0", HE_OK, {0, 1, 2}},
+    {"fill_holes edge_length=100", QCUBE, "face_delete face=0", HE_OK, {0, 1, 2}},
+    {"fill_holes edge_length=1e-9 continuity=0",
+     QCUBE,
+     "face_delete face=0;" CORNERS,
+     HE_LIMIT,
+     {0}},
 
     {MIRROR, "012,034+", "face_delete face=1", HE_OK, {0, 0, 0}},
     {"transform matrix=2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1 vertices=0,2",

@@ -118,6 +118,7 @@ export const SCENARIOS = [
     ['decimate', GRID, { faces: '4' }, [{ op: 'triangulate' }]],
     ['remesh', GRID, { target_faces: '30' }, [{ op: 'triangulate' }]],
     ['smooth', { shape: 'cube' }, { method: 'taubin', steps: '3' }],
+    ['fill_holes', GRID, { method: 'fan', max_edges: '8' }, HOLE],
     ['append', GRID, { mesh: 'which mesh' }],
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));

@@ -11,8 +11,7 @@ void he_filled_clear(he_filled *filled)
     he_ids_clear(&filled->faces);
 }
 
-/* Checks that the hole left of h can be filled, and lists the hole's half-edges in `loop`. */
-static he_status check(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *err)
+he_status he_hole_loop(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *err)
 {
     he_ids vertices = {0};
     he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
@@ -63,7 +62,7 @@ he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out
     he_triangles triangles = {.side = NULL};
     he_filled made = {.vertex = {HE_NONE}};
     he_reservation need = {0};
-    he_status status = check(m, h, &loop, err);
+    he_status status = he_hole_loop(m, h, &loop, err);
     if (status != HE_OK) {
         goto out;
     }

@@ -11,7 +11,7 @@ typedef enum he_fill {
 } he_fill;
 
 typedef struct he_filled {
-    he_vertex vertex;    /* the new vertex if the method is HE_FILL_FAN, else HE_NONE */
+    he_vertex vertex;    /* the new vertex if there is exactly one, else HE_NONE */
     he_ids edges, faces; /* the new edges and faces */
 } he_filled;
 
@@ -43,5 +43,10 @@ typedef struct he_filled {
 HE_NODISCARD he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out,
                                     he_error *err);
 void he_filled_clear(he_filled *filled);
+
+/* Lists the half-edges of the hole to the left of h, beginning with h, into an empty list, which
+ * the caller clears, also after a failure. Returns HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT,
+ * HE_NOT_BOUNDARY, HE_REPEATED_CORNER or HE_NO_MEMORY as he_hole_fill does. */
+HE_NODISCARD he_status he_hole_loop(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *err);
 
 #endif

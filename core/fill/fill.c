@@ -1,0 +1,88 @@
+#include "fill/fill.h"
+
+#include "fill/patch.h"
+#include "geometry/geometry.h"
+#include "mesh/layout.h"
+
+double he_fill_bend(const he_mesh *m, const he_ids *loop)
+{
+    double most = 0;
+    for (size_t i = 0; i < loop->count; i++) {
+        double angle;
+        if (he_edge_dihedral(m, he_edge_of((he_halfedge){loop->ids[i]}), &angle)) {
+            most = fmax(most, fabs(angle));
+        }
+    }
+    return most;
+}
+
+/* Tells the lookup of edges about those that the patch will make between corners of the hole. */
+static he_status note_chords(const he_patch *p, he_rim_chords *chords, bool add, he_error *err)
+{
+    he_status status =
+        chords->made && !add ? he_edge_lookup_reserve(&chords->lookup, p->rim, err) : HE_OK;
+    for (uint32_t s = 0; s < 3 * p->triangles && chords->made && add; s++) {
+        const uint32_t a = p->corners[s], b = p->corners[he_patch_next(s)];
+        if (p->twins[s] != UINT32_MAX && s < p->twins[s] && a < p->rim && b < p->rim) {
+            he_edge_lookup_add(&chords->lookup, he_origin(p->mesh, (he_halfedge){p->loop[a]}),
+                               he_origin(p->mesh, (he_halfedge){p->loop[b]}));
+        }
+    }
+    return status;
+}
+
+he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *options,
+                       he_rim_chords *chords, he_filled *out, he_error *err)
+{
+    he_patch p;
+    he_patch_values values = {.columns = NULL};
+    he_filled made = {.vertex = {HE_NONE}};
+    he_status status = he_patch_make(m, loop, chords, &p, err);
+    if (status == HE_OK) {
+        status = he_patch_cover(&p, err);
+    }
+    if (status == HE_OK) {
+        status = he_patch_refine(&p, options->edge_length / p.unit, err);
+    }
+    if (status == HE_OK) {
+        status = he_patch_fair(&p, (unsigned)options->continuity, err);
+    }
+    if (status == HE_OK) {
+        status = he_patch_values_find(&p, &values, err);
+    }
+    if (status == HE_OK) {
+        status = note_chords(&p, chords, false, err);
+    }
+    if (status == HE_OK) {
+        status = he_patch_write(m, &p, &values, &made.edges, &made.faces, err);
+    }
+    if (status == HE_OK) {
+        made.vertex.i = p.vertices == p.rim + 1 ? he_mesh_issued(m, HE_VERTEX) - 1 : HE_NONE;
+        status = note_chords(&p, chords, true, err); /* cannot fail */
+    }
+    he_patch_values_clear(&values);
+    he_patch_clear(&p);
+    if (status == HE_OK && out != NULL) {
+        *out = made;
+    } else {
+        he_filled_clear(&made);
+    }
+    return status;
+}
+
+he_status he_hole_fill_smooth(he_mesh *m, he_halfedge h, const he_smooth_fill *options,
+                              he_filled *out, he_error *err)
+{
+    he_ids loop = {0};
+    he_rim_chords chords = {.made = false};
+    if (!isfinite(options->edge_length) || options->edge_length < 0) {
+        return he_fail_plain(err, HE_BAD_VALUE, "the length of edges must be finite and above 0");
+    }
+    he_status status = he_hole_loop(m, h, &loop, err);
+    if (status == HE_OK) {
+        status = he_fill_loop(m, &loop, options, &chords, out, err);
+    }
+    he_edge_lookup_clear(&chords.lookup);
+    he_ids_clear(&loop);
+    return status;
+}

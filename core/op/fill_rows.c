@@ -1,0 +1,212 @@
+#include "op/rows.h"
+
+#include "fill/fill.h"
+
+#include <float.h>
+
+/* The names that requests use for the values of he_fill_method, in the order of the enum. */
+static const char *const fill_methods[] = {"polygon", "fan", "triangulate", "smooth", NULL};
+
+enum { HOLE_FILL_HALFEDGE, HOLE_FILL_METHOD, HOLE_FILL_EDGE_LENGTH, HOLE_FILL_CONTINUITY };
+enum { HOLE_FILL_OUT_VERTEX, HOLE_FILL_OUT_EDGES, HOLE_FILL_OUT_FACES, HOLE_FILL_OUT_BEND };
+
+static he_smooth_fill smooth_fill_of(const he_arg *edge_length, const he_arg *continuity)
+{
+    return (he_smooth_fill){.edge_length = edge_length->given ? edge_length->number : 0,
+                            .continuity = (he_continuity)continuity->number};
+}
+
+static he_status fill_hole(he_mesh *m, const he_arg *args, he_filled *out, he_error *err)
+{
+    const he_halfedge h = {args[HOLE_FILL_HALFEDGE].id};
+    const he_fill_method method = (he_fill_method)args[HOLE_FILL_METHOD].choice;
+    if (method == HE_FILL_ALL_SMOOTH) {
+        const he_smooth_fill options =
+            smooth_fill_of(&args[HOLE_FILL_EDGE_LENGTH], &args[HOLE_FILL_CONTINUITY]);
+        return he_hole_fill_smooth(m, h, &options, out, err);
+    }
+    return he_hole_fill(m, h, he_fill_of(method), out, err);
+}
+
+static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    he_filled filled;
+    he_ids loop = {0};
+    he_status status = he_hole_loop(m, (he_halfedge){args[HOLE_FILL_HALFEDGE].id}, &loop, err);
+    if (status == HE_OK) {
+        status = fill_hole(m, args, &filled, err);
+    }
+    if (status == HE_OK) {
+        he_results_set(out, HOLE_FILL_OUT_VERTEX, filled.vertex.i);
+        he_results_set_list(out, HOLE_FILL_OUT_EDGES, &filled.edges);
+        he_results_set_list(out, HOLE_FILL_OUT_FACES, &filled.faces);
+        he_results_set_number(out, HOLE_FILL_OUT_BEND, he_fill_bend(m, &loop));
+        he_filled_clear(&filled);
+    }
+    he_ids_clear(&loop);
+    return status;
+}
+
+enum {
+    FILL_HOLES_METHOD,
+    FILL_HOLES_MAX_EDGES,
+    FILL_HOLES_MAX_SIZE,
+    FILL_HOLES_EDGE_LENGTH,
+    FILL_HOLES_CONTINUITY
+};
+enum {
+    FILL_HOLES_OUT_FILLED,
+    FILL_HOLES_OUT_LEFT,
+    FILL_HOLES_OUT_LARGE,
+    FILL_HOLES_OUT_TOUCHING,
+    FILL_HOLES_OUT_SINGLE,
+    FILL_HOLES_OUT_DOUBLED,
+    FILL_HOLES_OUT_BEND
+};
+
+static he_status run_fill_holes(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const he_arg *edges = &args[FILL_HOLES_MAX_EDGES], *size = &args[FILL_HOLES_MAX_SIZE];
+    const he_fill_holes_options options = {
+        .method = (he_fill_method)args[FILL_HOLES_METHOD].choice,
+        .smooth = smooth_fill_of(&args[FILL_HOLES_EDGE_LENGTH], &args[FILL_HOLES_CONTINUITY]),
+        .max_edges = edges->given ? (uint32_t)edges->number : 0,
+        .max_size = size->given ? size->number : 0};
+    he_filled_holes done;
+    he_status status = he_fill_holes(m, &options, &done, err);
+    if (status == HE_OK) {
+        he_results_set_number(out, FILL_HOLES_OUT_FILLED, done.filled);
+        he_results_set_list(out, FILL_HOLES_OUT_LEFT, &done.left);
+        he_results_set_number(out, FILL_HOLES_OUT_LARGE, done.large);
+        he_results_set_number(out, FILL_HOLES_OUT_TOUCHING, done.touching);
+        he_results_set_number(out, FILL_HOLES_OUT_SINGLE, done.single);
+        he_results_set_number(out, FILL_HOLES_OUT_DOUBLED, done.doubled);
+        he_results_set_number(out, FILL_HOLES_OUT_BEND, done.bend);
+        he_filled_holes_clear(&done);
+    }
+    return status;
+}
+
+#define METHODS_DOC                                                                              \
+    "polygon: one face. fan: triangles around a new vertex. triangulate: triangles between the " \
+    "corners. smooth: triangles as large as those around the hole, on a surface that continues " \
+    "the mesh."
+
+#define EDGE_LENGTH_DOC                                                                        \
+    "The wanted length of the new edges. Default: that of the edges around the hole, growing " \
+    "inwards in a hole that would get more than 50000 faces otherwise."
+
+#define CONTINUITY_DOC                                                                      \
+    "How smoothly the new surface continues the mesh. 0: it only meets it. 1: its tangent " \
+    "planes do, too. 2: also its curvature."
+
+const he_op he_fill_rows[] = {
+    {
+        .name = "hole_fill",
+        .doc = "Fill a hole.",
+        .params = {[HOLE_FILL_HALFEDGE] = {.name = "halfedge",
+                                           .type = HE_PARAM_ELEMENT,
+                                           .kind = HE_HALFEDGE,
+                                           .flags = HE_REQUIRED,
+                                           .doc = "A boundary half-edge of the hole."},
+                   [HOLE_FILL_METHOD] = {.name = "method",
+                                         .type = HE_PARAM_CHOICE,
+                                         .flags = HE_SELECTS,
+                                         .choices = fill_methods,
+                                         .doc = METHODS_DOC},
+                   [HOLE_FILL_EDGE_LENGTH] = {.name = "edge_length",
+                                              .type = HE_PARAM_NUMBER,
+                                              .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE,
+                                              .min = 0,
+                                              .max = DBL_MAX,
+                                              .with = HE_WITH(HE_FILL_ALL_SMOOTH),
+                                              .doc = EDGE_LENGTH_DOC},
+                   [HOLE_FILL_CONTINUITY] = {.name = "continuity",
+                                             .type = HE_PARAM_NUMBER,
+                                             .flags = HE_RANGE | HE_WHOLE,
+                                             .min = 0,
+                                             .max = 2,
+                                             .fallback = HE_CONTINUOUS_TANGENT,
+                                             .with = HE_WITH(HE_FILL_ALL_SMOOTH),
+                                             .doc = CONTINUITY_DOC}},
+        .results =
+            {[HOLE_FILL_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
+                                       "The new vertex, or null if there is not exactly one."},
+             [HOLE_FILL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The new edges."},
+             [HOLE_FILL_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
+             [HOLE_FILL_OUT_BEND] = {"bend", HE_RESULT_NUMBER, HE_EDGE,
+                                     "The largest angle between the normals of a new face "
+                                     "and of its neighbour outside of the hole, in "
+                                     "radians."}},
+        .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
+                     HE_DOUBLED_EDGE, HE_LIMIT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .run = run_hole_fill,
+    },
+    {
+        .name = "fill_holes",
+        .doc = "Fill all holes, each as hole_fill does. The outer boundary of an open surface is a "
+               "hole, too: max_edges or max_size leave it open.",
+        .size = HE_OP_WHOLE,
+        .params = {[FILL_HOLES_METHOD] = {.name = "method",
+                                          .type = HE_PARAM_CHOICE,
+                                          .flags = HE_SELECTS,
+                                          .fallback = HE_FILL_ALL_SMOOTH,
+                                          .choices = fill_methods,
+                                          .doc = METHODS_DOC},
+                   [FILL_HOLES_MAX_EDGES] = {.name = "max_edges",
+                                             .type = HE_PARAM_NUMBER,
+                                             .flags = HE_DERIVED | HE_RANGE | HE_WHOLE,
+                                             .min = 3,
+                                             .max = UINT32_MAX,
+                                             .doc = "Holes with more edges are left. Default: "
+                                                    "holes of any number of edges are filled."},
+                   [FILL_HOLES_MAX_SIZE] = {.name = "max_size",
+                                            .type = HE_PARAM_NUMBER,
+                                            .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE,
+                                            .min = 0,
+                                            .max = DBL_MAX,
+                                            .doc = "Holes whose box has a longer diagonal are "
+                                                   "left. Default: holes of any size are filled."},
+                   [FILL_HOLES_EDGE_LENGTH] = {.name = "edge_length",
+                                               .type = HE_PARAM_NUMBER,
+                                               .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE,
+                                               .min = 0,
+                                               .max = DBL_MAX,
+                                               .with = HE_WITH(HE_FILL_ALL_SMOOTH),
+                                               .doc = EDGE_LENGTH_DOC},
+                   [FILL_HOLES_CONTINUITY] = {.name = "continuity",
+                                              .type = HE_PARAM_NUMBER,
+                                              .flags = HE_RANGE | HE_WHOLE,
+                                              .min = 0,
+                                              .max = 2,
+                                              .fallback = HE_CONTINUOUS_TANGENT,
+                                              .with = HE_WITH(HE_FILL_ALL_SMOOTH),
+                                              .doc = CONTINUITY_DOC}},
+        .results = {[FILL_HOLES_OUT_FILLED] = {"filled", HE_RESULT_NUMBER, HE_FACE,
+                                               "How many holes were filled."},
+                    [FILL_HOLES_OUT_LEFT] = {"left", HE_RESULT_ELEMENTS, HE_HALFEDGE,
+                                             "A boundary half-edge of each hole that was left."},
+                    [FILL_HOLES_OUT_LARGE] = {"large", HE_RESULT_NUMBER, HE_HALFEDGE,
+                                              "How many were left because of max_edges or "
+                                              "max_size."},
+                    [FILL_HOLES_OUT_TOUCHING] = {"touching", HE_RESULT_NUMBER, HE_HALFEDGE,
+                                                 "How many were left because they pass a vertex "
+                                                 "twice."},
+                    [FILL_HOLES_OUT_SINGLE] = {"single", HE_RESULT_NUMBER, HE_HALFEDGE,
+                                               "How many were left because there is only one face "
+                                               "around them."},
+                    [FILL_HOLES_OUT_DOUBLED] = {"doubled", HE_RESULT_NUMBER, HE_HALFEDGE,
+                                                "How many were left because triangles between "
+                                                "their corners would double an edge."},
+                    [FILL_HOLES_OUT_BEND] = {"bend", HE_RESULT_NUMBER, HE_EDGE,
+                                             "The largest angle between the normals of a new face "
+                                             "and of its neighbour outside of the hole, in "
+                                             "radians."}},
+        .refusals = {HE_LIMIT},
+        .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .pace = 20,
+        .run = run_fill_holes,
+    },
+    {.name = NULL},
+};
