@@ -214,6 +214,44 @@ static uint64_t play_loop_split(const md_call *c, or_mesh *o, const he_mesh *m)
 
 /* --- plane_cut --- */
 
+static double height(const or_plane *plane, he_vec3 p)
+{
+    return (p.x - plane->point.x) * plane->normal.x + (p.y - plane->point.y) * plane->normal.y +
+           (p.z - plane->point.z) * plane->normal.z;
+}
+
+/* Returns whether the plane meets two edges or corners of a face at almost the same point, so that
+ * the part between them is a sliver and rounding decides on which side it lies. */
+static bool is_sliver(const or_mesh *o, const or_plane *plane, const or_face *face)
+{
+    static he_vec3 met[2 * OR_CORNERS];
+    const double length =
+        sqrt(plane->normal.x * plane->normal.x + plane->normal.y * plane->normal.y +
+             plane->normal.z * plane->normal.z);
+    const double within = (plane->tolerance == NULL ? 0 : *plane->tolerance) + 1e-6;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < face->count && face->alive; i++) {
+        const he_vec3 p = o->vertex[face->v[i]].at, q = o->vertex[or_after(face, face->v[i])].at;
+        const double a = height(plane, p), b = height(plane, q);
+        if (fabs(a) < within * length) {
+            met[count++] = p;
+        } else if (a * b < 0 && fabs(b) >= within * length) {
+            const double t = a / (a - b);
+            met[count++] =
+                (he_vec3){p.x + t * (q.x - p.x), p.y + t * (q.y - p.y), p.z + t * (q.z - p.z)};
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            if (fabs(met[i].x - met[k].x) + fabs(met[i].y - met[k].y) + fabs(met[i].z - met[k].z) <
+                1e-6) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /* Returns whether some face is so nearly in the plane, or its part there is so small, that rounding
  * decides on which side it lies. */
 static bool is_doubtful(const or_mesh *o, const or_plane *plane)
@@ -234,7 +272,8 @@ static bool is_doubtful(const or_mesh *o, const or_plane *plane)
             up += normal.x * (p.y * q.z - p.z * q.y) + normal.y * (p.z * q.x - p.x * q.z) +
                   normal.z * (p.x * q.y - p.y * q.x);
         }
-        if (face->alive && furthest < (within + 1e-6) * length && fabs(up) < 1e-6 * length) {
+        if (face->alive && ((furthest < (within + 1e-6) * length && fabs(up) < 1e-6 * length) ||
+                            is_sliver(o, plane, face))) {
             return true;
         }
     }
