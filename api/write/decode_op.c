@@ -431,7 +431,7 @@ static bool check_given(const decoder *d)
     return true;
 }
 
-/* Checks that a list of points is as long as the operation's list of elements. */
+/* Checks that a list of points is as long as the operation's first list of elements. */
 static bool check_points(const decoder *d)
 {
     size_t elements = 0;
@@ -439,7 +439,7 @@ static bool check_points(const decoder *d)
     if (d->call->has_set && d->scope->mesh == NULL) {
         return true;
     }
-    for (size_t i = 0; i < he_op_params(d->op); i++) {
+    for (size_t i = 0; i < he_op_params(d->op) && !has_elements; i++) {
         if (d->op->params[i].type == HE_PARAM_ELEMENTS && d->call->args[i].given) {
             elements = d->call->args[i].count;
             has_elements = true;

@@ -21,6 +21,7 @@ extern const he_op he_decimate_rows[];
 extern const he_op he_remesh_rows[];
 extern const he_op he_smooth_rows[];
 extern const he_op he_fill_rows[];
+extern const he_op he_deform_rows[];
 extern const he_op he_material_rows[];
 extern const he_op he_select_rows[];
 

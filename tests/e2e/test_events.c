@@ -45,8 +45,8 @@ static uint64_t post(client *c, const char *path, const char *json)
      * from five names, so an edit names one that is missing or that exists already; the random
      * corners of a box of select are in the wrong order; remesh and smooth get numbers that do not
      * fit together. */
-    static const char *const often[] = {"\"material_", "\"select\"", "\"segment\"", "\"remesh\"",
-                                        "\"smooth\""};
+    static const char *const often[] = {"\"material_", "\"select\"", "\"segment\"",
+                                        "\"remesh\"",  "\"smooth\"", "\"deform\""};
     bool refused = r.status == 422 || r.status == 409;
     for (size_t i = 0; i < sizeof often / sizeof *often; i++) {
         refused |= r.status == 400 && strstr(r.body, "\"bad_value\"") != NULL &&

@@ -28,6 +28,7 @@ extern const md_row md_decimate_rows[];
 extern const md_row md_remesh_rows[];
 extern const md_row md_smooth_rows[];
 extern const md_row md_fill_rows[];
+extern const md_row md_deform_rows[];
 extern const md_row md_material_rows[];
 extern const md_row md_select_rows[];
 extern const md_row md_segment_rows[];

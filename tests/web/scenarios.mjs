@@ -119,6 +119,9 @@ export const SCENARIOS = [
     ['remesh', GRID, { target_faces: '30' }, [{ op: 'triangulate' }]],
     ['smooth', { shape: 'cube' }, { method: 'taubin', steps: '3' }],
     ['fill_holes', GRID, { method: 'fan', max_edges: '8' }, HOLE],
+    ['deform', GRID, {
+        vertex: [vertex(5)], by: [0, 0, 0.5], fixed_vertex: [vertex(0), vertex(15)], steps: '3',
+    }],
     ['append', GRID, { mesh: 'which mesh' }],
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));
