@@ -26,6 +26,7 @@
 //     errors   lists of rows whose figures come from a row of ours, `by`, about what each program
 //              has left in the folder; `of` says which of its numbers
 
+import { deform } from './rows_deform.mjs';
 import { remesh } from './rows_remesh.mjs';
 import { segment } from './rows_segment.mjs';
 import { solve } from './rows_solve.mjs';
@@ -413,6 +414,7 @@ export const parts = [
         ],
     },
     ...remesh,
+    ...deform,
     {
         part: 'json',
         input: 'torus',

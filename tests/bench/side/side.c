@@ -97,6 +97,22 @@ double bench_remesh_length(const bench_side *side)
     return sqrt(area / (regular * side->input.faces));
 }
 
+bench_part bench_deform_part(const bench_side *side, uint32_t vertex)
+{
+    /* the torus is 8 wide */
+    const double x = side->input.positions[3 * (size_t)vertex];
+    return x > 3.2 ? BENCH_HANDLE : x < -3.2 ? BENCH_FIXED : BENCH_FREE;
+}
+
+void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3])
+{
+    const double *p = side->input.positions + 3 * (size_t)vertex;
+    const double angle = 0.8, lift = 1, c = cos(angle), s = sin(angle);
+    to[0] = c * p[0] - s * p[2];
+    to[1] = p[1];
+    to[2] = s * p[0] + c * p[2] + lift;
+}
+
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)
 {
     snprintf(path, size, "%s/%s", side->folder, name);

@@ -59,6 +59,14 @@ double bench_seconds(void);
  * such sides, as many as the input has faces, have the area of the torus. */
 double bench_remesh_length(const bench_side *side);
 
+/* What a vertex of the torus is in the rows about deformation. */
+typedef enum bench_part { BENCH_FREE, BENCH_FIXED, BENCH_HANDLE } bench_part;
+
+/* Returns what a vertex is: those far to the left are fixed, those far to the right handles. */
+bench_part bench_deform_part(const bench_side *side, uint32_t vertex);
+/* Computes where a handle goes: it is turned and lifted. */
+void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3]);
+
 /* Writes the path of a file in the benchmark's folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
 /* Opens a file of the benchmark's folder; ends the program if that fails. */
