@@ -27,6 +27,7 @@
 //              has left in the folder; `of` says which of its numbers
 
 import { deform } from './rows_deform.mjs';
+import { fill } from './rows_fill.mjs';
 import { remesh } from './rows_remesh.mjs';
 import { segment } from './rows_segment.mjs';
 import { solve } from './rows_solve.mjs';
@@ -415,6 +416,7 @@ export const parts = [
     },
     ...remesh,
     ...deform,
+    ...fill,
     {
         part: 'json',
         input: 'torus',

@@ -1,8 +1,11 @@
 #include "model/adopt.h"
 
 #include "mesh/walk.h"
+#include "op/op.h"
 
 #include <assert.h>
+#include <math.h>
+#include <stdlib.h>
 
 he_vertex md_corner(const he_mesh *m, uint32_t f, uint32_t i)
 {
@@ -62,4 +65,40 @@ void md_adopt_mesh(or_mesh *o, const he_mesh *made)
             take_face(o, made, f);
         }
     }
+}
+
+/* Returns the largest coordinate of a mesh, without its sign. */
+static double reach(const he_mesh *m)
+{
+    double most = 0;
+    for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        const he_vec3 p = he_position(m, (he_vertex){v});
+        if (he_mesh_is_live(m, HE_VERTEX, v)) {
+            most = fmax(most, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
+        }
+    }
+    return most;
+}
+
+bool md_is_tame(const md_draft *d)
+{
+    enum { ROOM = 300 };
+    const or_mesh *o = d->o;
+    he_mesh *copy = NULL;
+    he_results results = {.present = {false}};
+    if (o->vertices + ROOM > OR_VERTICES || o->edges + 8 * ROOM > OR_EDGES ||
+        o->faces + 4 * ROOM > OR_FACES) {
+        return false;
+    }
+    if (he_mesh_copy(d->m, &copy, NULL) != HE_OK) {
+        abort();
+    }
+    const he_status status = he_op_run(d->c->op, copy, d->c->args, &results, NULL);
+    const bool tame = status != HE_OK ||
+                      (reach(copy) <= 2 * reach(d->m) + 2 &&
+                       he_mesh_issued(copy, HE_VERTEX) <= he_mesh_issued(d->m, HE_VERTEX) + ROOM &&
+                       he_mesh_issued(copy, HE_FACE) <= he_mesh_issued(d->m, HE_FACE) + 4 * ROOM);
+    he_results_clear(&results);
+    he_mesh_free(copy);
+    return tame;
 }

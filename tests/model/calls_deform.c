@@ -1,3 +1,4 @@
+#include "model/adopt.h"
 #include "model/rows.h"
 
 #include "deform/deform.h"
@@ -45,7 +46,7 @@ static bool draw_deform(md_draft *d)
     if (md_chance(d->r, 60)) {
         (void)md_pick_some(d, "fixed_vertex", "fixed", HE_VERTEX, MD_LIST);
     }
-    return true;
+    return md_is_tame(d);
 }
 
 static bool is_listed(const he_arg *list, uint32_t id)

@@ -9,15 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The most vertices that one operation may add. */
-enum { ROOM = 300 };
-
-static bool has_room(const or_mesh *o)
-{
-    return o->vertices + ROOM <= OR_VERTICES && o->edges + 8 * ROOM <= OR_EDGES &&
-           o->faces + 4 * ROOM <= OR_FACES;
-}
-
 static he_smooth_fill smooth_of(const md_call *c)
 {
     const he_arg *length = md_get(c, "edge_length");
@@ -87,15 +78,7 @@ static bool draw_hole_fill(md_draft *d)
         return true;
     }
     draw_smooth(d);
-    he_mesh *copy = NULL;
-    const he_smooth_fill options = smooth_of(d->c);
-    if (!has_room(d->o) || he_mesh_copy(d->m, &copy, NULL) != HE_OK) {
-        return false;
-    }
-    const he_status status = he_hole_fill_smooth(copy, (he_halfedge){h}, &options, NULL, NULL);
-    const bool fits = status != HE_LIMIT && he_mesh_vertices(copy) <= he_mesh_vertices(d->m) + ROOM;
-    he_mesh_free(copy);
-    return fits;
+    return md_is_tame(d);
 }
 
 /* Fills a hole as hedge did on a copy of its mesh. */
@@ -175,17 +158,7 @@ static bool draw_fill_holes(md_draft *d)
     if (is_smooth(d->c)) {
         draw_smooth(d);
     }
-    he_mesh *copy = NULL;
-    const he_fill_holes_options options = options_of(d->c);
-    if (!has_room(d->o) || he_mesh_copy(d->m, &copy, NULL) != HE_OK) {
-        return false;
-    }
-    const he_status status = he_fill_holes(copy, &options, NULL, NULL);
-    const bool fits = status != HE_LIMIT &&
-                      he_mesh_vertices(copy) <= he_mesh_vertices(d->m) + ROOM &&
-                      he_mesh_faces(copy) <= he_mesh_faces(d->m) + 4 * ROOM;
-    he_mesh_free(copy);
-    return fits;
+    return md_is_tame(d);
 }
 
 /* Returns the number of holes of a mesh, and in *touching how many pass a vertex twice. */

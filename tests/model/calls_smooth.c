@@ -1,3 +1,4 @@
+#include "model/adopt.h"
 #include "model/rows.h"
 
 #include "mesh/walk.h"
@@ -28,7 +29,7 @@ static bool draw_smooth(md_draft *d)
     if (md_chance(d->r, 40)) {
         (void)md_pick_some(d, "vertex", "vertices", HE_VERTEX, MD_LIST);
     }
-    return true;
+    return md_is_tame(d);
 }
 
 static he_status run(const md_call *c, he_mesh *m)

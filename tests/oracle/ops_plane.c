@@ -41,7 +41,8 @@ static bool find_distances(const or_mesh *o, const or_plane *plane, double dista
 {
     he_vec3 point = plane->point;
     he_vec3 normal = plane->normal;
-    double within = plane->tolerance != NULL ? *plane->tolerance : tolerance_of(o);
+    const double extent = tolerance_of(o) / 1e-9;
+    double within = plane->tolerance != NULL ? *plane->tolerance : 1e-9 * extent;
     bool clear = true;
     memset(distance, 0, OR_VERTICES * sizeof *distance);
     for (uint32_t v = 0; v < o->vertices; v++) {
@@ -49,7 +50,7 @@ static bool find_distances(const or_mesh *o, const or_plane *plane, double dista
             he_vec3 p = o->vertex[v].at;
             double d = dot((he_vec3){p.x - point.x, p.y - point.y, p.z - point.z}, normal) /
                        sqrt(dot(normal, normal));
-            clear = clear && fabs(fabs(d) - within) > 1e-12;
+            clear = clear && fabs(fabs(d) - within) > 1e-12 * fmax(1, extent);
             distance[v] = fabs(d) <= within ? 0 : d;
         }
     }
@@ -77,8 +78,14 @@ or_plane_size or_plane_measure(const or_mesh *o, const or_plane *plane)
     or_plane_size size = {0, 0, 0, false};
     double distance[OR_VERTICES];
     size.doubtful = !find_distances(o, plane, distance);
+    /* where the plane meets an edge that is almost parallel to it depends on rounding, too */
+    const double least = 1e-6 * tolerance_of(o) / 1e-9;
     for (uint32_t e = 0; e < o->edges; e++) {
-        size.crossed += o->edge[e].alive && is_crossed(distance, o->edge[e].a, o->edge[e].b);
+        const or_edge *edge = &o->edge[e];
+        if (edge->alive && is_crossed(distance, edge->a, edge->b)) {
+            size.crossed++;
+            size.doubtful |= fabs(distance[edge->a] - distance[edge->b]) < least;
+        }
     }
     for (uint32_t f = 0; f < o->faces; f++) {
         const or_face *face = &o->face[f];

@@ -23,6 +23,7 @@ extern const bench_row bench_growth_rows[];
 extern const bench_row bench_stored_rows[];
 extern const bench_row bench_segment_rows[];
 extern const bench_row bench_deform_rows[];
+extern const bench_row bench_fill_rows[];
 extern const bench_row bench_solve_rows[];
 
 /* Ends the program if the status is not HE_OK, and prints the title of the status. */

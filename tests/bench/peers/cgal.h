@@ -38,5 +38,6 @@ extern const bench_row cgal_whole_rows[];
 extern const bench_row cgal_segment_rows[];
 extern const bench_row cgal_remesh_rows[];
 extern const bench_row cgal_deform_rows[];
+extern const bench_row cgal_fill_rows[];
 
 #endif

@@ -113,6 +113,11 @@ void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3])
     to[2] = s * p[0] + c * p[2] + lift;
 }
 
+bool bench_in_cap(const bench_side *side, uint32_t vertex)
+{
+    return side->input.positions[3 * (size_t)vertex] > 3.9;
+}
+
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)
 {
     snprintf(path, size, "%s/%s", side->folder, name);

@@ -67,6 +67,10 @@ bench_part bench_deform_part(const bench_side *side, uint32_t vertex);
 /* Computes where a handle goes: it is turned and lifted. */
 void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3]);
 
+/* Returns true if a vertex of the torus is in the cap that is cut off in the rows about filling
+ * holes. */
+bool bench_in_cap(const bench_side *side, uint32_t vertex);
+
 /* Writes the path of a file in the benchmark's folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
 /* Opens a file of the benchmark's folder; ends the program if that fails. */
