@@ -84,6 +84,7 @@ static const struct {
         {422,
          "The outline of the faces may pass each vertex only once. If parts of the faces touch at "
          "a vertex, add the faces between these parts, or edit one part after the other."},
+    [HE_NO_FACES] = {422, "Only surfaces can be compared: both meshes need at least one face."},
     [HE_NO_NORMAL] =
         {422, "A face without an area has no normal, and several faces whose vector areas add up "
               "to zero have no common normal. Give a vector or a factor instead of a distance."},

@@ -73,6 +73,7 @@
     X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                              \
     X(NO_RIM, "no_rim", "The faces are a whole closed component and have no outline")            \
     X(RIM_MEETS_ITSELF, "rim_meets_itself", "The outline of the faces passes a vertex twice")    \
+    X(NO_FACES, "no_faces", "A mesh has no faces")                                               \
     X(NO_NORMAL, "no_normal", "The face has no area and so no normal")                           \
     X(NO_SUCH_ATTRIBUTE, "no_such_attribute", "No such attribute")                               \
     X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of the same name have different types")    \

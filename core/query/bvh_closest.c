@@ -17,13 +17,16 @@ static double along(he_vec3 p, he_vec3 a, he_vec3 b)
 }
 
 /* Projects p perpendicularly onto the plane of a triangle. Returns false if the projected point is
- * outside the triangle, or if the triangle is too thin to decide that. */
-static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
+ * outside the triangle, or if the triangle is too thin to decide that. `thin` is set if rounding
+ * may have moved the projected point noticeably. */
+static bool over(he_vec3 p, const he_vec3 c[3], double weight[3], bool *thin)
 {
     he_vec3 u = he_vec3_sub(c[1], c[0]), v = he_vec3_sub(c[2], c[0]), w = he_vec3_sub(p, c[0]);
     he_vec3 normal = he_vec3_cross(u, v);
     double area = square(normal);
-    if (!(area > 1e-24 * square(u) * square(v))) {
+    const double widest = square(u) * square(v);
+    *thin = !(area > 1e-8 * widest);
+    if (!(area > 1e-24 * widest)) {
         return false;
     }
     weight[1] = he_vec3_dot(he_vec3_cross(w, v), normal) / area;
@@ -47,14 +50,18 @@ static he_vec3 from_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
     return he_vec3_sub(p, q);
 }
 
-/* Returns the vector from the nearest point of a triangle to p. */
-static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
+he_vec3 he_bvh_to_triangle(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
-    if (over(p, c, weight)) {
-        return from_point(p, c, weight);
-    }
     he_vec3 back = p;
     double best = HUGE_VAL;
+    bool thin;
+    if (over(p, c, weight, &thin)) {
+        back = from_point(p, c, weight);
+        if (!thin) {
+            return back;
+        }
+        best = square(back);
+    }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
         double t = along(p, c[i], c[j]), own[3] = {0, 0, 0};
@@ -95,7 +102,7 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
     if (is_behind(a, c)) {
         return;
     }
-    he_vec3 back = nearest(a->p, c, weight);
+    he_vec3 back = he_bvh_to_triangle(a->p, c, weight);
     double distance = square(back);
     bool nearer = distance < a->best.far;
     bool least = distance == a->best.far &&
@@ -163,6 +170,20 @@ static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, he_budg
     return HE_OK;
 }
 
+he_status he_bvh_near(const he_bvh *tree, const he_mesh *m, const he_bvh_asked *asked,
+                      he_budget *budget, he_bvh_found *out, he_error *err)
+{
+    approach a = {.p = asked->point, .best = {.triangle = HE_NONE, .far = HUGE_VAL}};
+    if (asked->hint != HE_NONE) {
+        try_triangle(&a, tree, m, asked->hint);
+    }
+    he_status status = walk(&a, tree, m, budget, err);
+    if (status == HE_OK) {
+        *out = a.best;
+    }
+    return status;
+}
+
 he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, double max,
                          he_budget *budget, he_hit *out, he_error *err)
 {
@@ -179,12 +200,12 @@ he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, do
         he_vec3_normalise(point, &p);
         p = he_vec3_scale(p, HE_BVH_FAR);
     }
-    approach a = {.p = p, .best = {.triangle = HE_NONE, .far = HUGE_VAL}};
-    he_status status = walk(&a, tree, m, budget, err);
+    he_bvh_found best;
+    he_status status = he_bvh_near(tree, m, &(he_bvh_asked){p, HE_NONE}, budget, &best, err);
     if (status != HE_OK) {
         return status;
     }
-    he_hit hit = he_bvh_tell(tree, m, &a.best);
+    he_hit hit = he_bvh_tell(tree, m, &best);
     he_direction(point, hit.point, &hit.distance);
     *out = hit.distance <= max ? hit : none;
     return HE_OK;

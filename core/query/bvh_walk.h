@@ -29,6 +29,24 @@ typedef struct he_bvh_found {
     double far;
 } he_bvh_found;
 
+/* Returns the vector from the nearest point of a triangle to p, and the barycentric coordinates of
+ * that point. */
+he_vec3 he_bvh_to_triangle(he_vec3 p, const he_vec3 corners[3], double weight[3]);
+
+/* A point whose nearest triangle is searched, in coordinates of the tree and nearer to their origin
+ * than HE_BVH_FAR; and a triangle that is probably near the point, or HE_NONE. */
+typedef struct he_bvh_asked {
+    he_vec3 point;
+    uint32_t hint;
+} he_bvh_asked;
+
+/* Finds the nearest triangle of a tree that has triangles, faster than he_bvh_closest if the hint
+ * is good. The result does not depend on the hint, unless two triangles of one face are equally
+ * near. out->far gets the squared distance in coordinates of the tree.
+ * Returns HE_LIMIT or HE_CANCELLED if the budget ends the work. */
+HE_NODISCARD he_status he_bvh_near(const he_bvh *tree, const he_mesh *m, const he_bvh_asked *asked,
+                                   he_budget *budget, he_bvh_found *out, he_error *err);
+
 /* Converts the best result of a walk into a hit in coordinates of the mesh. Its distance is left to
  * the caller. */
 static inline he_hit he_bvh_tell(const he_bvh *tree, const he_mesh *m, const he_bvh_found *found)
