@@ -145,6 +145,11 @@ enum {
 #define API_MEASURE_PER_SECOND 1e7
 #define API_FLOOD_PER_SECOND   4e6
 #define API_PATH_PER_SECOND    1.2e7
+/* Elements of both meshes per second of making their trees of boxes and comparing them with the
+ * default bound. A comparison makes at most API_MAX_PIECES parts of triangles in each direction,
+ * about a million in a second. */
+#define API_COMPARE_PER_SECOND 1e6
+enum { API_MAX_PIECES = 1 << 23 };
 /* Elements per second of making a progressive mesh: for 2.7 million elements it took 2.9 s. */
 #define API_PROGRESSIVE_PER_SECOND 1e6
 /* How much work a list of operations may do while it holds the mesh's lock, on a worker thread and

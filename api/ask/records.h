@@ -9,5 +9,8 @@
  * defect and the thresholds. */
 extern const api_record api_check_record, api_broken_record, api_defect_record,
     api_thresholds_record;
+/* The JSON members of the answer of POST .../compare, and of the objects in it: the distances in
+ * one direction, and a place. */
+extern const api_record api_comparison_record, api_one_sided_record, api_far_place_record;
 
 #endif

@@ -323,6 +323,30 @@ static const api_route routes[] = {
      .summary = "List the connected components",
      .doc =
          "The components are listed with their counts. Isolated vertices belong to no component."},
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/compare",
+     .name = "compare_mesh",
+     .decode = api_compare_decode,
+     .run = api_compare_post,
+     .role = API_ROLE_READ,
+     .reads = API_READS_SNAPSHOT,
+     .cost = api_compare_cost,
+     .flags = API_EXPENSIVE | API_LONG,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = json,
+     .parameters = {&api_parameter_revision},
+     .statuses = {200, 202, 410, 413, 415, 422},
+     .request = "compare",
+     .response = "comparison",
+     .summary = "How far two meshes are apart",
+     .doc =
+         "The Hausdorff distance between the surfaces of this mesh and of another mesh, or of an "
+         "earlier revision of this mesh: what did a decimation cost? The answer has a lower and "
+         "an upper bound for each direction, the place where the distance is largest, means and "
+         "histograms. The bounds hold for all points of the surfaces, not only for samples. A "
+         "comparison that would take more than a second becomes a job, unless the client "
+         "waits."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/check",
      .name = "check_mesh",

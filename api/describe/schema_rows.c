@@ -52,6 +52,9 @@ static const api_record *const records[] = {
     &api_defect_record,
     &api_thresholds_record,
     &api_check_record,
+    &api_far_place_record,
+    &api_one_sided_record,
+    &api_comparison_record,
     &api_problem_element_record,
     &api_problem_record,
     &api_loop_record,
@@ -259,6 +262,12 @@ const api_member api_answer_members[] = {
     {"thresholds", NULL, NULL, REQUIRED, NULL},
 
     {"check", NULL, NULL, REQUIRED, NULL},
+
+    {"far_place", NULL, NULL, REQUIRED, NULL},
+
+    {"one_sided", NULL, NULL, REQUIRED, NULL},
+
+    {"comparison", NULL, NULL, REQUIRED, NULL},
 
     /* The members have names from the table of kinds and are written by loops (change_json.c). */
     {"sets", "vertices", "*id", REQUIRED, NULL},
@@ -616,6 +625,14 @@ const api_member api_request_members[] = {
      "Find pairs of faces that share a point which is not a corner of both."},
 
     {"query", "queries", "*#question", REQUIRED, NULL},
+
+    {"compare", "with", "#mesh_or_revision", REQUIRED,
+     "The id of another mesh, or the number of a revision of this mesh."},
+    {"compare", "bound", "number", OPTIONAL,
+     "How much the upper bound of a distance may exceed its lower bound; above 0. Default: a "
+     "thousandth of the diagonal of the box around both meshes."},
+    {"compare", "bins", "count", OPTIONAL,
+     "The number of bins of the histograms, 1 to 256. Default: 32."},
 
     {"walk_path", "walk", "=path", REQUIRED, NULL},
     {"walk_path", "from", "#of_halfedge", REQUIRED, NULL},

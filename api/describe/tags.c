@@ -35,6 +35,7 @@ static const struct {
     {"/v1/meshes/{mesh}/query", "questions"},
     {"/v1/meshes/{mesh}/traverse", "questions"},
     {"/v1/meshes/{mesh}/check", "questions"},
+    {"/v1/meshes/{mesh}/compare", "questions"},
     {"/v1/meshes/{mesh}/boundaries", "questions"},
     {"/v1/meshes/{mesh}/components", "questions"},
     {"/v1/meshes/{mesh}/attributes", "attributes"},

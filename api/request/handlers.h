@@ -80,6 +80,9 @@ void api_boundaries_get(api_exchange *x);
 void api_components_get(api_exchange *x);
 void api_check_get(api_exchange *x);
 bool api_check_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
+bool api_compare_decode(api_exchange *x);
+bool api_compare_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
+void api_compare_post(api_exchange *x);
 
 /* Edits and history. */
 bool api_edits_decode(api_exchange *x);

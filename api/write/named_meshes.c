@@ -1,16 +1,6 @@
 #include "api/write/named_meshes.h"
 
-#include "api/header/path.h"
-#include "api/request/gate.h"
-
 #include <string.h>
-
-static bool refuse_absent(const api_in *at, const char *id)
-{
-    api_in_fail(at, API_NO_SUCH_MESH, "no mesh has the id \"%.64s\"", id);
-    at->problem->status = 422;
-    return false;
-}
 
 static bool find(void *context, const api_in *at, const char *id, const he_mesh **out)
 {
@@ -26,18 +16,11 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
         return api_in_fail(at, HE_LIMIT, "a request may use at most %d other meshes",
                            (int)API_MAX_NAMED_MESHES);
     }
-    api_named_mesh *other = &o->other[o->count];
-    bool is_there = api_path_is_mesh_id(id) && api_gate_sees(o->asker, id);
-    st_status status = is_there ? st_find(o->asker->store, id, &other->mesh) : ST_ABSENT;
-    if (status == ST_COLD) {
-        other->mesh = NULL;
-        o->cold++;
-    } else if (status != ST_OK) {
-        return refuse_absent(at, id);
+    api_other_mesh *other = &o->other[o->count];
+    if (!api_other_mesh_find(o->asker, at, id, 0, other)) {
+        return false;
     }
-    memcpy(other->id, id, strlen(id) + 1);
-    other->snapshot = NULL;
-    other->content = NULL;
+    o->cold += other->mesh == NULL;
     o->count++;
     *out = NULL;
     return true;
@@ -51,21 +34,11 @@ void api_named_meshes_init(api_named_meshes *o, api_exchange *asker)
     o->cold = 0;
 }
 
-static bool fail_absent(api_exchange *x, const char *id)
-{
-    api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"", id);
-    x->problem.status = 422;
-    return false;
-}
-
 bool api_named_meshes_load(api_exchange *x, api_named_meshes *o)
 {
     for (size_t i = 0; i < o->count; i++) {
-        api_named_mesh *other = &o->other[i];
-        st_status status = other->mesh != NULL ? ST_OK : st_load(x->store, other->id, &other->mesh);
-        if (status != ST_OK) {
-            other->mesh = NULL;
-            return status == ST_ABSENT ? fail_absent(x, other->id) : api_fail_store(x, status);
+        if (!api_other_mesh_load(x, &o->other[i])) {
+            return false;
         }
     }
     o->cold = 0;
@@ -85,25 +58,10 @@ uint64_t api_named_meshes_elements(const api_named_meshes *o)
 bool api_named_meshes_take(api_exchange *x, api_named_meshes *o)
 {
     for (size_t i = 0; i < o->count; i++) {
-        api_named_mesh *other = &o->other[i];
-        st_mesh_info info;
-        st_status status = st_snapshot_take(other->mesh, &other->snapshot);
-        if (status != ST_OK) {
-            other->snapshot = NULL;
-            return api_fail_store(x, status);
+        if (!api_other_mesh_take(x, &o->other[i])) {
+            return false;
         }
-        other->content = st_snapshot_content(other->snapshot, &info);
-        o->shown[i] = st_shown_of(&info);
-        if (info.lost) {
-            return api_fail_store(x, ST_LOST);
-        }
-        if (info.removed) {
-            return fail_absent(x, other->id);
-        }
-        if (info.unreadable != ST_OK) {
-            return api_fail(x, info.unreadable == ST_NEWER ? API_MESH_NEWER : API_MESH_DAMAGED,
-                            "mesh \"%s\": %s", other->id, st_damage(other->mesh));
-        }
+        o->shown[i] = st_shown_of(&o->other[i].info);
     }
     return true;
 }
@@ -111,19 +69,14 @@ bool api_named_meshes_take(api_exchange *x, api_named_meshes *o)
 void api_named_meshes_release(api_named_meshes *o)
 {
     for (size_t i = 0; i < o->count; i++) {
-        if (o->other[i].snapshot != NULL) {
-            st_snapshot_release(o->other[i].snapshot);
-            o->other[i].snapshot = NULL;
-            o->other[i].content = NULL;
-        }
+        api_other_mesh_release(&o->other[i]);
     }
 }
 
 void api_named_meshes_clear(api_named_meshes *o)
 {
-    api_named_meshes_release(o);
     for (size_t i = 0; i < o->count; i++) {
-        st_release(o->other[i].mesh);
+        api_other_mesh_clear(&o->other[i]);
     }
     o->count = 0;
     o->cold = 0;

@@ -1,26 +1,18 @@
 /* named_meshes.h - the other meshes that the operations of a request name, as `append` does.
  *
- * While the request is decoded, these meshes are looked up, and a reference to each is held. A
- * snapshot of each is taken later, on a thread that may block, and before the edited mesh is
- * locked, because the locks of two meshes are never held together. The edited mesh may itself be
- * one of them; its snapshot is then its state before the edit. */
+ * other_mesh.h says when they are looked up. A snapshot of each is taken before the edited mesh is
+ * locked. The edited mesh may itself be one of them; its snapshot is then its state before the
+ * edit. */
 #ifndef HE_API_WRITE_NAMED_MESHES_H
 #define HE_API_WRITE_NAMED_MESHES_H
 
-#include "api/request/exchange.h"
+#include "api/ask/other_mesh.h"
 #include "api/write/decode_op.h"
-
-typedef struct api_named_mesh {
-    char id[ST_MESH_ID + 1];
-    st_mesh *mesh;
-    st_snapshot *snapshot; /* NULL until api_named_meshes_take */
-    const he_mesh *content;
-} api_named_mesh;
 
 typedef struct api_named_meshes {
     api_meshes meshes; /* the function that finds these meshes; passed to api_decode_op */
     api_exchange *asker;
-    api_named_mesh other[API_MAX_NAMED_MESHES];
+    api_other_mesh other[API_MAX_NAMED_MESHES];
     size_t count;
     /* The description (name, revision and so on) of each mesh at the time of its snapshot. */
     st_shown shown[API_MAX_NAMED_MESHES];

@@ -160,6 +160,7 @@ static const char *body_of(const api_route *route)
         const char *name, *body;
     } bodies[] = {{"query_mesh", "{\"queries\":[]}"},
                   {"traverse_mesh", "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}"},
+                  {"compare_mesh", "{\"with\":1}"},
                   {"apply_edits", "{\"op\":\"face_poke\",\"face\":0}"},
                   {"replace_attribute", "{\"type\":\"bool\"}"},
                   {"update_attribute", "{\"ids\":\"all\",\"value\":true}"},
@@ -444,6 +445,14 @@ static void try_bodies_and_ids(world *w)
     bench_reply b = ask(w, "right", "POST", "/v1/meshes/right-m/edits", appends[1]);
     if (a.status != 422 || !are_alike(&a, "left-m", &b, "left-0")) {
         found(w, "append tells: %d %.200s", a.status, a.body);
+    }
+    bench_done(a);
+    bench_done(b);
+    static const char *const compares[] = {"{\"with\":\"left-m\"}", "{\"with\":\"left-0\"}"};
+    a = ask(w, "right", "POST", "/v1/meshes/right-m/compare", compares[0]);
+    b = ask(w, "right", "POST", "/v1/meshes/right-m/compare", compares[1]);
+    if (a.status != 422 || !are_alike(&a, "left-m", &b, "left-0")) {
+        found(w, "compare tells: %d %.200s", a.status, a.body);
     }
     bench_done(a);
     bench_done(b);

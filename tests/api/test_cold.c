@@ -103,6 +103,8 @@ static void a_cold_mesh_is_changed_like_any_other(void **state)
         {"POST", "/v1/meshes/m/copy", "{\"id\":\"c\"}", 201},
         {"POST", "/v1/meshes/n/edits", "{\"op\":\"append\",\"mesh\":\"m\"}", 200},
         {"POST", "/v1/meshes/n/edits", "{\"op\":\"append\",\"mesh\":\"x\"}", 422},
+        {"POST", "/v1/meshes/n/compare", "{\"with\":\"m\"}", 200},
+        {"POST", "/v1/meshes/n/compare", "{\"with\":\"x\"}", 422},
         {"POST", "/v1/meshes?id=c", "{\"shape\":\"cube\"}", 409},
         {"PUT", "/v1/meshes/c", "{\"shape\":\"cube\"}", 200},
         {"PUT", "/v1/meshes/d", "{\"shape\":\"cube\"}", 201},

@@ -185,6 +185,13 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/check", 304, NULL, {ANY}},
     {"GET", "/v1/meshes/m/check", 202, NULL, {ASYNC}},
 
+    {"POST", "/v1/meshes/m/compare", 200, "{\"with\":\"t\"}", {NULL}},
+    {"POST", "/v1/meshes/m/compare", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/compare", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/compare", 410, "{\"with\":1}", {NULL}},
+    {"POST", "/v1/meshes/m/compare", 422, "{\"with\":\"none\"}", {NULL}},
+    {"POST", "/v1/meshes/m/compare", 202, "{\"with\":\"t\"}", {ASYNC}},
+
     {"POST", "/v1/meshes/e/undo", 409, NULL, {NULL}},
     {"POST", "/v1/meshes/e/redo", 409, NULL, {NULL}},
     {"POST", "/v1/meshes/m/edits", 200, "{\"op\":\"face_poke\",\"face\":0}", {NULL}},

@@ -1,0 +1,188 @@
+/* POST .../compare: the distance between two meshes, or from an earlier revision. */
+#include "tests/api/request.h"
+
+#include "tests/failing.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define COMPARE "/v1/meshes/box/compare"
+
+static double number(const cJSON *object, const char *name)
+{
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, name);
+    assert_true(cJSON_IsNumber(value));
+    return value->valuedouble;
+}
+
+static const cJSON *member(const cJSON *object, const char *name)
+{
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, name);
+    assert_non_null(value);
+    return value;
+}
+
+static void require_near(double value, double wanted)
+{
+    if (!(fabs(value - wanted) <= 1e-12)) {
+        fail_msg("%.17g is not %.17g", value, wanted);
+    }
+}
+
+/* Makes the cube `box` of revision 2, whose vertices were moved by 1/4 along x after revision 1,
+ * and a copy of revision 1, `first`. */
+static api_bench *begin(void)
+{
+    static const char moved[] =
+        "{\"op\":\"transform\",\"matrix\":[1,0,0,0.25, 0,1,0,0, 0,0,1,0, 0,0,0,1]}";
+    api_bench *b = bench_new();
+    assert_non_null(b);
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/box", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes/box/copy", "{\"id\":\"first\"}")));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/box/edits", moved)));
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/none", NULL,
+                                            "{\"vertices\":[[0,0,0]],\"faces\":[]}")));
+    return b;
+}
+
+static void require_shifted(const cJSON *json, double bound)
+{
+    require_near(number(json, "lower"), 0.25);
+    require_near(number(json, "upper"), 0.25);
+    require_near(number(json, "bound"), bound);
+    assert_true(cJSON_IsTrue(member(json, "complete")));
+    static const char *const sides[] = {"forward", "backward"};
+    for (int i = 0; i < 2; i++) {
+        const cJSON *side = member(json, sides[i]), *place = member(side, "place");
+        require_near(number(side, "lower"), 0.25);
+        assert_true(number(side, "mean") > 0 && number(side, "mean") < number(side, "rms"));
+        double sum = 0;
+        for (const cJSON *share = member(side, "histogram")->child; share; share = share->next) {
+            sum += share->valuedouble;
+        }
+        require_near(sum, 1);
+        assert_true(number(place, "face") < 6 && number(place, "near_face") < 6);
+        const double from = cJSON_GetArrayItem(member(place, "point"), 0)->valuedouble;
+        const double to = cJSON_GetArrayItem(member(place, "near_point"), 0)->valuedouble;
+        require_near(fabs(from - to), 0.25);
+    }
+}
+
+static void a_mesh_is_compared_with_another_one_and_with_its_past(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r =
+        bench_expect(200, bench_post(b, COMPARE, "{\"with\":\"first\",\"bound\":0.01,\"bins\":5}"));
+    require_shifted(r.json, 0.01);
+    assert_string_equal(bench_text(&r, "with"), "first");
+    assert_int_equal(number(r.json, "revision"), 2);
+    assert_int_equal(number(r.json, "with_revision"), 1);
+    assert_int_equal(cJSON_GetArraySize(member(member(r.json, "forward"), "histogram")), 5);
+    require_near(number(r.json, "bin_width"), 0.05);
+    bench_done(r);
+    r = bench_expect(200, bench_post(b, COMPARE, "{\"with\":1,\"bound\":0.01}"));
+    require_shifted(r.json, 0.01);
+    assert_string_equal(bench_text(&r, "with"), "box");
+    assert_int_equal(cJSON_GetArraySize(member(member(r.json, "forward"), "histogram")), 32);
+    bench_done(r);
+    r = bench_expect(200, bench_post(b, COMPARE "?revision=1", "{\"with\":2,\"bound\":0.01}"));
+    require_shifted(r.json, 0.01);
+    assert_int_equal(number(r.json, "revision"), 1);
+    assert_int_equal(number(r.json, "with_revision"), 2);
+    bench_done(r);
+    r = bench_expect(200, bench_post(b, COMPARE "?revision=1", "{\"with\":\"first\"}"));
+    require_near(number(r.json, "upper"), 0);
+    assert_int_equal(number(member(r.json, "forward"), "equal_triangles"), 12);
+    bench_done(r);
+    bench_free(b);
+}
+
+static void the_default_bound_is_a_thousandth_of_the_diagonal(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = bench_expect(200, bench_post(b, COMPARE, "{\"with\":1}"));
+    bench_reply box = bench_expect(200, bench_get(b, "/v1/meshes/first"));
+    const cJSON *bounds = member(box.json, "bbox");
+    const double side = cJSON_GetArrayItem(member(bounds, "max"), 0)->valuedouble -
+                        cJSON_GetArrayItem(member(bounds, "min"), 0)->valuedouble;
+    require_near(number(r.json, "bound"),
+                 sqrt((side + 0.25) * (side + 0.25) + 2 * side * side) / 1000);
+    bench_done(box);
+    bench_done(r);
+    bench_free(b);
+}
+
+static void what_cannot_be_compared_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        int status;
+        const char *body, *code, *pointer;
+    } rows[] = {
+        {422, "{\"with\":\"absent\"}", "no_such_mesh", "/with"},
+        {422, "{\"with\":\"no id!\"}", "no_such_mesh", "/with"},
+        {422, "{\"with\":3}", "no_such_revision", "/with"},
+        {422, "{\"with\":\"none\"}", "no_faces", NULL},
+        {400, "{}", "missing_member", NULL},
+        {400, "{\"with\":0}", "bad_value", "/with"},
+        {400, "{\"with\":1.5}", "bad_value", "/with"},
+        {400, "{\"with\":true}", "wrong_type", "/with"},
+        {400, "{\"with\":1,\"bound\":0}", "bad_value", "/bound"},
+        {400, "{\"with\":1,\"bound\":-1}", "bad_value", "/bound"},
+        {400, "{\"with\":1,\"bins\":0}", "bad_value", "/bins"},
+        {400, "{\"with\":1,\"bins\":257}", "bad_value", "/bins"},
+        {400, "{\"with\":1,\"into\":\"x\"}", "unknown_member", "/into"},
+    };
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        print_message("%s\n", rows[i].body);
+        bench_reply r = bench_expect(rows[i].status, bench_post(b, COMPARE, rows[i].body));
+        assert_string_equal(bench_text(&r, "code"), rows[i].code);
+        if (rows[i].pointer != NULL) {
+            assert_string_equal(bench_text(&r, "pointer"), rows[i].pointer);
+        }
+        bench_done(r);
+    }
+    bench_done(bench_expect(422, bench_post(b, "/v1/meshes/none/compare", "{\"with\":\"box\"}")));
+    bench_free(b);
+}
+
+static void every_allocation_may_fail(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    failing f = {.may_succeed = true};
+    static const char body[] = "{\"with\":1,\"bound\":0.1}";
+    static const char *const headers[] = {"Content-Type", "application/json", NULL};
+    while (failing_next(&f)) {
+        bench_reply r;
+        const bool any =
+            bench_try(b, &(bench_request){"POST", COMPARE, headers, body, sizeof body - 1}, &r);
+        failing_end(&f, any && r.status == 200);
+        if (any) {
+            assert_true(r.status == 200 || r.status == 507);
+            bench_reply_free(&r);
+        }
+    }
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mesh_is_compared_with_another_one_and_with_its_past),
+        cmocka_unit_test(the_default_bound_is_a_thousandth_of_the_diagonal),
+        cmocka_unit_test(what_cannot_be_compared_is_refused),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests_name("compare", tests, NULL, NULL);
+}
