@@ -372,7 +372,7 @@ static void write_value_schema(api_out *out, const he_param *param)
         api_schema_reference(out, param->flags & HE_OPACITY ? "color_alpha" : "color");
         break;
     case HE_PARAM_MESH:
-        api_schema_reference(out, "mesh_id");
+        api_schema_reference(out, "mesh_or_revision");
         break;
     }
 }

@@ -204,9 +204,13 @@ static bool decode_matrix(const he_param *param, const api_in *in, he_arg *arg)
 static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
 {
     const api_meshes *meshes = d->scope->meshes;
-    const char *id;
-    return api_in_string(in, ST_MESH_ID, &id) &&
-           (meshes == NULL || meshes->find(meshes->context, in, id, &arg->mesh));
+    const char *id = NULL;
+    uint64_t revision = 0;
+    if (api_in_is_number(in) ? !api_in_u64(in, 1, (uint64_t)1 << 53, &revision)
+                             : !api_in_string(in, ST_MESH_ID, &id)) {
+        return false;
+    }
+    return meshes == NULL || meshes->find(meshes->context, in, id, revision, &arg->mesh);
 }
 
 static bool decode_number(const he_param *param, const api_in *in, he_arg *arg)

@@ -36,9 +36,11 @@ typedef struct api_references {
 
 /* A function that finds the other meshes that an operation names, with its context. */
 typedef struct api_meshes {
-    /* Finds the mesh with an id; *out is NULL if the mesh is not in memory yet. Refuses the value
-     * at `at` and returns false if there is no such mesh. */
-    bool (*find)(void *context, const api_in *at, const char *id, const he_mesh **out);
+    /* Finds the mesh with an id, or a revision of the edited mesh if `id` is NULL; *out is NULL if
+     * no snapshot of it was taken yet. Refuses the value at `at` and returns false if there is no
+     * such mesh. */
+    bool (*find)(void *context, const api_in *at, const char *id, uint64_t revision,
+                 const he_mesh **out);
     void *context;
 } api_meshes;
 

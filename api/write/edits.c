@@ -600,6 +600,7 @@ bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     double grown = e->growth * (double)(e->elements_beside + api_elements_of(mesh));
     uint64_t elements = grown < MANY ? (uint64_t)grown : (uint64_t)MANY;
     e->costly = e->count > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
+                api_named_meshes_reach_back(&e->named) ||
                 (elements > API_COSTLY_ELEMENTS &&
                  (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
     e->seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;

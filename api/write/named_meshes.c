@@ -2,12 +2,14 @@
 
 #include <string.h>
 
-static bool find(void *context, const api_in *at, const char *id, const he_mesh **out)
+static bool find(void *context, const api_in *at, const char *id, uint64_t revision,
+                 const he_mesh **out)
 {
     api_named_meshes *o = context;
+    id = id == NULL ? o->asker->mesh_id : id;
     o->asker->shows_all = true;
     for (size_t i = 0; i < o->count; i++) {
-        if (strcmp(o->other[i].id, id) == 0) {
+        if (strcmp(o->other[i].id, id) == 0 && o->other[i].revision == revision) {
             *out = o->other[i].content;
             return true;
         }
@@ -17,7 +19,7 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
                            (int)API_MAX_NAMED_MESHES);
     }
     api_other_mesh *other = &o->other[o->count];
-    if (!api_other_mesh_find(o->asker, at, id, 0, other)) {
+    if (!api_other_mesh_find(o->asker, at, id, revision, other)) {
         return false;
     }
     o->cold += other->mesh == NULL;
@@ -53,6 +55,15 @@ uint64_t api_named_meshes_elements(const api_named_meshes *o)
         elements += st_read_card(o->other[i].mesh, &info);
     }
     return elements;
+}
+
+bool api_named_meshes_reach_back(const api_named_meshes *o)
+{
+    bool reaches = false;
+    for (size_t i = 0; i < o->count; i++) {
+        reaches |= o->other[i].revision != 0;
+    }
+    return reaches;
 }
 
 bool api_named_meshes_take(api_exchange *x, api_named_meshes *o)

@@ -30,6 +30,8 @@ bool api_named_meshes_load(api_exchange *x, api_named_meshes *named);
 /* Returns the present number of elements of all other meshes that operations name, from which the
  * cost of the request is estimated. */
 uint64_t api_named_meshes_elements(const api_named_meshes *named);
+/* Returns true if an earlier revision is named, whose snapshot a worker thread must not take. */
+bool api_named_meshes_reach_back(const api_named_meshes *named);
 /* Takes a snapshot of each mesh; returns false with x->problem filled. api_named_meshes_release
  * releases the snapshots; api_named_meshes_clear also releases the references to the meshes. */
 bool api_named_meshes_take(api_exchange *x, api_named_meshes *named);

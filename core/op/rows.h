@@ -24,6 +24,7 @@ extern const he_op he_fill_rows[];
 extern const he_op he_deform_rows[];
 extern const he_op he_material_rows[];
 extern const he_op he_select_rows[];
+extern const he_op he_compare_rows[];
 
 /* Returns the row with this number, in the order of the table; NULL past the last row. */
 const he_op *he_table_row(size_t i);

@@ -100,7 +100,8 @@ const he_op he_whole_rows[] = {
                                     .type = HE_PARAM_MESH,
                                     .flags = HE_REQUIRED,
                                     .doc = "The id of the other mesh, which is copied as it was "
-                                           "when the request began and is not changed."}},
+                                           "when the request began and is not changed; or the "
+                                           "number of an earlier revision of this mesh."}},
         .results =
             {[APPEND_OUT_VERTICES] =
                  {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,

@@ -171,10 +171,12 @@ static bool arrange(he_bvh *tree, he_boxes *boxes)
     if (tree->discs == NULL) {
         return false;
     }
-    /* The array of nodes is shrunk to the number of nodes; if shrinking fails, the larger array is
-     * kept. */
+    /* The array of nodes is shrunk to the number of nodes. */
     he_box_node *nodes = he_mem_array(boxes->nodes, boxes->node_count, sizeof *nodes);
-    tree->nodes = nodes == NULL ? boxes->nodes : nodes;
+    if (nodes == NULL) {
+        return false;
+    }
+    tree->nodes = nodes;
     tree->node_count = boxes->node_count;
     boxes->nodes = NULL;
     memcpy(tree->min, boxes->all.min, sizeof tree->min);

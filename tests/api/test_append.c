@@ -93,7 +93,8 @@ static void what_cannot_be_had_is_refused_at_its_place(void **state)
         const char *code, *pointer;
     } refused[] = {
         {"{\"op\":\"append\"}", 400, "missing_member", ""},
-        {"{\"op\":\"append\",\"mesh\":7}", 400, "wrong_type", "/mesh"},
+        {"{\"op\":\"append\",\"mesh\":true}", 400, "wrong_type", "/mesh"},
+        {"{\"op\":\"append\",\"mesh\":7}", 422, "no_such_revision", "/mesh"},
         {"{\"op\":\"append\",\"mesh\":null}", 400, "wrong_type", "/mesh"},
         {"{\"op\":\"append\",\"mesh\":\"none\"}", 422, "no_such_mesh", "/mesh"},
         {"{\"op\":\"append\",\"mesh\":\"\"}", 422, "no_such_mesh", "/mesh"},

@@ -156,6 +156,35 @@ static void what_cannot_be_compared_is_refused(void **state)
     bench_free(b);
 }
 
+static void an_operation_takes_an_earlier_revision_as_the_other_mesh(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = bench_expect(
+        200, bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"deviation\",\"with\":1}"));
+    const cJSON *done = member(r.json, "results")->child;
+    require_near(number(done, "largest"), 0.25);
+    require_near(number(done, "least"), 0); /* the other vertices moved along edges */
+    bench_done(r);
+    r = bench_expect(200, bench_get(b, "/v1/meshes/box/attributes/vertices/deviation"));
+    assert_int_equal(cJSON_GetArraySize(member(r.json, "values")), 8);
+    bench_done(r);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/box/undo", NULL)));
+    bench_done(bench_expect(404, bench_get(b, "/v1/meshes/box/attributes/vertices/deviation")));
+    r = bench_expect(200, bench_post(b, "/v1/meshes/box/edits",
+                                     "{\"ops\":[{\"op\":\"append\",\"mesh\":1},"
+                                     "{\"op\":\"append\",\"mesh\":\"box\"}]}"));
+    assert_int_equal(cJSON_GetArraySize(member(member(r.json, "created"), "vertices")), 16);
+    bench_done(r);
+    r = bench_expect(422,
+                     bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"deviation\",\"with\":99}"));
+    assert_string_equal(bench_text(&r, "code"), "no_such_revision");
+    bench_done(r);
+    bench_done(bench_expect(
+        400, bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"deviation\",\"with\":0}")));
+    bench_free(b);
+}
+
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -182,6 +211,7 @@ int main(void)
         cmocka_unit_test(a_mesh_is_compared_with_another_one_and_with_its_past),
         cmocka_unit_test(the_default_bound_is_a_thousandth_of_the_diagonal),
         cmocka_unit_test(what_cannot_be_compared_is_refused),
+        cmocka_unit_test(an_operation_takes_an_earlier_revision_as_the_other_mesh),
         cmocka_unit_test(every_allocation_may_fail),
     };
     return cmocka_run_group_tests_name("compare", tests, NULL, NULL);

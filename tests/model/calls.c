@@ -593,9 +593,10 @@ static const md_row rows[] = {
 };
 
 static const md_row *const groups[] = {
-    rows,           md_border_rows,   md_weld_rows,     md_corner_rows, md_loop_rows,
-    md_region_rows, md_refine_rows,   md_decimate_rows, md_remesh_rows, md_smooth_rows,
-    md_fill_rows,   md_material_rows, md_deform_rows,   md_select_rows, md_segment_rows};
+    rows,           md_border_rows, md_weld_rows,    md_corner_rows,
+    md_loop_rows,   md_region_rows, md_refine_rows,  md_decimate_rows,
+    md_remesh_rows, md_smooth_rows, md_fill_rows,    md_material_rows,
+    md_deform_rows, md_select_rows, md_segment_rows, md_compare_rows};
 
 static const md_row *row_of(const char *name)
 {

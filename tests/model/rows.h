@@ -32,5 +32,6 @@ extern const md_row md_deform_rows[];
 extern const md_row md_material_rows[];
 extern const md_row md_select_rows[];
 extern const md_row md_segment_rows[];
+extern const md_row md_compare_rows[];
 
 #endif

@@ -169,5 +169,17 @@ const scenario region_scenarios[] = {
      {3, 3, 1}},
     {"append mesh=012!", "012", "materials 4095", HE_LIMIT, {0}},
     {"append mesh=", "012", NULL, HE_OK, {0, 0, 0}},
+
+    {"deviation with=012", QCUBE, NULL, HE_OK, {0, 0, 0}},
+    {"deviation with=012,034 attribute=d", TETRA "+", "vertex_delete vertex=1", HE_OK, {0, 0, 0}},
+    {"deviation with=012", "", NULL, HE_OK, {0, 0, 0}},
+    {"deviation with=", "012", NULL, HE_NO_FACES, {0}},
+    {"deviation with=012 attribute=position", "012", NULL, HE_BAD_VALUE, {0}},
+    {"deviation with=012 attribute=selected",
+     "012",
+     "mark selected vertex=0",
+     HE_ATTRIBUTE_CLASH,
+     {0}},
+    {"deviation with=012", "012", "vertex_add position=0,0,1e60", HE_LIMIT, {0}},
     {.operation = NULL},
 };

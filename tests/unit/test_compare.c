@@ -5,6 +5,7 @@
 #include "tests/unit/random_meshes.h"
 
 #include "compare/compare.h"
+#include "compare/deviation.h"
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/write.h"
@@ -512,6 +513,131 @@ static void every_allocation_may_fail(void **state)
     pair_clear(&p);
 }
 
+/* --- deviations --- */
+
+static double value_of(const he_mesh *m, const char *name, uint32_t v)
+{
+    const he_column *column = he_mesh_find_column(m, HE_VERTEX, name);
+    assert_non_null(column);
+    return he_column_number(column, v, 0);
+}
+
+static he_deviated deviate(he_mesh *m, const he_mesh *with)
+{
+    he_deviated done;
+    he_error err = {0};
+    if (he_deviation(m, with, "deviation", &done, &err) != HE_OK) {
+        fail_msg("%s", err.text);
+    }
+    fixture_check(m);
+    return done;
+}
+
+/* Returns the signed distance of a point from a cube around the origin with sides of 2 * half. */
+static double from_cube(he_vec3 p, double half)
+{
+    const he_vec3 beyond = {fabs(p.x) - half, fabs(p.y) - half, fabs(p.z) - half};
+    const he_vec3 out = {fmax(beyond.x, 0), fmax(beyond.y, 0), fmax(beyond.z, 0)};
+    const double inside = fmax(beyond.x, fmax(beyond.y, beyond.z));
+    return inside < 0 ? inside : he_vec3_length(out);
+}
+
+/* The vertices are isolated points around a cube: beside its sides, edges and corners, and in it.
+ */
+static void points_have_the_signed_distance_from_a_cube(void **state)
+{
+    (void)state;
+    enum { POINTS = 5000 };
+    md_random r = {seed_of_run()};
+    he_mesh *cube = dense_cube(3);
+    he_box box;
+    assert_true(he_mesh_box(cube, &box));
+    const double half = (box.max.x - box.min.x) / 2;
+    move(cube, 1, he_vec3_scale(he_vec3_add(box.min, box.max), -0.5));
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    for (int i = 0; i < POINTS; i++) {
+        const double far = 4 * half;
+        (void)dense_add_vertex(&soup, far * (md_unit(&r) - 0.5), far * (md_unit(&r) - 0.5),
+                               far * (md_unit(&r) - 0.5));
+    }
+    he_mesh *m = dense_built(&soup);
+    const he_deviated done = deviate(m, cube);
+    double least = INFINITY, largest = -INFINITY, sum = 0;
+    for (uint32_t v = 0; v < POINTS; v++) {
+        const double wanted = from_cube(he_position(m, (he_vertex){v}), half);
+        require_near(value_of(m, "deviation", v), wanted, 1e-6 * half);
+        least = fmin(least, wanted);
+        largest = fmax(largest, wanted);
+        sum += wanted;
+    }
+    require_near(done.least, least, 1e-12 * half);
+    require_near(done.largest, largest, 1e-12 * half);
+    require_near(done.mean, sum / POINTS, 1e-10 * half);
+    assert_true(done.rms >= fabs(done.mean) && done.least < 0 && done.largest > 0);
+    he_mesh_free(m);
+    he_mesh_free(cube);
+}
+
+static void the_sides_of_an_open_surface_have_signs(void **state)
+{
+    (void)state;
+    he_mesh *sheet = dense_grid(4, NULL, 1);
+    for (int side = -1; side <= 1; side += 2) {
+        he_mesh *m = dense_copy(sheet);
+        move(m, 1, (he_vec3){0.3, 0.2, 0.5 * side});
+        const bool up = dense_area(sheet, 0).z > 0;
+        const he_deviated done = deviate(m, sheet);
+        assert_true((done.least > 0) == (up == (side > 0)));
+        assert_true((done.largest < 0) == (up != (side > 0)));
+        he_mesh_free(m);
+    }
+    he_mesh_free(sheet);
+}
+
+static void a_deviation_is_one_step_of_undo(void **state)
+{
+    (void)state;
+    he_mesh *m = dense_torus(12), *with = dense_copy(m);
+    move(m, 1.1, (he_vec3){0, 0, 0});
+    (void)deviate(m, with);
+    move(m, 1.1, (he_vec3){0, 0, 0});
+    he_mesh *before = dense_copy(m);
+    he_delta *delta = he_delta_new();
+    he_mesh_record(m, delta);
+    (void)deviate(m, with);
+    he_mesh_record(m, NULL);
+    assert_false(he_mesh_equal_live(m, before));
+    he_mesh *after = dense_copy(m);
+    he_delta_undo(delta, m);
+    assert_true(he_mesh_equal_live(m, before));
+    he_delta_redo(delta, m);
+    assert_true(he_mesh_equal(m, after));
+    he_delta_free(delta);
+    he_mesh_free(after);
+    he_mesh_free(before);
+    he_mesh_free(with);
+    he_mesh_free(m);
+}
+
+static void every_allocation_of_a_deviation_may_fail(void **state)
+{
+    (void)state;
+    he_mesh *with = dense_torus(8);
+    failing f = {0};
+    while (failing_next(&f)) {
+        failing_pause();
+        he_mesh *m = dense_torus(6), *before = dense_copy(m);
+        failing_resume();
+        if (!failing_status(&f, he_deviation(m, with, "deviation", NULL, NULL))) {
+            assert_true(he_mesh_equal(m, before));
+        }
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+    he_mesh_free(with);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -526,6 +652,10 @@ int main(void)
         cmocka_unit_test(no_sample_is_outside_the_bounds),
         cmocka_unit_test(too_few_pieces_leave_wider_bounds),
         cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(points_have_the_signed_distance_from_a_cube),
+        cmocka_unit_test(the_sides_of_an_open_surface_have_signs),
+        cmocka_unit_test(a_deviation_is_one_step_of_undo),
+        cmocka_unit_test(every_allocation_of_a_deviation_may_fail),
     };
     return cmocka_run_group_tests_name("compare", tests, NULL, NULL);
 }

@@ -123,6 +123,7 @@ export const SCENARIOS = [
         vertex: [vertex(5)], by: [0, 0, 0.5], fixed_vertex: [vertex(0), vertex(15)], steps: '3',
     }],
     ['append', GRID, { mesh: 'which mesh' }],
+    ['deviation', GRID, { with: 'which mesh' }],
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));
 
