@@ -160,6 +160,11 @@ export function getBoundaries(mesh, signal) {
     return getJson(`${meshPath(mesh)}/boundaries`, signal);
 }
 
+// Returns how far the mesh is from another one, or from its own revision if `other` is a number.
+export function compare(mesh, other, work) {
+    return postJson(`${meshPath(mesh)}/compare`, { with: other }, work);
+}
+
 // Returns {revision, attributes: [{domain, name, labels, ...}]}.
 export function getAttributes(mesh, signal) {
     return getJson(`${meshPath(mesh)}/attributes`, signal);

@@ -194,6 +194,17 @@ export class Editing {
         }
     }
 
+    // Shows the progress of work on the open mesh that is no edit. `begin(work)` begins the work and
+    // returns a promise of its result.
+    async watch(title, begin) {
+        this.#work.start(title, false);
+        try {
+            return await begin(this.#work);
+        } finally {
+            this.#work.end();
+        }
+    }
+
     async run(operation) {
         this.#trial.clear();
         this.#direct.cancel();

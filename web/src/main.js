@@ -3,6 +3,7 @@
 import { Address } from './address.js';
 import * as api from './api.js';
 import { isReady, showName, showState } from './bar.js';
+import { Comparing } from './comparing.js';
 import { byId, formatCount, make } from './dom.js';
 import { Editing } from './editing.js';
 import { framing } from './framing.js';
@@ -49,6 +50,22 @@ const history = new History(
     {
         readPage: (cursor) => api.getHistory(session.mesh, cursor),
         onUndo: (revision) => session.undo(revision).catch(fail),
+        onError: fail,
+    },
+);
+const comparing = new Comparing(
+    {
+        form: byId('compare'),
+        kind: byId('compare-kind'),
+        other: byId('compare-mesh'),
+        revision: byId('compare-revision'),
+        button: byId('compare-button'),
+        result: byId('compare-result'),
+    },
+    {
+        compare: (other) => editing.watch('compare', (work) => api.compare(session.mesh, other, work)),
+        meshes: async () => (await api.listMeshes()).items,
+        onPlace: (face) => session.selection.select('face', face).then(frameSelection).catch(fail),
         onError: fail,
     },
 );
@@ -152,6 +169,7 @@ function update(what, change) {
     }
     if (isChanged) {
         history.show(session.shown.history);
+        comparing.forget();
     }
     if (isNew || what === 'name') {
         showName(session.shown);
@@ -164,6 +182,7 @@ function update(what, change) {
         byId('empty').hidden = true;
         byId('details').hidden = false;
         list.setCurrent(session.mesh);
+        comparing.setMesh(session.mesh);
         stage.fit();
     }
     if (isChanged || what === 'selection') {
