@@ -26,6 +26,7 @@
 //     errors   lists of rows whose figures come from a row of ours, `by`, about what each program
 //              has left in the folder; `of` says which of its numbers
 
+import { compare } from './rows_compare.mjs';
 import { deform } from './rows_deform.mjs';
 import { fill } from './rows_fill.mjs';
 import { remesh } from './rows_remesh.mjs';
@@ -507,5 +508,6 @@ export const parts = [
         ],
     },
     ...segment,
+    ...compare,
     ...solve,
 ];

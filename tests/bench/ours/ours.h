@@ -25,6 +25,7 @@ extern const bench_row bench_segment_rows[];
 extern const bench_row bench_deform_rows[];
 extern const bench_row bench_fill_rows[];
 extern const bench_row bench_solve_rows[];
+extern const bench_row bench_compare_rows[];
 
 /* Ends the program if the status is not HE_OK, and prints the title of the status. */
 void bench_require(he_status status);

@@ -39,5 +39,6 @@ extern const bench_row cgal_segment_rows[];
 extern const bench_row cgal_remesh_rows[];
 extern const bench_row cgal_deform_rows[];
 extern const bench_row cgal_fill_rows[];
+extern const bench_row cgal_compare_rows[];
 
 #endif

@@ -118,6 +118,14 @@ bool bench_in_cap(const bench_side *side, uint32_t vertex)
     return side->input.positions[3 * (size_t)vertex] > 3.9;
 }
 
+void bench_bend(double point[3])
+{
+    const double wave = sin(3 * point[0] + 5 * point[1] + 7 * point[2]);
+    for (int k = 0; k < 3; k++) {
+        point[k] += 0.02 * (k + 1) * wave;
+    }
+}
+
 void bench_path(const bench_side *side, const char *name, char *path, size_t size)
 {
     snprintf(path, size, "%s/%s", side->folder, name);

@@ -71,6 +71,11 @@ void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3]);
  * holes. */
 bool bench_in_cap(const bench_side *side, uint32_t vertex);
 
+/* Moves a point by a few hundredths, as waves in space say, so that a mesh is a little bent. Bent
+ * meshes are compared with a bound of BENCH_COMPARE_BOUND. */
+#define BENCH_COMPARE_BOUND 1e-4
+void bench_bend(double point[3]);
+
 /* Writes the path of a file in the benchmark's folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
 /* Opens a file of the benchmark's folder; ends the program if that fails. */

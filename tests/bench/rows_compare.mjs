@@ -1,0 +1,27 @@
+// rows_compare.mjs - the row of `make bench BENCH=reshape` about distances. rows.mjs says what the
+// members of a row are.
+//
+// The torus, 8 wide, is compared with a copy in which every vertex has moved a little, in both
+// directions. The bound is a ten-thousandth, so the distances agree to a twentieth.
+
+export const compare = [
+    {
+        part: 'reshape',
+        input: 'torus',
+        order: 'natural',
+        side: 200,
+        sides: ['cgal'],
+        rows: [
+            {
+                title: 'Hausdorff distance, bound 1e-4',
+                ours: 'compare',
+                unit: 'Mface/s',
+                per: 1e6,
+                near: 0.05,
+                target: [['cgal', 5]],
+                runs: 3,
+                slow: ['cgal'],
+            },
+        ],
+    },
+];
