@@ -222,6 +222,10 @@ typedef struct st_journal {
      * durable records. Waits for the disk.
      * Returns ST_FAILED or ST_NO_MEMORY if they cannot be read. */
     st_status (*list)(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+    /* Lists cards as `list` does, but those of `page`, in its order. One call sees the meshes of
+     * one moment. Waits for the disk; a change that is not durable yet is not seen. Returns
+     * ST_FAILED or ST_NO_MEMORY if they cannot be read. */
+    st_status (*list_by)(void *self, const st_card_page *page, st_card *out, size_t *count);
     /* Passes to `take` the Idempotency-Keys of the last day that durable records of the mesh `id`
      * have stored, or, if `id` is NULL, the keys of requests that created a mesh. The oldest key
      * comes first, damaged keys are included. Waits for the disk.

@@ -176,6 +176,32 @@ typedef struct st_card {
     char damage[ST_DAMAGE];
 } st_card;
 
+/* The orders in which meshes can be listed by their cards (short descriptions). */
+typedef enum st_card_order {
+    /* The names ascending, compared byte by byte but with the letters A to Z as a to z; meshes with
+     * equal names are in the order of their ids. */
+    ST_BY_NAME,
+    /* the times of the last change, the newest first; equal times are in the reverse order of
+     * ids */
+    ST_BY_MODIFIED,
+    /* the bytes of memory, the largest first; equal sizes are in the reverse order of ids */
+    ST_BY_BYTES,
+    ST_CARD_ORDERS
+} st_card_order;
+
+/* A part of the list of all meshes in one of the orders above. */
+typedef struct st_card_page {
+    st_card_order order;
+    /* The part begins after the place of this card; only its id and the member by which the list is
+     * ordered are used, and the mesh need not exist. NULL: the part begins with the first mesh. */
+    const st_card *after;
+    size_t limit; /* the most cards in the part */
+} st_card_page;
+
+/* Returns a negative number if the mesh with the card `a` is listed before that with the card `b`,
+ * a positive number if it is listed after it, and 0 if the order and the ids are equal. */
+int st_card_compare(st_card_order order, const st_card *a, const st_card *b);
+
 /* Copies a text; it is cut after `most` bytes. */
 void st_copy_text(char *to, const char *from, size_t most);
 /* Fills in the card of a mesh as it is after this record; card->damage stays as it is. */

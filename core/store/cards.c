@@ -103,3 +103,13 @@ st_status st_cards(st_store *store, const char *after, st_card *out, size_t limi
     he_mem_free(cards);
     return status;
 }
+
+st_status st_cards_by(st_store *store, const st_card_page *page, st_card *out, size_t *count)
+{
+    const st_journal *journal = &store->journal;
+    if (journal->keeps) {
+        return journal->list_by(journal->self, page, out, count);
+    }
+    *count = st_sorted_list(&store->sorted, page, out);
+    return ST_OK;
+}

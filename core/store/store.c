@@ -62,6 +62,7 @@ st_store *st_store_new(const st_store_options *options)
     st_keys_init(&store->keys, store->journal.secret);
     st_holders_init(&store->holders, store->journal.secret);
     st_lookups_init(&store->lookups);
+    st_sorted_init(&store->sorted);
     store->followers = (st_followers){
         .render = options->render,
         .most = options->listeners,
@@ -77,6 +78,7 @@ st_store *st_store_new(const st_store_options *options)
         st_holders_clear(&store->holders);
         st_waits_free(store->followers.waits);
         st_lookups_clear(&store->lookups);
+        st_sorted_clear(&store->sorted);
         pthread_rwlock_destroy(&store->lock);
         pthread_mutex_destroy(&store->room);
         he_mem_free(store);
@@ -100,6 +102,7 @@ void st_store_free(st_store *store)
     st_keys_clear(&store->keys);
     st_holders_clear(&store->holders);
     st_lookups_clear(&store->lookups);
+    st_sorted_clear(&store->sorted);
     st_waits_free(store->followers.waits);
     store->journal.close(store->journal.self);
     pthread_rwlock_destroy(&store->lock);
@@ -194,6 +197,15 @@ bool st_store_stages(const st_store *store, uint64_t bytes)
     return store->journal.keeps && bytes > ST_BODY_BYTES;
 }
 
+void st_store_sort(st_store *store, const st_mesh *mesh, const st_record *record)
+{
+    st_card card = {.damage = ""};
+    if (mesh->sorted != NULL && record->kind != ST_RECORD_REMOVE) {
+        st_card_of_record(record, &card);
+        st_sorted_put(&store->sorted, mesh->sorted, &card);
+    }
+}
+
 void st_store_take_out(st_store *store, st_mesh *mesh)
 {
     bool found;
@@ -203,6 +215,9 @@ void st_store_take_out(st_store *store, st_mesh *mesh)
     store->count--;
     memmove(store->meshes + place, store->meshes + place + 1,
             (store->count - place) * sizeof(st_mesh *));
+    if (mesh->sorted != NULL) {
+        st_sorted_remove(&store->sorted, mesh->sorted);
+    }
     pthread_rwlock_unlock(&store->lock);
     st_release(mesh);
 }

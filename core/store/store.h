@@ -31,6 +31,7 @@
  *     queue     messages for listeners of the mesh (publish/broadcast_queue.h)
  *     waits     answers that wait until they are durable (publish/durability_wait.h)
  *     holders   how much each holder of meshes has (holder/holders.h)
+ *     sorted    the lists of meshes by name, time and size (sorted_cards.h)
  * The table of jobs (api/job/job_table.h) has a lock that is taken after a mesh's, and connections
  * that wait for events (server/http/http_stream.h) one that is taken after all others. A thread
  * that holds a mesh's lock must not take another mesh's lock, not even shared, nor its own again: a
@@ -280,6 +281,12 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);
  * st_store_waits_for_disk returns true.
  * Returns ST_NO_MEMORY or ST_FAILED if the cards cannot be read. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count);
+/* Lists the cards of meshes, in memory or not, in the order of `page`, without loading a mesh and
+ * without locking one. The cards are those of one moment, in which each mesh is listed once. A
+ * change that is not durable yet is not seen, so its answer is not sent yet either. A worker must
+ * not call this function if st_store_waits_for_disk returns true.
+ * Returns ST_NO_MEMORY or ST_FAILED if the cards cannot be read. */
+st_status st_cards_by(st_store *store, const st_card_page *page, st_card *out, size_t *count);
 
 /* --- a mesh that is not in memory, without loading it --- */
 

@@ -53,6 +53,7 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
     mesh->journal = options->journal;
     mesh->followers = options->followers;
     mesh->holders = options->holders;
+    mesh->sorted = options->journal->keeps ? NULL : st_sorted_entry_new();
     mesh->holding.bytes = card->bytes;
     mesh->info.incarnation = card->incarnation;
     mesh->info.metadata = card->metadata;
@@ -64,7 +65,9 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
     copy_name(mesh->info.name, sizeof mesh->info.name, card->name);
     st_queue_init(&mesh->queue, (st_place){.key = card->revision}, &mesh->followers->counts.queues);
     mesh->base = card->revision;
-    if (st_holders_find(options->holders, card->holder, &mesh->holding.holder) != ST_OK) {
+    const bool unsorted = mesh->sorted == NULL && !options->journal->keeps;
+    if (unsorted ||
+        st_holders_find(options->holders, card->holder, &mesh->holding.holder) != ST_OK) {
         st_release(mesh);
         return NULL;
     }
@@ -149,6 +152,7 @@ void st_release(st_mesh *mesh)
     he_mesh_free(mesh->content);
     st_copy_release(mesh->copy);
     st_copy_release(mesh->past);
+    st_sorted_entry_free(mesh->sorted);
     he_mem_free(mesh->cache);
     he_mem_free(mesh->damage);
     st_keys_clear(&mesh->keys);
@@ -274,6 +278,7 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group)
         journal->append(journal->self, group->booking->room, group->records, group->count);
     *group->booking = (st_booking){NULL};
     count_held(mesh, &group->records[group->count - 1]);
+    st_store_sort(mesh->store, mesh, &group->records[group->count - 1]);
     for (size_t i = 0; i < group->count; i++) {
         note_base(mesh, &group->records[i]);
     }

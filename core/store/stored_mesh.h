@@ -8,6 +8,7 @@
 #include "store/publish/broadcast_queue.h"
 #include "store/publish/store_counts.h"
 #include "store/revision_log.h"
+#include "store/sorted_cards.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -38,6 +39,8 @@ struct st_mesh {
     const st_journal *journal;
     struct st_followers *followers;
     st_holders *holders;
+    /* the mesh in the sorted lists of the store; NULL: the journal stores meshes and lists them */
+    st_sorted_entry *sorted;
 
     pthread_rwlock_t lock; /* guards the members from here down to `next_base` */
     /* description of the mesh (id, name, revision, ...); its members undo and redo are not set
@@ -168,7 +171,12 @@ void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_chan
                     st_event *out);
 /* Removes the mesh from the store and marks it as lost, if its newest change is lost. */
 void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
-/* Removes the mesh from the store's table of meshes. The caller holds the mesh's exclusive lock. */
+/* Moves the mesh to its places in the sorted lists of the store, after the change that `record`
+ * describes. A mesh that is removed leaves the lists with the table (st_store_take_out). The caller
+ * holds the mesh's exclusive lock, or is the only thread that knows the mesh. */
+void st_store_sort(st_store *store, const st_mesh *mesh, const st_record *record);
+/* Removes the mesh from the store's table of meshes and sorted lists. The caller holds the mesh's
+ * exclusive lock. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
 
 /* Adds the bytes of a group of records to the mesh's member `appended`, and begins to make a new

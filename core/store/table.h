@@ -32,6 +32,7 @@ struct st_store {
     size_t count, capacity;
     st_keys keys; /* the Idempotency-Keys of requests that create a mesh */
     st_holders holders;
+    st_sorted sorted; /* empty if the journal stores meshes */
 };
 
 /* Returns the settings that the store gives to its meshes. */

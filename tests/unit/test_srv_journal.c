@@ -563,8 +563,8 @@ static void other_files_are_refused_by_name(void **state)
     make_two();
     store_sql_run(folder, "PRAGMA user_version = 7");
     expect_refused(folder,
-                   "have version 7, but this hedged 1.2.3 supports them only up to version 3");
-    store_sql_run(folder, "PRAGMA user_version = 3; PRAGMA application_id = 5");
+                   "have version 7, but this hedged 1.2.3 supports them only up to version 4");
+    store_sql_run(folder, "PRAGMA user_version = 4; PRAGMA application_id = 5");
     expect_refused(folder, "is not a store of hedged");
     store_sql_run(folder, "PRAGMA application_id = 0x68656467; UPDATE state SET position = 1");
     expect_refused(folder, "is damaged");

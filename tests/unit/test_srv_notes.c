@@ -219,7 +219,8 @@ static void an_older_file_is_raised(void **state)
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
     append(&mesh, kept_content(&mesh), NULL);
     told_end(&told);
-    store_sql_run(folder, "DROP TABLE job; PRAGMA user_version = 1");
+    store_sql_run(folder, "DROP TABLE job; DROP INDEX mesh_by_name; DROP INDEX mesh_by_modified; "
+                          "DROP INDEX mesh_by_bytes; PRAGMA user_version = 1");
     assert_true(st_sqlite_backup(folder, backup, message));
     st_sqlite_opened look;
     assert_true(st_sqlite_look(backup, &look));

@@ -422,6 +422,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .shut = st_sqlite_shut,
                         .condemn = st_sqlite_condemn,
                         .list = st_sqlite_list,
+                        .list_by = st_sqlite_list_by,
                         .keys = st_sqlite_keys,
                         .jobs = st_sqlite_jobs,
                         .holdings = st_sqlite_holdings,

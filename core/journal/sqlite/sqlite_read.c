@@ -6,13 +6,36 @@
 #include "stored/bytes.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { CARD, CARDS, HOLDINGS, SNAPSHOT, PARTS, BASE, RECORDS, BEGIN, COMMIT, STATEMENTS };
+enum {
+    CARD,
+    CARDS,
+    CARDS_BY, /* the first of the statements for each st_card_order */
+    HOLDINGS = CARDS_BY + ST_CARD_ORDERS,
+    SNAPSHOT,
+    PARTS,
+    BASE,
+    RECORDS,
+    BEGIN,
+    COMMIT,
+    STATEMENTS
+};
 static const char *const texts[STATEMENTS] = {
     [CARD] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE id = ?1",
     [CARDS] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE id > ?1 ORDER BY id LIMIT ?2",
+    /* SQLite seeks the first row in the index only if the collation is on the side of ?1 */
+    [CARDS_BY + ST_BY_NAME] = "SELECT " ST_MESH_COLUMNS " FROM mesh INDEXED BY mesh_by_name "
+                              "WHERE (name, id) > (?1 COLLATE NOCASE, ?2) "
+                              "ORDER BY name COLLATE NOCASE, id LIMIT ?3",
+    [CARDS_BY + ST_BY_MODIFIED] = "SELECT " ST_MESH_COLUMNS " FROM mesh INDEXED BY "
+                                  "mesh_by_modified WHERE (modified, id) < (?1, ?2) "
+                                  "ORDER BY modified DESC, id DESC LIMIT ?3",
+    [CARDS_BY + ST_BY_BYTES] = "SELECT " ST_MESH_COLUMNS " FROM mesh INDEXED BY mesh_by_bytes "
+                               "WHERE (bytes, id) < (?1, ?2) "
+                               "ORDER BY bytes DESC, id DESC LIMIT ?3",
     [HOLDINGS] = "SELECT holder, bytes FROM mesh WHERE holder <> ''",
     [SNAPSHOT] = "SELECT " ST_SNAPSHOT_COLUMNS " FROM snapshot WHERE mesh = ?1 AND number = ?2",
     [PARTS] = "SELECT part, bytes FROM part WHERE snapshot = ?1 ORDER BY part",
@@ -161,6 +184,19 @@ static st_status find_card(st_sqlite *self, st_db *db, const char *id, st_mesh_r
     return self->only_reads ? ST_OK : status;
 }
 
+/* Reads the rows of a statement that selects cards (short descriptions of meshes); `outcome` is the
+ * outcome of its first step. */
+static st_sql take_cards(st_db *db, sqlite3_stmt *s, st_sql outcome, st_card *out, size_t *count)
+{
+    while (outcome == ST_SQL_ROW) {
+        st_mesh_row row;
+        (void)st_sqlite_read_card(s, &row);
+        out[(*count)++] = row.card;
+        outcome = st_db_step(db, s);
+    }
+    return outcome;
+}
+
 st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t limit,
                          size_t *count)
 {
@@ -173,13 +209,47 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
         outcome = st_salvage_list(self, after[0] == '\0', out, limit, &found);
     } else {
         outcome = st_db_find(&self->cards, CARDS, &s, "ti", after, (uint64_t)limit);
-        while (outcome == ST_SQL_ROW) {
-            st_mesh_row row;
-            (void)st_sqlite_read_card(s, &row);
-            out[found++] = row.card;
-            outcome = st_db_step(&self->cards, s);
-        }
+        outcome = take_cards(&self->cards, s, outcome, out, &found);
     }
+    pthread_mutex_unlock(&self->cards_lock);
+    if (outcome != ST_SQL_DONE) {
+        return status_of(outcome);
+    }
+    *count = found;
+    return ST_OK;
+}
+
+/* Begins to read the cards (short descriptions of meshes) of a sorted list. Each list begins after
+ * a card that sorts before those of all meshes, if the page has no card to begin after. */
+static st_sql find_by(st_db *db, const st_card_page *page, sqlite3_stmt **s)
+{
+    const unsigned which = CARDS_BY + (unsigned)page->order;
+    const st_card *after = page->after;
+    const char *id = after == NULL ? "" : after->id;
+    const uint64_t limit = page->limit;
+    switch (page->order) {
+    case ST_BY_NAME:
+        return st_db_find(db, which, s, "tti", after == NULL ? "" : after->name, id, limit);
+    case ST_BY_MODIFIED:
+        return st_db_find(db, which, s, "dti", after == NULL ? INFINITY : after->modified, id,
+                          limit);
+    case ST_BY_BYTES:
+        return st_db_find(db, which, s, "iti", after == NULL ? (uint64_t)INT64_MAX : after->bytes,
+                          id, limit);
+    case ST_CARD_ORDERS:
+        break;
+    }
+    return ST_SQL_FAILED;
+}
+
+st_status st_sqlite_list_by(void *context, const st_card_page *page, st_card *out, size_t *count)
+{
+    st_sqlite *self = context;
+    sqlite3_stmt *s = NULL;
+    size_t found = 0;
+    pthread_mutex_lock(&self->cards_lock);
+    st_sql outcome = find_by(&self->cards, page, &s);
+    outcome = take_cards(&self->cards, s, outcome, out, &found);
     pthread_mutex_unlock(&self->cards_lock);
     if (outcome != ST_SQL_DONE) {
         return status_of(outcome);

@@ -43,12 +43,16 @@ static const char *const tables[] = {
     "disposition TEXT NOT NULL, tag TEXT NOT NULL, warnings TEXT NOT NULL, body BLOB, "
     "sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE INDEX job_by_end ON job(finished)",
+    /* the orders in which meshes are listed (st_card_order) */
+    "CREATE INDEX mesh_by_name ON mesh(name COLLATE NOCASE, id)",
+    "CREATE INDEX mesh_by_modified ON mesh(modified, id)",
+    "CREATE INDEX mesh_by_bytes ON mesh(bytes, id)",
 };
 enum { TABLES = sizeof tables / sizeof *tables };
 
 /* How many of the tables above each version of the schema has. */
 static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {
-    [1] = TABLES - 2, [2] = TABLES, [3] = TABLES};
+    [1] = TABLES - 5, [2] = TABLES - 3, [3] = TABLES - 3, [4] = TABLES};
 
 /* --- checksums --- */
 
@@ -236,7 +240,7 @@ bool st_job_read(sqlite3_stmt *s, st_job *out)
 
 /* --- the whole database --- */
 
-#define SET_VERSION "PRAGMA user_version = 3"
+#define SET_VERSION "PRAGMA user_version = 4"
 
 enum { META_PUT, META_GET, STATE_PUT, STATE_GET, TABLE_GET, STATEMENTS };
 static const char *const texts[STATEMENTS] = {

@@ -1,4 +1,4 @@
-/* sqlite_schema.h - the tables of hedge.db, version 3, and the checksums of their rows.
+/* sqlite_schema.h - the tables of hedge.db, version 4, and the checksums of their rows.
  *
  * Every row has a column `sum`: CRC-32C over its table's name and its values, keys included. Rows
  * of the tables record and part have no such column, because their bytes contain checksums. Without
@@ -10,8 +10,9 @@
 #include "journal/sqlite/sqlite_db.h"
 
 enum {
-    /* the present version of the tables: version 1 had no jobs, version 2 no holders of meshes */
-    ST_SCHEMA_VERSION = 3,
+    /* the present version of the tables: version 1 had no jobs, version 2 no holders of meshes,
+     * version 3 no indexes for sorted lists of meshes */
+    ST_SCHEMA_VERSION = 4,
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
     ST_KEY_TEXT = 255,                  /* most bytes of an Idempotency-Key */

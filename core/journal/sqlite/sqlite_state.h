@@ -393,6 +393,7 @@ st_status st_sqlite_read(st_reader *reader, st_piece *out);
 void st_sqlite_shut(st_reader *reader);
 void st_sqlite_condemn(st_reader *reader, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+st_status st_sqlite_list_by(void *self, const st_card_page *page, st_card *out, size_t *count);
 st_status st_sqlite_holdings(void *self, st_take_holding *take, void *context);
 /* Reads the row of a mesh as a card.
  * Returns ST_DAMAGED if the card says that the mesh is damaged, or if the checksum of the row is
