@@ -69,6 +69,8 @@ enum {
 enum {
     API_DEFAULT_PAGE = 1000, /* items per page if the request does not say how many */
     API_MAX_PAGE = 10000,
+    /* How many meshes one request for a list looks at, to find those whose names contain a text. */
+    API_MAX_SEARCHED = 20000,
     /* A page of elements ends with the item with which it becomes larger than this. */
     API_MAX_PAGE_BYTES = 1 << 26,
     API_MAX_OPS = 65536, /* operations per edit list */

@@ -1,6 +1,7 @@
 #include "api/describe/parameters.h"
 
 #include "algo/decimate.h"
+#include "api/header/sorted_cursor.h"
 #include "api/json/attribute_value.h"
 #include "api/limits.h"
 #include "repair/repair.h"
@@ -17,6 +18,25 @@ const api_parameter api_parameter_limit = {
     "limit", API_PARAM_U64, 1, API_MAX_PAGE, NULL, "The largest number of items in a page."};
 const api_parameter api_parameter_cursor = {
     "cursor", API_PARAM_TEXT, 0, API_MAX_URI, NULL, "The value of `next` in the previous page."};
+const api_parameter api_parameter_sort = {
+    "sort",
+    API_PARAM_CHOICE,
+    0,
+    0,
+    api_order_names,
+    "The order of the meshes. name: ascending, with the letters A to Z as a to z, and equal names "
+    "in the order of ids. modified: the mesh that was changed last comes first. bytes: the mesh "
+    "that takes the most memory comes first. Meshes with equal times or sizes are in the reverse "
+    "order of ids. Default: the order of ids."};
+const api_parameter api_parameter_contains = {
+    "contains",
+    API_PARAM_TEXT,
+    0,
+    ST_MESH_NAME,
+    NULL,
+    "Only meshes whose names contain this text; the letters A to Z are the same as a to z. One "
+    "request looks at 20,000 meshes at most, so a page may be short or empty although there is a "
+    "next page: the list ends only when `next` is null."};
 const api_parameter api_parameter_revision = {
     "revision", API_PARAM_U64, 1,
     0x1p53,     NULL,          "An earlier revision that the history still holds."};

@@ -30,13 +30,17 @@ static const api_route routes[] = {
      .role = API_ROLE_READ,
      .reads = API_READS_CARD,
      .produces = json,
-     .parameters = {&api_parameter_limit, &api_parameter_cursor},
+     .parameters = {&api_parameter_limit, &api_parameter_cursor, &api_parameter_sort,
+                    &api_parameter_contains},
      .headers = {&next_page},
      .statuses = {200},
      .response = "mesh_page",
      .summary = "List the meshes",
-     .doc =
-         "A page of meshes in the order of their ids: the id, name, revision and counts of each."},
+     .doc = "A page of meshes in the order of their ids, or in the order that the parameter `sort` "
+            "gives: the id, name, revision and counts of each. While a client reads one page after "
+            "another, a mesh that keeps its place in the order is listed exactly once, whatever "
+            "else changes; a mesh whose name, time or size changes may be listed twice or not at "
+            "all. A cursor belongs to the order of its list: with another `sort` it is refused."},
     {.method = "POST",
      .path = "/v1/meshes",
      .name = "create_mesh",

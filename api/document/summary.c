@@ -83,6 +83,10 @@ static const api_field item_fields[] = {
     API_FIELD("name", "text", st_card, name, .required = true),
     API_FIELD("revision", "count", st_card, revision, .required = true),
     API_FIELD_MADE("counts", "#counts", write_brief_counts, .required = true),
+    API_FIELD("memory_bytes", "count", st_card, bytes, .required = true,
+              .doc = "Memory that the mesh takes."),
+    API_FIELD("modified", "time", st_card, modified, .required = true,
+              .doc = "When the mesh was changed or renamed last."),
     API_FIELD("damage", "text", st_card, damage, .zero_is_none = true,
               .doc = "Present only if the mesh is damaged: says what is damaged on the disk. The "
                      "mesh can only be deleted or replaced."),

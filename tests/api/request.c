@@ -120,7 +120,7 @@ static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget
     b->pool = st_pool_new("test", 1, 64);
     assert_non_null(b->pool);
     b->store = st_store_new(&(st_store_options){.undo_budget = undo_budget,
-                                                .max_meshes = 1000,
+                                                .max_meshes = 100000,
                                                 .journal = *journal,
                                                 .listeners = 3,
                                                 .mesh_listeners = 2,

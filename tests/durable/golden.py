@@ -157,6 +157,11 @@ def prove_one(run, packed):
                                                       + ['meshes.tsv']), checked.stdout)
     daemon = run.start(folder=folder)
     client = daemon.client()
+    for order in ('name', 'modified', 'bytes'):
+        listed = [mesh['id'] for mesh in client.get(f'/v1/meshes?sort={order}').json()['items']]
+        names = sorted(meshes, key=lambda mesh: (meshes[mesh][0]['name'].lower(), mesh))
+        run.judge(f'{release}: the list by {order}',
+                  listed == names if order == 'name' else sorted(listed) == sorted(meshes), listed)
     for mesh, states in meshes.items():
         tag = client.get(f'/v1/meshes/{mesh}').headers['ETag']
         run.judge(f'{release}: the tag of {mesh}', tag == wanted['tags'][mesh], tag)

@@ -73,6 +73,11 @@ static void blank(char *text)
 static char *state_of(void)
 {
     static const char *const targets[] = {"/v1/meshes",
+                                          "/v1/meshes?sort=name",
+                                          "/v1/meshes?sort=modified",
+                                          "/v1/meshes?sort=bytes",
+                                          "/v1/meshes?sort=name&limit=1",
+                                          "/v1/meshes?contains=S",
                                           "/v1/meshes/m",
                                           "/v1/meshes/m/edits?limit=1000",
                                           "/v1/meshes/m/content",

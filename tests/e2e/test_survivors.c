@@ -283,12 +283,17 @@ static char *next_page(const char *path)
     return next;
 }
 
+/* Returns a page of a list, without the last members of a list of meshes: the numbers of listeners
+ * and of bytes that the whole server uses, which differ after a restart. */
 static char *page(const char *format, const char *cursor)
 {
     char path[400];
     snprintf(path, sizeof path, format, cursor);
     reply r = reply_expect(200, client_get(http, path));
-    char *body = strdup(r.body);
+    char *body = strdup(r.body), *totals = strstr(body, ",\"listeners\"");
+    if (totals != NULL) {
+        *totals = '\0';
+    }
     reply_free(&r);
     return body;
 }
@@ -298,6 +303,9 @@ static void cursors_tags_and_event_ids_go_on(void **state)
     (void)state;
     static const char *const lists[][2] = {
         {"/v1/meshes?limit=1", "/v1/meshes?limit=1&cursor=%s"},
+        {"/v1/meshes?sort=name&limit=1", "/v1/meshes?sort=name&limit=1&cursor=%s"},
+        {"/v1/meshes?sort=modified&limit=1", "/v1/meshes?sort=modified&limit=1&cursor=%s"},
+        {"/v1/meshes?sort=bytes&limit=1", "/v1/meshes?sort=bytes&limit=1&cursor=%s"},
         {"/v1/meshes/m/edits?limit=1", "/v1/meshes/m/edits?limit=1&cursor=%s"},
         {"/v1/meshes/m/faces?limit=3", "/v1/meshes/m/faces?limit=3&cursor=%s"},
         {"/v1/meshes/m/vertices?limit=3", "/v1/meshes/m/vertices?limit=3&cursor=%s"},
@@ -338,11 +346,7 @@ static void cursors_tags_and_event_ids_go_on(void **state)
         listener_close(l);
         for (size_t i = 0; i < LISTS; i++) {
             char *again = page(lists[i][1], cursors[i]);
-            /* the list of meshes, the first of these lists, also shows their use of memory, which
-             * differs after a restart */
-            if (i > 0) {
-                assert_string_equal(again, pages[i]);
-            }
+            assert_string_equal(again, pages[i]);
             free(again);
         }
         for (size_t i = 0; i < TAGGED; i++) {
