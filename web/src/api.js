@@ -121,9 +121,15 @@ export async function getToken() {
     }
 }
 
-// Returns the server's OpenAPI document.
+let description = null;
+
+// Returns the server's OpenAPI document, which is read once.
 export function getDescription() {
-    return getJson('v1/openapi.json');
+    description ??= getJson('v1/openapi.json').catch((error) => {
+        description = null;
+        throw error;
+    });
+    return description;
 }
 
 // Returns one page of the list of meshes: {items, next}; `next` is the cursor of the next page, or
@@ -287,6 +293,34 @@ async function readOn(reader) {
     } catch (error) {
         throw error.name === 'AbortError' ? error : unreachable();
     }
+}
+
+// Reads a mesh as a file. `choices` are the query parameters of the export; those that are
+// undefined are left out. Calls `onBytes` with the number of bytes that have arrived. Returns
+// {blob, suggested, warnings}: the file, the name that the server suggests or null, and the header
+// that says what the file lacks, or ''.
+export async function getFile(mesh, choices, onBytes, signal) {
+    const given = Object.entries(choices).filter(([, value]) => value !== undefined);
+    const path = `${meshPath(mesh)}/content?${new URLSearchParams(given)}`;
+    const answer = await request(path, { signal, cache: 'no-store' });
+    const reader = answer.body.getReader();
+    const parts = [];
+    let bytes = 0;
+    for (let part = await readOn(reader); !part.done; part = await readOn(reader)) {
+        parts.push(part.value);
+        bytes += part.value.length;
+        onBytes(bytes);
+    }
+    const { headers } = answer;
+    const [, suggested = null] = /filename="([^"]+)"/.exec(headers.get('Content-Disposition')) ?? [];
+    const warnings = utf8Of(headers.get('Export-Warnings') ?? '');
+    return { blob: new Blob(parts, { type: headers.get('Content-Type') }), suggested, warnings };
+}
+
+// Returns the text of a header that the server has sent in UTF-8; a browser reads each byte of a
+// header as one character.
+function utf8Of(header) {
+    return new TextDecoder().decode(Uint8Array.from(header, (byte) => byte.charCodeAt(0)));
 }
 
 // --- events ---

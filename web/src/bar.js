@@ -39,6 +39,7 @@ export function showState(session, ready, isDrawn) {
         SPLIT_TITLES[split] ?? 'Select a face, an edge or two vertices to split';
     enable(byId('undo'), ready && steps.undo > 0);
     enable(byId('redo'), ready && steps.redo > 0);
+    enable(byId('export'), mesh !== null);
     enable(byId('fit'), mesh !== null && isDrawn);
     enable(byId('progressive'), mesh !== null && isDrawn);
     enable(byId('screenshot'), mesh !== null && isDrawn);

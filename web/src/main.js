@@ -5,7 +5,9 @@ import * as api from './api.js';
 import { isReady, showName, showState } from './bar.js';
 import { Comparing } from './comparing.js';
 import { byId, formatCount, make } from './dom.js';
+import { fileNameOf, save } from './download.js';
 import { Editing } from './editing.js';
+import { askExport } from './exporting.js';
 import { framing } from './framing.js';
 import { History } from './history.js';
 import { Inspector } from './inspector.js';
@@ -289,11 +291,8 @@ function frameSelection() {
 }
 
 async function saveScreenshot() {
-    const blob = await stage.capture();
-    const file = URL.createObjectURL(blob);
     const name = session.shown.summary.name || session.mesh;
-    make('a', { href: file, download: `${name}.png` }).click();
-    URL.revokeObjectURL(file);
+    save(await stage.capture(), fileNameOf(name, 'png'));
 }
 
 async function goTo(event) {
@@ -339,6 +338,7 @@ byId('keys').append(...keyList());
 byId('help-button').addEventListener('click', () => byId('help').showModal());
 byId('help-close').addEventListener('click', () => byId('help').close());
 byId('screenshot').addEventListener('click', () => saveScreenshot().catch(fail));
+byId('export').addEventListener('click', () => askExport(session.shown, toasts).catch(fail));
 byId('goto').addEventListener('submit', (event) => goTo(event).catch(fail));
 window.addEventListener('hashchange', () => address.follow().catch(fail));
 byId('split').addEventListener('click', () => session.splitSelection().catch(fail));

@@ -1,4 +1,5 @@
-// schema.js - describes JSON Schemas in words, for the manual. Pure: no document, no server.
+// schema.js - reads the server's OpenAPI document: describes JSON Schemas in words, for the manual,
+// and finds what the forms of the page offer. Pure: no document, no server.
 
 // Returns the name of the schema that a reference points to, which is the reference's last segment.
 function nameOf(reference) {
@@ -67,4 +68,17 @@ export function typeOf(schema) {
     return schema.default === undefined
         ? parts
         : [...parts, `; ${JSON.stringify(schema.default)} if not given`];
+}
+
+// --- forms ---
+
+// Returns the query parameters of an operation, {name, doc, values} each, where `values` are the
+// texts that a parameter may have, or undefined. `id` is the operationId.
+export function parametersOf({ paths }, id) {
+    const found = Object.values(paths)
+        .flatMap((methods) => Object.values(methods))
+        .find(({ operationId }) => operationId === id);
+    return found.parameters
+        .filter((parameter) => parameter.in === 'query')
+        .map(({ name, description, schema }) => ({ name, doc: description, values: schema.enum }));
 }

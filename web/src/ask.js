@@ -1,0 +1,176 @@
+// ask.js - a dialog with a form: its fields, what is wrong with them, the progress of what the form
+// starts, and two buttons. The dialog exists only while it is open.
+
+import { enable, make } from './dom.js';
+
+export class Ask {
+    #dialog;
+    #go;
+    #back;
+    #alert;
+    #progress;
+    #label;
+    #bar;
+    #onGo;
+    #cancel = null; // cancels what the form has started; null if nothing is in progress
+    #rows = new Map(); // name of a field -> its row
+
+    // `go` is the label of the button that calls `onGo(ask)`. onGo() may return a promise; if it
+    // fails, the error is shown in the dialog, else the dialog is closed, unless onGo() returned
+    // false. `onClose()` is called when the dialog is closed, for whatever reason.
+    constructor({ title, go, onGo, onClose = () => {} }, ...nodes) {
+        this.#onGo = onGo;
+        this.#alert = make('p', { className: 'refusal', role: 'alert' });
+        this.#label = make('span', { id: 'ask-progress' });
+        this.#bar = make('progress', { max: 1, 'aria-labelledby': 'ask-progress' });
+        this.#progress = make(
+            'div',
+            { className: 'uploading', role: 'status', hidden: true },
+            this.#label,
+            this.#bar,
+        );
+        this.#go = make('button', { type: 'submit', className: 'primary' }, go);
+        const onclick = () => this.close();
+        this.#back = make('button', { type: 'button', onclick }, 'Cancel');
+        const heading = make('h2', { id: 'ask-title' }, title);
+        const form = make(
+            'form',
+            { className: 'ask', noValidate: true, 'aria-labelledby': heading.id },
+            heading,
+            ...nodes,
+            this.#alert,
+            this.#progress,
+            make('div', { className: 'ask-buttons' }, this.#back, this.#go),
+        );
+        form.addEventListener('submit', (event) => {
+            event.preventDefault();
+            this.#run();
+        });
+        this.#dialog = make('dialog', { 'aria-labelledby': heading.id }, form);
+        this.#dialog.addEventListener('close', () => {
+            this.#cancel?.();
+            this.#dialog.remove();
+            onClose();
+        });
+        for (const row of form.querySelectorAll('.field')) {
+            this.#rows.set(row.dataset.name, row);
+        }
+        document.body.append(this.#dialog);
+        this.#dialog.showModal();
+    }
+
+    close() {
+        this.#dialog.close();
+    }
+
+    get isOpen() {
+        return this.#dialog.open;
+    }
+
+    // Changes the labels of the two buttons.
+    setLabels(go, back) {
+        [this.#go.textContent, this.#back.textContent] = [go, back];
+    }
+
+    setEnabled(isEnabled) {
+        enable(this.#go, isEnabled);
+    }
+
+    // Replaces the rows of some fields by others; see field().
+    setRows(box, rows) {
+        for (const name of [...box.querySelectorAll('.field')].map(({ dataset }) => dataset.name)) {
+            this.#rows.delete(name);
+        }
+        rows.forEach((row) => this.#rows.set(row.dataset.name, row));
+        box.replaceChildren(...rows);
+    }
+
+    // --- progress; the interface of Work in work.js ---
+
+    // Shows that something has begun that takes a while.
+    start(title) {
+        this.#label.textContent = title;
+        this.#bar.removeAttribute('value');
+        this.#progress.hidden = false;
+    }
+
+    begin(cancel) {
+        this.#cancel = cancel;
+    }
+
+    show({ progress, phase = null }) {
+        if (progress !== undefined) {
+            this.#bar.value = progress;
+        }
+        if (phase !== null) {
+            this.#label.textContent = phase;
+        }
+    }
+
+    end() {
+        this.#progress.hidden = true;
+        this.#cancel = null;
+    }
+
+    // --- the form ---
+
+    // Shows why the form was refused, and moves the focus to the field that is wrong.
+    refuse(error) {
+        const name = nameIn(error.pointer ?? '');
+        this.#mark(name);
+        this.#alert.textContent = error.detail || error.message || error.title;
+        this.#rows.get(name)?.querySelector('input, select, textarea').focus();
+    }
+
+    #mark(wrong) {
+        for (const [name, row] of this.#rows) {
+            row.classList.toggle('wrong', name === wrong);
+            const main = row.querySelector('input, select, textarea');
+            main.setAttribute('aria-invalid', name === wrong);
+        }
+    }
+
+    async #run() {
+        this.#mark('');
+        this.#alert.textContent = '';
+        this.setEnabled(false);
+        try {
+            if ((await this.#onGo(this)) !== false && this.isOpen) {
+                this.end();
+                this.close();
+            }
+        } catch (error) {
+            if (this.isOpen && error.name !== 'AbortError' && error.code !== 'cancelled') {
+                this.refuse(error);
+            }
+        } finally {
+            this.end();
+            this.setEnabled(true);
+        }
+    }
+}
+
+// Returns the member that a problem's pointer names, such as "radius" for /radius, or /ops/0/radius
+// as the mistakes of fields.js name it.
+function nameIn(pointer) {
+    return pointer.split('/').at(-1);
+}
+
+let rows = 0;
+
+// Returns a row of a dialog: the label of a control, the control and an explanation. `name` is the
+// member of the request that the control fills.
+export function field(name, label, control, ...help) {
+    const id = `ask-${name}-${++rows}`;
+    const { main, node } = control;
+    const isFlag = main.type === 'checkbox';
+    const doc = make('p', { id: `${id}-doc`, className: 'small' }, ...help);
+    main.id = id;
+    main.setAttribute('aria-describedby', doc.id);
+    const text = make('label', { htmlFor: id, className: 'label' }, label);
+    const parts = isFlag ? [node, text] : [text, node];
+    const row = make('div', { className: isFlag ? 'field flag' : 'field' }, ...parts, doc);
+    row.dataset.name = name;
+    doc.hidden = help.length === 0;
+    return row;
+}
