@@ -478,7 +478,7 @@ test('without WebGL the page says so and still works', async (t) => {
 test('everything is reached by keyboard, and the focus is seen', async (t) => {
     const { page } = await openMesh(t, CUBE);
     const reached = [];
-    for (let i = 0; i < 12; i++) {
+    for (let i = 0; i < 16; i++) {
         await page.keyboard.press('Tab');
         const { name, outline } = await page.evaluate(() => {
             const { activeElement: focused } = document;
@@ -495,7 +495,7 @@ test('everything is reached by keyboard, and the focus is seen', async (t) => {
             reached.push(name);
         }
     }
-    for (const name of ['pick', 'fit', 'refresh', 'mesh', 'upload wide edits', 'canvas']) {
+    for (const name of ['export', 'mesh-menu', 'pick', 'fit', 'refresh', 'mesh', 'upload wide edits', 'canvas']) {
         assert.ok(reached.includes(name), `${name} is not among ${reached}`);
     }
     await page.getByRole('radio', { name: 'Face' }).focus();

@@ -139,6 +139,30 @@ export function listMeshes(cursor = null) {
     return getJson(`v1/meshes?limit=200${after}`);
 }
 
+// Changes the name of a mesh; null removes it.
+export function rename(mesh, name) {
+    return request(meshPath(mesh), {
+        method: 'PATCH',
+        headers: { 'Content-Type': 'application/merge-patch+json', Prefer: 'return=minimal' },
+        body: JSON.stringify({ name }),
+    });
+}
+
+// Makes a copy of a mesh and returns its summary; `work` is as in edit().
+export function copy(mesh, name, work) {
+    return postJson(`${meshPath(mesh)}/copy`, { name }, work);
+}
+
+// Returns the entity tag of a mesh's present state.
+export async function getTag(mesh) {
+    return (await request(`${meshPath(mesh)}/edits?limit=1`)).headers.get('ETag');
+}
+
+// Deletes a mesh if it is still in the state that the entity tag names; else fails with status 412.
+export function remove(mesh, tag) {
+    return request(meshPath(mesh), { method: 'DELETE', headers: { 'If-Match': tag } });
+}
+
 export function getSummary(mesh, signal) {
     return getJson(meshPath(mesh), signal);
 }

@@ -35,7 +35,7 @@ export class Ask {
         const heading = make('h2', { id: 'ask-title' }, title);
         const form = make(
             'form',
-            { className: 'ask', noValidate: true, 'aria-labelledby': heading.id },
+            { className: 'ask', noValidate: true },
             heading,
             ...nodes,
             this.#alert,

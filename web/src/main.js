@@ -14,6 +14,7 @@ import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
 import { Legend } from './legend.js';
 import { MeshList } from './list.js';
+import { MeshActs } from './mesh_acts.js';
 import { Refining } from './refining.js';
 import { Session } from './session.js';
 import { SignIn } from './sign_in.js';
@@ -76,23 +77,25 @@ const list = new MeshList(
     {
         readPage: api.listMeshes,
         onOpen: (mesh) => session.open(mesh).catch(fail),
+        onMore: (button, mesh) => acts.open(button, mesh),
         onError: fail,
     },
 );
-new Uploads(
+const work = new Work(
     {
-        input: byId('file'),
-        work: new Work(
-            {
-                box: byId('uploading'),
-                label: byId('upload-label'),
-                progress: byId('upload-progress'),
-                button: byId('upload-cancel'),
-            },
-            fail,
-        ),
-        area: byId('drop'),
+        box: byId('uploading'),
+        label: byId('upload-label'),
+        progress: byId('upload-progress'),
+        button: byId('upload-cancel'),
     },
+    fail,
+);
+const acts = new MeshActs(
+    { toasts, work, list },
+    { onChange: refreshList, onOpen: (mesh) => session.open(mesh), onDeleted: leave },
+);
+new Uploads(
+    { input: byId('file'), work, area: byId('drop') },
     {
         isOpen: () => signIn.mayEdit,
         send: api.upload,
@@ -282,6 +285,16 @@ async function refreshList() {
     return ids;
 }
 
+// Called when the user has deleted a mesh. If it is the open one, opens the one beside it in the
+// list.
+async function leave(mesh) {
+    const beside = list.neighbour(mesh);
+    await refreshList();
+    if (mesh === session.mesh && beside !== null) {
+        await session.open(beside);
+    }
+}
+
 // --- buttons ---
 
 // Moves the camera to the selection, or to the whole mesh if nothing is selected.
@@ -340,6 +353,9 @@ byId('help-close').addEventListener('click', () => byId('help').close());
 byId('screenshot').addEventListener('click', () => saveScreenshot().catch(fail));
 byId('export').addEventListener('click', () => askExport(session.shown, toasts).catch(fail));
 byId('goto').addEventListener('submit', (event) => goTo(event).catch(fail));
+byId('mesh-menu').addEventListener('click', () => {
+    acts.open(byId('mesh-menu'), { id: session.mesh, name: session.shown.summary.name });
+});
 window.addEventListener('hashchange', () => address.follow().catch(fail));
 byId('split').addEventListener('click', () => session.splitSelection().catch(fail));
 byId('undo').addEventListener('click', undo);

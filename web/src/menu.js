@@ -10,9 +10,8 @@ export class Menu {
     #button = null;
 
     constructor() {
-        document.body.append(this.#box);
         this.#box.addEventListener('keydown', (event) => this.#onKey(event));
-        this.#box.addEventListener('toggle', ({ newState }) => {
+        this.#box.addEventListener('beforetoggle', ({ newState }) => {
             this.#button?.setAttribute('aria-expanded', `${newState === 'open'}`);
         });
         window.addEventListener('resize', () => this.#close());
@@ -42,6 +41,8 @@ export class Menu {
                 ),
             ),
         );
+        // Assistive programs look for the menu in the part of the page to which it belongs.
+        button.closest('header, nav').append(this.#box);
         this.#box.showPopover();
         this.#place(button.getBoundingClientRect());
         this.#box.firstElementChild.focus();
@@ -57,7 +58,9 @@ export class Menu {
     }
 
     #close() {
-        this.#box.hidePopover();
+        if (this.#box.isConnected) {
+            this.#box.hidePopover();
+        }
     }
 
     #onKey(event) {

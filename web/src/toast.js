@@ -36,6 +36,36 @@ export class Toasts {
         }
     }
 
+    // Shows a message about something that is about to happen, until it is closed by the page. `text`
+    // is for screen readers, which do not read the texts that show() gives later. The button
+    // {label, run} gets the focus, so that there is time to press it; when the toast is closed, the
+    // element that had the focus before gets it back. Returns {show(text), close()}.
+    wait(title, text, { label, run }) {
+        const before = document.activeElement;
+        const shown = make('p', { 'aria-hidden': 'true' });
+        const button = make('button', { type: 'button', onclick: run }, label);
+        const toast = make(
+            'div',
+            { className: 'toast well waits', role: 'status' },
+            make('div', {}, make('strong', {}, title), make('p', { className: 'unseen' }, text), shown),
+            button,
+        );
+        this.#region.prepend(toast);
+        button.focus({ preventScroll: true });
+        return {
+            show: (words) => {
+                shown.textContent = words;
+            },
+            close: () => {
+                const hadFocus = toast.contains(document.activeElement);
+                toast.remove();
+                if (hadFocus && before?.isConnected) {
+                    before.focus({ preventScroll: true });
+                }
+            },
+        };
+    }
+
     // Shows a message of success for a while.
     tell(title, detail) {
         const toast = this.#add('status', title, detail);
@@ -64,9 +94,8 @@ export class Toasts {
             ),
         );
         this.#region.prepend(toast);
-        while (this.#region.children.length > MOST) {
-            this.#region.lastElementChild.remove();
-        }
+        const old = [...this.#region.querySelectorAll('.toast:not(.waits)')].slice(MOST);
+        old.forEach((one) => one.remove());
         return toast;
     }
 }
