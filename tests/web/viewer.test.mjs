@@ -495,7 +495,7 @@ test('everything is reached by keyboard, and the focus is seen', async (t) => {
             reached.push(name);
         }
     }
-    for (const name of ['export', 'mesh-menu', 'pick', 'fit', 'refresh', 'mesh', 'upload wide edits', 'canvas']) {
+    for (const name of ['export', 'mesh-menu', 'pick', 'fit', 'refresh', 'mesh', 'upload wide', 'canvas']) {
         assert.ok(reached.includes(name), `${name} is not among ${reached}`);
     }
     await page.getByRole('radio', { name: 'Face' }).focus();

@@ -451,6 +451,12 @@ async function finish(first, work) {
     return job.result ?? null;
 }
 
+// Creates a mesh from a document or a shape, {shape, ...}, and returns its summary; `work` is as in
+// edit().
+export function create(document, work) {
+    return postJson('v1/meshes', document, work);
+}
+
 // Creates a mesh from `batch`, {file, beside}: a file and the files that it refers to. The server
 // applies `repairs`. Calls `onProgress` with the fraction that has been sent, 0 to 1. Returns the
 // summary of the new mesh. Uses XMLHttpRequest because fetch does not report how much was sent.

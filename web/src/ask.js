@@ -20,7 +20,7 @@ export class Ask {
     // false. `onClose()` is called when the dialog is closed, for whatever reason.
     constructor({ title, go, onGo, onClose = () => {} }, ...nodes) {
         this.#onGo = onGo;
-        this.#alert = make('p', { className: 'refusal', role: 'alert' });
+        this.#alert = make('p', { id: 'ask-refusal', className: 'refusal', role: 'alert' });
         this.#label = make('span', { id: 'ask-progress' });
         this.#bar = make('progress', { max: 1, 'aria-labelledby': 'ask-progress' });
         this.#progress = make(
@@ -78,6 +78,7 @@ export class Ask {
 
     // Replaces the rows of some fields by others; see field().
     setRows(box, rows) {
+        this.#clear();
         for (const name of [...box.querySelectorAll('.field')].map(({ dataset }) => dataset.name)) {
             this.#rows.delete(name);
         }
@@ -114,25 +115,35 @@ export class Ask {
 
     // --- the form ---
 
-    // Shows why the form was refused, and moves the focus to the field that is wrong.
+    // Shows why the form was refused: below the field that is wrong, which gets the focus, or else
+    // below all fields.
     refuse(error) {
+        this.#clear();
         const name = nameIn(error.pointer ?? '');
-        this.#mark(name);
+        const row = this.#rows.get(name);
+        if (row !== undefined) {
+            const main = row.querySelector('input, select, textarea');
+            row.classList.add('wrong');
+            row.append(this.#alert);
+            main.setAttribute('aria-invalid', 'true');
+            main.setAttribute('aria-errormessage', this.#alert.id);
+            main.focus();
+        }
         this.#alert.textContent = error.detail || error.message || error.title;
-        this.#rows.get(name)?.querySelector('input, select, textarea').focus();
     }
 
-    #mark(wrong) {
-        for (const [name, row] of this.#rows) {
-            row.classList.toggle('wrong', name === wrong);
-            const main = row.querySelector('input, select, textarea');
-            main.setAttribute('aria-invalid', name === wrong);
+    // Forgets why the form was refused.
+    #clear() {
+        this.#alert.textContent = '';
+        this.#progress.before(this.#alert);
+        for (const row of this.#rows.values()) {
+            row.classList.remove('wrong');
+            row.querySelector('input, select, textarea').setAttribute('aria-invalid', 'false');
         }
     }
 
     async #run() {
-        this.#mark('');
-        this.#alert.textContent = '';
+        this.#clear();
         this.setEnabled(false);
         try {
             if ((await this.#onGo(this)) !== false && this.isOpen) {

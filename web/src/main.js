@@ -15,6 +15,7 @@ import { keyList, listenToKeys } from './keys.js';
 import { Legend } from './legend.js';
 import { MeshList } from './list.js';
 import { MeshActs } from './mesh_acts.js';
+import { askShape } from './new_shape.js';
 import { Refining } from './refining.js';
 import { Session } from './session.js';
 import { SignIn } from './sign_in.js';
@@ -295,6 +296,12 @@ async function leave(mesh) {
     }
 }
 
+// Opens a mesh that the user has just made, given by its summary.
+async function openNew({ id }) {
+    await refreshList();
+    await session.open(id);
+}
+
 // --- buttons ---
 
 // Moves the camera to the selection, or to the whole mesh if nothing is selected.
@@ -368,6 +375,9 @@ byId('progressive').addEventListener('click', toggleLevels);
 byId('refresh').addEventListener('click', () => signIn.start().then(refreshList).catch(fail));
 for (const button of document.querySelectorAll('.upload')) {
     button.addEventListener('click', () => byId('file').click());
+}
+for (const button of document.querySelectorAll('.new-shape')) {
+    button.addEventListener('click', () => askShape(openNew).catch(fail));
 }
 window.addEventListener('error', (event) => fail(event.error ?? event));
 window.addEventListener('unhandledrejection', (event) => fail(event.reason));

@@ -82,3 +82,24 @@ export function parametersOf({ paths }, id) {
         .filter((parameter) => parameter.in === 'query')
         .map(({ name, description, schema }) => ({ name, doc: description, values: schema.enum }));
 }
+
+// Returns the shapes from which the server makes meshes: {name, doc, params} each; the params are
+// {name, doc, type, default, min, max, exclusive}, where `exclusive` says that `min` itself is not
+// allowed.
+export function shapesOf({ components: { schemas } }) {
+    return Object.entries(schemas.shape.discriminator.mapping).map(([name, reference]) => {
+        const { description, properties } = schemas[nameOf(reference)];
+        const params = Object.entries(properties)
+            .filter(([param]) => param !== 'shape' && param !== 'name')
+            .map(([param, schema]) => ({
+                name: param,
+                doc: schema.description ?? '',
+                type: schema.type,
+                default: schema.default,
+                min: schema.minimum ?? schema.exclusiveMinimum,
+                max: schema.maximum,
+                exclusive: schema.exclusiveMinimum !== undefined,
+            }));
+        return { name, doc: description, params };
+    });
+}
