@@ -29,7 +29,16 @@ const MEDIA_TYPES = {
 // An error that the server, or a proxy in front of it, answered: the members of an RFC 9457
 // problem.
 export class Problem extends Error {
-    constructor({ status = 0, title = '', detail = '', code = '', pointer = '', repair = [] }) {
+    constructor({
+        status = 0,
+        title = '',
+        detail = '',
+        code = '',
+        pointer = '',
+        repair = [],
+        elements = [],
+        total = 0,
+    }) {
         super(detail || title);
         this.status = status;
         this.title = title;
@@ -37,6 +46,8 @@ export class Problem extends Error {
         this.code = code;
         this.pointer = pointer;
         this.repair = repair;
+        this.elements = elements;
+        this.total = total;
     }
 }
 
@@ -132,6 +143,14 @@ export function getDescription() {
     return description;
 }
 
+// Returns the query of an address; what is undefined is left out.
+function queryOf(values) {
+    return Object.entries(values)
+        .filter(([, value]) => value !== undefined)
+        .map(([name, value]) => `${name}=${encodeURIComponent(value)}`)
+        .join('&');
+}
+
 // Returns one page of the list of meshes: {items, next}; `next` is the cursor of the next page, or
 // null.
 export function listMeshes(cursor = null) {
@@ -159,8 +178,10 @@ export async function getTag(mesh) {
 }
 
 // Deletes a mesh if it is still in the state that the entity tag names; else fails with status 412.
-export function remove(mesh, tag) {
-    return request(meshPath(mesh), { method: 'DELETE', headers: { 'If-Match': tag } });
+// `isLeaving` says that the page is being left, and that the request must outlive it.
+export function remove(mesh, tag, isLeaving = false) {
+    const headers = { 'If-Match': tag };
+    return request(meshPath(mesh), { method: 'DELETE', headers, keepalive: isLeaving });
 }
 
 export function getSummary(mesh, signal) {
@@ -183,6 +204,13 @@ export function getElement(mesh, kind, id) {
 // order; the answer to a failed query is a problem.
 export async function query(mesh, queries) {
     return (await postJson(`${meshPath(mesh)}/query`, { queries })).results;
+}
+
+// Returns what a check finds: {defects: [{code, detail, ...}], totals: {CODE: count}, ...}, or null if
+// the server would need a long time for that.
+export async function check(mesh) {
+    const answer = await request(`${meshPath(mesh)}/check`);
+    return answer.status === 200 ? answer.json() : null;
 }
 
 // Returns {revision, loops: [{halfedges, vertices, ...}]}.
@@ -324,8 +352,7 @@ async function readOn(reader) {
 // {blob, suggested, warnings}: the file, the name that the server suggests or null, and the header
 // that says what the file lacks, or ''.
 export async function getFile(mesh, choices, onBytes, signal) {
-    const given = Object.entries(choices).filter(([, value]) => value !== undefined);
-    const path = `${meshPath(mesh)}/content?${new URLSearchParams(given)}`;
+    const path = `${meshPath(mesh)}/content?${queryOf(choices)}`;
     const answer = await request(path, { signal, cache: 'no-store' });
     const reader = answer.body.getReader();
     const parts = [];
@@ -457,15 +484,15 @@ export function create(document, work) {
     return postJson('v1/meshes', document, work);
 }
 
-// Creates a mesh from `batch`, {file, beside}: a file and the files that it refers to. The server
-// applies `repairs`. Calls `onProgress` with the fraction that has been sent, 0 to 1. Returns the
+// Creates a mesh from `batch`, {file, beside}: a file and the files that it refers to. `choices` are
+// further query parameters, such as {repair: 'weld,orient'}. Calls `onProgress` with the fraction that has been sent, 0 to 1. Returns the
 // summary of the new mesh. Uses XMLHttpRequest because fetch does not report how much was sent.
-export async function upload(batch, onProgress, work, repairs = []) {
+export async function upload(batch, onProgress, work, choices = {}) {
     const bearer = token();
-    const { status, answer } = await send(batch, onProgress, work, repairs, bearer);
+    const { status, answer } = await send(batch, onProgress, work, choices, bearer);
     if (status === 401) {
         if (await renewToken(bearer)) {
-            return upload(batch, onProgress, work, repairs);
+            return upload(batch, onProgress, work, choices);
         }
         throw new Problem({ ...answer, status });
     }
@@ -482,14 +509,13 @@ function formOf(files) {
 
 // Sends a file, or a form if several files belong together. An answer with status 401 does not
 // reject the promise, so that upload() can ask the user for a token.
-function send({ file, beside }, onProgress, work, repairs, bearer) {
+function send({ file, beside }, onProgress, work, choices, bearer) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;
     const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
     return new Promise((resolve, reject) => {
         const sender = new XMLHttpRequest();
-        const repair = repairs.length > 0 ? `&repair=${repairs.join(',')}` : '';
-        sender.open('POST', `v1/meshes?name=${encodeURIComponent(name)}${repair}`);
+        sender.open('POST', `v1/meshes?${queryOf({ name, ...choices })}`);
         if (beside.length === 0) {
             const other = file.type || 'application/octet-stream';
             sender.setRequestHeader('Content-Type', type ?? other);

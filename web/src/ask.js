@@ -3,6 +3,8 @@
 
 import { enable, make } from './dom.js';
 
+let asks = 0; // how many dialogs were opened
+
 export class Ask {
     #dialog;
     #go;
@@ -17,12 +19,15 @@ export class Ask {
 
     // `go` is the label of the button that calls `onGo(ask)`. onGo() may return a promise; if it
     // fails, the error is shown in the dialog, else the dialog is closed, unless onGo() returned
-    // false. `onClose()` is called when the dialog is closed, for whatever reason.
-    constructor({ title, go, onGo, onClose = () => {} }, ...nodes) {
+    // false. `onClose()` is called when the dialog is closed, for whatever reason. `foot` are nodes
+    // above the buttons that are always seen. If `isRead` is true, the dialog is to be read first:
+    // then its title gets the focus, and not the first field.
+    constructor({ title, go, onGo, onClose = () => {}, foot = [], isRead = false }, ...nodes) {
         this.#onGo = onGo;
-        this.#alert = make('p', { id: 'ask-refusal', className: 'refusal', role: 'alert' });
-        this.#label = make('span', { id: 'ask-progress' });
-        this.#bar = make('progress', { max: 1, 'aria-labelledby': 'ask-progress' });
+        const id = `ask-${++asks}`; // several dialogs may be open, one above the other
+        this.#alert = make('p', { id: `${id}-refusal`, className: 'refusal', role: 'alert' });
+        this.#label = make('span', { id: `${id}-progress` });
+        this.#bar = make('progress', { max: 1, 'aria-labelledby': `${id}-progress` });
         this.#progress = make(
             'div',
             { className: 'uploading', role: 'status', hidden: true },
@@ -32,15 +37,23 @@ export class Ask {
         this.#go = make('button', { type: 'submit', className: 'primary' }, go);
         const onclick = () => this.close();
         this.#back = make('button', { type: 'button', onclick }, 'Cancel');
-        const heading = make('h2', { id: 'ask-title' }, title);
+        const heading = make('h2', { id: `${id}-title` }, title);
+        if (isRead) {
+            [heading.tabIndex, heading.autofocus] = [-1, true];
+        }
         const form = make(
             'form',
             { className: 'ask', noValidate: true },
             heading,
             ...nodes,
             this.#alert,
-            this.#progress,
-            make('div', { className: 'ask-buttons' }, this.#back, this.#go),
+            make(
+                'div',
+                { className: 'ask-foot' },
+                ...foot,
+                this.#progress,
+                make('div', { className: 'ask-buttons' }, this.#back, this.#go),
+            ),
         );
         form.addEventListener('submit', (event) => {
             event.preventDefault();
@@ -135,7 +148,7 @@ export class Ask {
     // Forgets why the form was refused.
     #clear() {
         this.#alert.textContent = '';
-        this.#progress.before(this.#alert);
+        this.#progress.parentElement.before(this.#alert);
         for (const row of this.#rows.values()) {
             row.classList.remove('wrong');
             row.querySelector('input, select, textarea').setAttribute('aria-invalid', 'false');

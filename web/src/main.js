@@ -4,12 +4,13 @@ import { Address } from './address.js';
 import * as api from './api.js';
 import { isReady, showName, showState } from './bar.js';
 import { Comparing } from './comparing.js';
-import { byId, formatCount, make } from './dom.js';
+import { byId } from './dom.js';
 import { fileNameOf, save } from './download.js';
 import { Editing } from './editing.js';
 import { askExport } from './exporting.js';
 import { framing } from './framing.js';
 import { History } from './history.js';
+import { Importing } from './importing.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
 import { Legend } from './legend.js';
@@ -95,17 +96,15 @@ const acts = new MeshActs(
     { toasts, work, list },
     { onChange: refreshList, onOpen: (mesh) => session.open(mesh), onDeleted: leave },
 );
+const importing = new Importing(toasts, openNew);
 new Uploads(
     { input: byId('file'), work, area: byId('drop') },
     {
         isOpen: () => signIn.mayEdit,
         send: api.upload,
-        onDone: async (summary, file) => {
-            await refreshList();
-            await session.open(summary.id);
-            toasts.tell(`Read ${file.name}`, importOf(summary));
-        },
-        onError: (error, again) => toasts.show(error, again),
+        onDone: (summary, batch) => importing.done(summary, batch),
+        onRefused: (error, batch) => importing.refused(error, batch),
+        onError: fail,
     },
 );
 const stage = new Stage(
@@ -146,14 +145,6 @@ const refining = new Refining(
         onError: fail,
     },
 );
-
-function importOf({ counts, import: report }) {
-    const found = ['repairs', 'warnings']
-        .filter((name) => report?.[name]?.length > 0)
-        .map((name) => `${formatCount(report[name].length)} ${name}`);
-    const sizes = ['vertices', 'faces'].map((kind) => `${formatCount(counts[kind])} ${kind}`);
-    return [...sizes, ...found].join(', ');
-}
 
 // --- showing the session ---
 

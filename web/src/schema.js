@@ -73,14 +73,14 @@ export function typeOf(schema) {
 // --- forms ---
 
 // Returns the query parameters of an operation, {name, doc, values} each, where `values` are the
-// texts that a parameter may have, or undefined. `id` is the operationId.
+// texts that a parameter, or each item of its list, may have, or undefined. `id` is the operationId.
 export function parametersOf({ paths }, id) {
     const found = Object.values(paths)
         .flatMap((methods) => Object.values(methods))
         .find(({ operationId }) => operationId === id);
     return found.parameters
         .filter((parameter) => parameter.in === 'query')
-        .map(({ name, description, schema }) => ({ name, doc: description, values: schema.enum }));
+        .map(({ name, description, schema }) => ({ name, doc: description, values: schema.enum ?? schema.items?.enum }));
 }
 
 // Returns the shapes from which the server makes meshes: {name, doc, params} each; the params are

@@ -15,25 +15,15 @@ export class Toasts {
         this.#region = region;
     }
 
-    // Shows an error, in the server's words if the error has them. If the user can correct it,
-    // `again` is {label, run}, the label and the function of a button.
-    show(error, again) {
+    // Shows an error, in the server's words if the error has them.
+    show(error) {
         const title = error.title || 'Something went wrong';
         const detail = error.detail || error.message || String(error);
         // The page sends one operation at a time, so the index of the operation, with which the
         // pointer of an error begins, is not shown.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
-        const toast = this.#add('alert', title, `${detail}${where}`);
-        if (again) {
-            const onclick = () => {
-                toast.remove();
-                again.run();
-            };
-            toast.firstElementChild.append(
-                make('button', { type: 'button', onclick }, again.label),
-            );
-        }
+        this.#add('alert', title, `${detail}${where}`);
     }
 
     // Shows a message about something that is about to happen, until it is closed by the page. `text`
@@ -66,10 +56,20 @@ export class Toasts {
         };
     }
 
-    // Shows a message of success for a while.
-    tell(title, detail) {
+    // Shows a message of success for a while. If there is something to do about it, `next` is
+    // {label, run}, the label and the function of a button; then the message stays until it is
+    // closed.
+    tell(title, detail, next = null) {
         const toast = this.#add('status', title, detail);
-        setTimeout(() => toast.remove(), SHORT);
+        if (next === null) {
+            setTimeout(() => toast.remove(), SHORT);
+            return;
+        }
+        const onclick = () => {
+            toast.remove();
+            next.run();
+        };
+        toast.firstElementChild.append(make('button', { type: 'button', onclick }, next.label));
     }
 
     #add(role, title, text) {

@@ -1,7 +1,9 @@
-// upload.js - uploads files that were chosen or dropped on the page, one after another, each with
-// the files that it refers to.
+// upload.js - uploads files that were chosen, pasted or dropped on the page, one after another, each
+// with the files that it refers to.
 
+import { Problem } from './api.js';
 import { batchesOf } from './batches.js';
+import { fileOf } from './paste.js';
 
 export class Uploads {
     #work;
@@ -9,21 +11,22 @@ export class Uploads {
     #isOpen;
     #send;
     #onDone;
+    #onRefused;
     #onError;
     #queue = Promise.resolve();
     #depth = 0;
 
-    // `send(batch, onProgress, work, repairs)` uploads one batch, see batches.js; `onDone(summary,
-    // file)` is called with the summary of the new mesh; `work` shows the progress, see work.js.
-    // `onError(error, again)` is called if an upload fails; if the server could read the file with
-    // repairs, `again` is {label, run}, where run() uploads the file again with these repairs.
-    // Nothing can be dropped on the page while `isOpen()` is false.
-    constructor({ input, work, area }, { isOpen, send, onDone, onError }) {
+    // `send(batch, onProgress, work)` uploads one batch, see batches.js; `onDone(summary, batch)` is
+    // called with the summary of the new mesh; `work` shows the progress, see work.js. If an upload
+    // fails, `onRefused(error, batch)` is called, and `onError(error)` for other errors. Nothing can
+    // be dropped or pasted while `isOpen()` is false.
+    constructor({ input, work, area }, { isOpen, send, onDone, onRefused, onError }) {
         this.#work = work;
         this.#isOpen = isOpen;
         this.#area = area;
         this.#send = send;
         this.#onDone = onDone;
+        this.#onRefused = onRefused;
         this.#onError = onError;
         input.addEventListener('change', () => {
             this.#add([...input.files]);
@@ -32,6 +35,26 @@ export class Uploads {
             input.value = '';
         });
         this.#listenToDrops();
+        document.addEventListener('paste', (event) => this.#paste(event));
+    }
+
+    // Uploads what is pasted: files, or the text of a mesh. What is pasted into a field or a dialog
+    // is not for the page.
+    #paste(event) {
+        const isTaken = event.target.closest?.('input, textarea, select, dialog') ?? null;
+        if (!this.#isOpen() || isTaken !== null || document.querySelector('dialog[open]') !== null) {
+            return;
+        }
+        event.preventDefault();
+        const { files } = event.clipboardData;
+        const text = files.length > 0 ? '' : event.clipboardData.getData('text');
+        const file = text === '' ? null : fileOf(text);
+        if (files.length > 0 || file !== null) {
+            this.#add(file === null ? [...files] : [file]);
+        } else if (text !== '') {
+            const detail = 'The text is not a mesh in the format OBJ, OFF, PLY, STL, glTF or JSON.';
+            this.#onError(new Problem({ title: 'Nothing to paste', detail }));
+        }
     }
 
     // Shows a hint while files are dragged over the page. When the pointer moves from an element
@@ -72,22 +95,15 @@ export class Uploads {
         this.#queue = this.#queue.then(async () => {
             try {
                 for (const batch of await batchesOf(files)) {
-                    await this.#upload(batch, []);
+                    await this.#upload(batch);
                 }
             } catch (error) {
-                this.#onError(error, false); // a file that cannot be read
+                this.#onError(error); // a file that cannot be read
             }
         });
     }
 
-    #again(batch, repairs) {
-        const run = () => {
-            this.#queue = this.#queue.then(() => this.#upload(batch, repairs));
-        };
-        return { label: `Upload with ${repairs.join(', ')}`, run };
-    }
-
-    async #upload(batch, repairs) {
+    async #upload(batch) {
         const { file } = batch;
         this.#work.start(`Uploading ${file.name}`, true);
         try {
@@ -97,11 +113,12 @@ export class Uploads {
                 }
                 this.#work.show({ progress: part });
             };
-            await this.#onDone(await this.#send(batch, onProgress, this.#work, repairs), file);
-        } catch (error) {
-            this.#onError(error, error.repair?.length > 0 && this.#again(batch, error.repair));
-        } finally {
+            const summary = await this.#send(batch, onProgress, this.#work);
             this.#work.end();
+            await this.#onDone(summary, batch);
+        } catch (error) {
+            this.#work.end();
+            await this.#onRefused(error, batch);
         }
     }
 }
