@@ -39,7 +39,7 @@ const upload = (page, name, text) =>
     page.locator('#file').setInputFiles({ name, mimeType: '', buffer: Buffer.from(text) });
 const dialog = (page, name = 'broken.obj') => page.getByRole('dialog', { name: `Repair ${name}` });
 const outcome = (page, pattern) => page.locator('.outcome').filter({ hasText: pattern });
-const take = (page) => page.getByRole('button', { name: 'Import the repaired mesh' });
+const take = (page) => page.getByRole('button', { name: 'Import repaired mesh' });
 const repair = (page, label) => page.getByRole('dialog').getByLabel(label, { exact: true });
 const mend = 'Mend faces that use a vertex twice';
 const separate = 'Separate surfaces that only touch';
@@ -251,7 +251,7 @@ test('a file that was read says its defects, and can be replaced by a repaired m
         '2 vertices joined to others (lines 5, 6)',
     );
     await checkAccessible(page, 'repairs of a mesh');
-    await page.getByRole('button', { name: 'Use the repaired mesh' }).click();
+    await page.getByRole('button', { name: 'Use repaired mesh' }).click();
     await waitForTold(page, /Repaired seam\.obj/);
     const { items } = await get(daemon, '');
     assert.equal(items.length, 1);
@@ -268,7 +268,7 @@ test('the unrepaired mesh stays if it was edited meanwhile', async (t) => {
     await outcome(page, /5 vertices/).waitFor();
     const first = (await get(daemon, '')).items.find(({ counts }) => counts.vertices === 7);
     await post(daemon, `/${first.id}/edits`, { op: 'face_poke', face: 0 });
-    await page.getByRole('button', { name: 'Use the repaired mesh' }).click();
+    await page.getByRole('button', { name: 'Use repaired mesh' }).click();
     await waitForTold(page, /Repaired seam\.obj.*stays, too/);
     assert.deepEqual(await namesOf(daemon), ['seam', 'seam']);
 });

@@ -152,10 +152,11 @@ function queryOf(values) {
 }
 
 // Returns one page of the list of meshes: {items, next}; `next` is the cursor of the next page, or
-// null.
-export function listMeshes(cursor = null) {
-    const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
-    return getJson(`v1/meshes?limit=200${after}`);
+// null. `sort` is 'name', 'modified' (the newest first) or 'bytes' (the largest first); only meshes
+// whose names contain the text `contains` are listed, unless it is ''.
+export function listMeshes({ sort, contains = '', cursor = null } = {}) {
+    const values = { limit: 200, sort, contains: contains || undefined, cursor: cursor ?? undefined };
+    return getJson(`v1/meshes?${queryOf(values)}`);
 }
 
 // Changes the name of a mesh; null removes it.

@@ -48,7 +48,7 @@ export class Importing {
         const words = {
             title: `Repair ${batch.file.name}`,
             lead: 'The file was imported. A check of the mesh has found:',
-            go: 'Use the repaired mesh',
+            go: 'Use repaired mesh',
         };
         return offerRepairs(batch, words, { found, chosen }, async (repaired) => {
             await this.#onOpen(repaired);
@@ -73,8 +73,8 @@ export class Importing {
         const { name } = batch.file;
         const words = {
             title: `Repair ${name}`,
-            lead: 'The file was refused, because a half-edge mesh cannot have:',
-            go: 'Import the repaired mesh',
+            lead: 'The file was refused, because a half-edge mesh cannot hold this:',
+            go: 'Import repaired mesh',
         };
         const { repair: chosen } = error;
         await offerRepairs(batch, words, { found: defectsOf(error), chosen }, async (repaired) => {

@@ -1,10 +1,23 @@
-// list.js - the list of meshes.
+// list.js - the list of meshes, in an order that the user chooses, and only those whose names
+// contain what the user types.
 
 import { formatAbout, make } from './dom.js';
+
+// A filter is applied when it has not changed for this many milliseconds.
+const DELAY = 200;
+
+// With so many meshes or more, the order and the filter are shown.
+const MANY = 5;
+
+// With a filter, a page of the server may be empty although there are more; at most so many pages
+// are read for one of the list.
+const MOST_PAGES = 50;
 
 export class MeshList {
     #list;
     #more;
+    #find;
+    #none;
     #readPage;
     #onOpen;
     #onMore;
@@ -14,28 +27,56 @@ export class MeshList {
     #reading = 0;
     #leaving = new Set(); // ids of meshes that are about to be deleted
 
-    // `readPage(cursor)` reads a page of the list, {items, next}; `onOpen(id)` is called when the
-    // user chooses a mesh, `onMore(button, {id, name})` when the user wants the menu of its actions.
-    constructor({ list, more }, { readPage, onOpen, onMore, onError }) {
+    // `find` contains the fields `filter` and `order`, and `none` is the element that says that
+    // there is no such mesh. `readPage({sort, contains, cursor})` reads a page of the list, {items,
+    // next}; `onOpen(id)` is called when the user chooses a mesh, `onMore(button, {id, name})` when
+    // the user wants the menu of its actions.
+    constructor({ list, more, find, none }, { readPage, onOpen, onMore, onError }) {
         this.#list = list;
         this.#more = more;
+        this.#find = find;
+        this.#none = none;
         this.#readPage = readPage;
         this.#onOpen = onOpen;
         this.#onMore = onMore;
         this.#onError = onError;
         more.addEventListener('click', () => this.#append().catch(onError));
+        const again = () => this.refresh().catch(onError);
+        let timer = 0;
+        find.filter.addEventListener('input', () => {
+            clearTimeout(timer);
+            timer = setTimeout(again, DELAY);
+        });
+        find.order.addEventListener('change', again);
+    }
+
+    // The text that the names of the listed meshes contain, or ''.
+    get filter() {
+        return this.#find.filter.value.trim();
+    }
+
+    // Reads on until there are meshes to show, or no more pages.
+    async #read(cursor) {
+        const contains = this.filter;
+        const sort = this.#find.order.value;
+        let page = await this.#readPage({ sort, contains, cursor });
+        for (let i = 1; page.items.length === 0 && page.next !== null && i < MOST_PAGES; i++) {
+            page = await this.#readPage({ sort, contains, cursor: page.next });
+        }
+        return page;
     }
 
     // Reads the list of meshes again. Returns the ids of its first page.
     async refresh() {
         const reading = ++this.#reading;
-        const { items, next } = await this.#readPage(null);
+        const { items, next } = await this.#read(null);
         if (reading === this.#reading) {
             this.#keepFocus(() => {
                 this.#list.replaceChildren(...items.map((item) => this.#row(item)));
             });
             this.#bringIntoSight();
             this.#setNext(next);
+            this.#showFound(items.length);
         }
         return items.map(({ id }) => id);
     }
@@ -43,12 +84,6 @@ export class MeshList {
     // The names of the meshes in the list.
     get names() {
         return [...this.#list.querySelectorAll('.mesh-name')].map((name) => name.textContent);
-    }
-
-    // Moves the focus to the open mesh, or else to the first mesh of the list.
-    focus() {
-        const current = this.#list.querySelector('[aria-current]');
-        (current ?? this.#list.querySelector('button'))?.focus();
     }
 
     // Changes rows by calling `act()`. If a button in them has the focus, the button that takes its
@@ -120,11 +155,18 @@ export class MeshList {
 
     async #append() {
         const reading = this.#reading;
-        const { items, next } = await this.#readPage(this.#cursor);
+        const { items, next } = await this.#read(this.#cursor);
         if (reading === this.#reading) {
             this.#list.append(...items.map((item) => this.#row(item)));
             this.#setNext(next);
         }
+    }
+
+    // Shows the fields of the search if they are of use, and says if nothing was found.
+    #showFound(count) {
+        const { filter } = this;
+        this.#find.box.hidden = filter === '' && count < MANY;
+        this.#none.textContent = filter !== '' && count === 0 ? `No name contains \u201c${filter}\u201d.` : '';
     }
 
     #setNext(next) {
@@ -136,7 +178,7 @@ export class MeshList {
         const button = make(
             'button',
             { type: 'button', className: 'mesh', onclick: () => this.#onOpen(id) },
-            make('span', { className: 'mesh-name' }, name || id),
+            make('span', { className: 'mesh-name', dir: 'auto' }, name || id),
             make(
                 'span',
                 { className: 'mesh-counts' },

@@ -75,7 +75,12 @@ const comparing = new Comparing(
     },
 );
 const list = new MeshList(
-    { list: byId('meshes'), more: byId('more-meshes') },
+    {
+        list: byId('meshes'),
+        more: byId('more-meshes'),
+        find: { box: byId('find-mesh'), filter: byId('mesh-filter'), order: byId('mesh-order') },
+        none: byId('no-mesh'),
+    },
     {
         readPage: api.listMeshes,
         onOpen: (mesh) => session.open(mesh).catch(fail),
@@ -273,7 +278,7 @@ function tellStale() {
 // page.
 async function refreshList() {
     const ids = await list.refresh();
-    byId('empty').hidden = ids.length > 0 || session.mesh !== null;
+    byId('empty').hidden = ids.length > 0 || session.mesh !== null || list.filter !== '';
     return ids;
 }
 
