@@ -122,6 +122,9 @@ const stage = new Stage(
     {
         content: () => session.shown,
         onPick: (chosen, also) => editing.pick(chosen, also).catch(fail),
+        onMode: (kind) => {
+            byId('goto-kind').value = kind;
+        },
         onRest: () => address.write(),
         onError: fail,
     },

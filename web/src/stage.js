@@ -23,12 +23,13 @@ export class Stage {
     // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
     // for the kind of element to pick. `content()` returns the Content that is shown, or null.
     // `onPick(chosen, also)` is called after a click with the result of choose(); `also` says that
-    // the Shift key was held. `onRest()` is called when the camera has come to rest.
-    constructor(canvas, { noWebGL, contextLost, modes }, { content, onPick, onRest, onError }) {
+    // the Shift key was held. `onMode(kind)` is called when clicks begin to pick elements of another
+    // kind. `onRest()` is called when the camera has come to rest.
+    constructor(canvas, { noWebGL, contextLost, modes }, { content, onPick, onMode, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;
         this.#contentNow = content;
-        this.#acts = { onPick, onRest, onError };
+        this.#acts = { onPick, onMode, onRest, onError };
         try {
             this.#renderer = new Renderer(canvas, {
                 onFrame: (label) => this.#markFrame(label),
@@ -211,6 +212,7 @@ export class Stage {
     setPickMode(mode) {
         this.#modes.querySelector(`input[value="${mode}"]`).checked = true;
         this.#renderer?.showVertices(mode === 'vertex');
+        this.#acts.onMode(mode);
     }
 
     #listenToClicks() {
