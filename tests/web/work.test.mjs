@@ -61,6 +61,18 @@ test('the history says what was done, and a click goes back to a revision', asyn
     assert.ok((await rowsOf(page)).every(([, , canGo, isNow]) => !canGo && !isNow));
 });
 
+test('the history says in words that a mesh was replaced', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    await fetch(`${daemon.url}/v1/meshes/${mesh}`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ shape: 'torus' }),
+    });
+    await waitForFrame(page, { revision: 2 });
+    assert.deepEqual(await rowsOf(page), [[2, 'replaced by another mesh', false, false]]);
+    await checkAccessible(page, 'replaced', '#details');
+});
+
 test('a long history is read on by a button', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
     for (let i = 0; i < 25; i++) {

@@ -2,6 +2,7 @@
 // all edits since.
 
 import { formatCount, make } from './dom.js';
+import { wordsOf } from './entry.js';
 
 const KINDS = ['vertices', 'edges', 'faces'];
 
@@ -74,10 +75,9 @@ export class History {
     // Returns the row of an entry. The newest entry that can be undone is the present state, which
     // is marked; the undoable entries before it are buttons; other entries cannot be undone.
     #row(entry) {
-        const { action, undoable } = entry;
-        const ops = entry.ops.join(', ') || action;
+        const { undoable } = entry;
         const words = [
-            make('span', { className: 'ops' }, action === 'edit' ? ops : `${action} of ${ops}`),
+            make('span', { className: 'ops' }, wordsOf(entry)),
             make('span', { className: 'small', title: tallyOf(entry) }, sumOf(entry)),
         ];
         if (undoable && this.#isTopShown) {

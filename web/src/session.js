@@ -7,6 +7,7 @@
 // then fetches the changes and shows the refusal.
 
 import * as api from './api.js';
+import { wordsOf } from './entry.js';
 import { Lineage } from './lineage.js';
 import { Live } from './live.js';
 import { Materials } from './materials.js';
@@ -349,9 +350,7 @@ export class Session {
     // none.
     #since(revision) {
         const entries = this.shown.history.entries.filter((entry) => entry.revision > revision);
-        const words = entries.reverse().map(({ action, ops }) =>
-            action === 'edit' ? ops.join(', ') : `${action} of ${ops.join(', ')}`,
-        );
+        const words = entries.reverse().map(wordsOf);
         return words.length === 0
             ? ''
             : ` Meanwhile another client made these changes, which are shown now: ${words.join('; ')}.`;
