@@ -32,7 +32,7 @@ test('every statistic is what the summary says', async (t) => {
         edges: '6',
         faces: '2',
         euler: `${summary.euler}`,
-        genus: 'undefined',
+        genus: 'none, because parts of the mesh touch only at a vertex (a bow-tie)',
         components: `${summary.counts.components}`,
         boundary_loops: `${summary.counts.boundary_loops}`,
         isolated_vertices: '1',
@@ -54,6 +54,20 @@ test('every statistic is what the summary says', async (t) => {
     assert.equal(shown.closed, 'yes');
     assert.equal(shown.degrees, `${whole.counts.faces} \u00d7 4`);
     assert.equal(shown.volume, `${Number(whole.volume.toPrecision(6))}`);
+});
+
+test('the genus says of what it is the genus', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    const shown = async () => (await statistics(page)).genus;
+    assert.equal(await shown(), '0');
+    const { id: torus } = await post(daemon, '', { shape: 'torus' });
+    await post(daemon, `/${mesh}/edits`, { op: 'append', mesh: torus });
+    await waitForFrame(page, { revision: 2 });
+    assert.equal(await shown(), '1, the sum of 2 components');
+    await post(daemon, `/${mesh}/edits`, { op: 'face_delete', face: 0 });
+    await waitForFrame(page, { revision: 3 });
+    assert.equal(await shown(), '1, the sum of 2 components, as if the 1 hole were filled');
+    assert.equal((await get(daemon, `/${mesh}`)).genus, 1);
 });
 
 test('measures are rounded for the eye, and whole in their titles', async (t) => {

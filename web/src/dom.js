@@ -52,6 +52,11 @@ export function formatCount(value) {
     return counts.format(value);
 }
 
+// Formats a count with its noun as in "1 hole" or "1,234 holes".
+export function formatNumberOf(count, one, many = `${one}s`) {
+    return `${formatCount(count)} ${count === 1 ? one : many}`;
+}
+
 const about = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
 // Formats a count as in 12,345 or 1.2M, where space is short.

@@ -1,6 +1,6 @@
 // statistics.js - shows the server's summary of the open mesh. Nothing is computed here.
 
-import { formatCount, formatMeasure, make } from './dom.js';
+import { formatCount, formatMeasure, formatNumberOf, make } from './dom.js';
 
 export class Statistics {
     #sizes;
@@ -26,10 +26,11 @@ function sizesOf({ counts }) {
     );
 }
 
-function factsOf({ counts, euler, genus, closed, manifold, degrees, area, volume, revision }) {
+function factsOf(summary) {
+    const { counts, euler, closed, manifold, degrees, area, volume, revision } = summary;
     const rows = [
         ['euler', 'Euler characteristic', `${euler}`],
-        ['genus', 'Genus', genus === null ? 'undefined' : `${genus}`],
+        ['genus', 'Genus', genusOf(summary)],
         ['components', 'Components', formatCount(counts.components)],
         ['boundary_loops', 'Boundary loops', formatCount(counts.boundary_loops)],
         ['isolated_vertices', 'Isolated vertices', formatCount(counts.isolated_vertices)],
@@ -41,6 +42,22 @@ function factsOf({ counts, euler, genus, closed, manifold, degrees, area, volume
         ['revision', 'Revision', `${revision}`],
     ];
     return rows.map(([name, title, value]) => pair('div', name, title, value));
+}
+
+// Returns the genus, the number of handles, with what must be known to understand it; or why there is
+// none.
+function genusOf({ counts, genus, closed }) {
+    if (genus === null) {
+        return 'none, because parts of the mesh touch only at a vertex (a bow-tie)';
+    }
+    const { components, boundary_loops: loops } = counts;
+    const notes = [
+        ...(components > 1 ? [`the sum of ${formatCount(components)} components`] : []),
+        ...(closed || loops === 0
+            ? []
+            : [`as if the ${formatNumberOf(loops, 'hole')} were filled`]),
+    ];
+    return notes.length === 0 ? `${genus}` : `${genus}, ${notes.join(', ')}`;
 }
 
 // Returns the numbers of faces by number of corners, as in "12 × 3, 6 × 4": 12 triangles and 6
