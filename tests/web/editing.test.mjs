@@ -24,6 +24,7 @@ import { get, getAll, post, startDaemon } from './daemon.mjs';
 import {
     cameraOf,
     checkInspector,
+    chooseOperation,
     click,
     expectToast,
     fillVector,
@@ -263,7 +264,7 @@ test('an operation takes its elements from the selection', async (t) => {
     const face = await pickFace(context);
     // Until the user chooses an operation, the panel must show one that fits the selection.
     assert.match(await page.locator('#operation').inputValue(), /^face_/);
-    await page.locator('#operation').selectOption('face_poke');
+    await chooseOperation(page, 'face_poke');
     assert.equal(await page.locator('#param-face').inputValue(), `${face.id}`);
     await fillVector(page, 'position', [0, 0, 2]);
     await page.getByRole('button', { name: 'Apply' }).click();
@@ -274,7 +275,7 @@ test('an operation takes its elements from the selection', async (t) => {
     // If an operation takes an edge and a half-edge is selected, the form must be filled with the
     // edge of the half-edge.
     await goTo(page, 'halfedge', 4);
-    await page.locator('#operation').selectOption('edge_split');
+    await chooseOperation(page, 'edge_split');
     assert.equal(await page.locator('#param-edge').inputValue(), '2');
     await page.locator('#param-t').fill('0.25');
     const sent = page.waitForRequest(isEdit);
@@ -311,7 +312,7 @@ test('several elements are given as a list', async (t) => {
 
 test('what a form says wrongly is answered in words', async (t) => {
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 4\d\d/] });
-    await page.locator('#operation').selectOption('edge_split');
+    await chooseOperation(page, 'edge_split');
     await page.locator('#param-edge').fill('two');
     await page.getByRole('button', { name: 'Apply' }).click();
     await expectToast(page, /two.*not a number/);

@@ -5,7 +5,7 @@ import { test } from 'node:test';
 
 import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
-import { expectToast, goTo, press } from './page.mjs';
+import { chooseOperation, expectToast, goTo, press } from './page.mjs';
 import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
@@ -56,7 +56,7 @@ test('each refusal of an edit is said in its own words', async (t) => {
 
 test('no more than a few messages stand at once', async (t) => {
     const { page } = await openMesh(t, CUBE);
-    await page.locator('#operation').selectOption('edge_split');
+    await chooseOperation(page, 'edge_split');
     for (let i = 0; i < 6; i++) {
         await page.locator('#param-edge').fill(`word${i}`);
         await page.getByRole('button', { name: 'Apply' }).click();

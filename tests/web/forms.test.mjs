@@ -6,13 +6,13 @@ import { test } from 'node:test';
 
 import { checkAccessible, isNear, projector, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getAll, post } from './daemon.mjs';
-import { click, fillVector, goTo, isEdit, press } from './page.mjs';
+import { chooseOperation, click, fillVector, goTo, isEdit, press } from './page.mjs';
 import { openMesh } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 3, rows: 3 };
 
-const choose = (page, name) => page.locator('#operation').selectOption(name);
+const choose = chooseOperation;
 const field = (page, name) => page.locator(`#param-${name}`);
 const arm = (page, name) =>
     page.getByRole('button', { name: `Pick ${name} in the view`, exact: true }).click();
@@ -320,4 +320,105 @@ test('operations are grouped and searched, and a mesh is one of a list', async (
     await waitForFrame(page, { revision: 2 });
     const { counts } = await get(daemon, `/${other}`);
     assert.equal((await get(daemon, `/${mesh}`)).counts.faces, 6 + counts.faces);
+});
+
+const listed = (page) =>
+    page.locator('#operation optgroup').evaluateAll((groups) =>
+        Object.fromEntries(
+            groups.map(({ label, children }) => [label, [...children].map(({ value }) => value)]),
+        ),
+    );
+
+test('the list has the operations that take the selection, and all on request', async (t) => {
+    const { daemon, page } = await openMesh(t, CUBE);
+    const { operations } = await (await fetch(`${daemon.url}/v1/operations`)).json();
+    const all = operations.map(({ name }) => name).sort();
+    const everything = async () => Object.values(await listed(page)).flat().sort();
+    const toggle = page.getByRole('checkbox', { name: 'Show all operations' });
+    assert.deepEqual(await everything(), all);
+    assert.ok(await toggle.isHidden());
+    const takes = (...types) =>
+        operations.filter(({ params }) => params.some(({ type }) => types.includes(type)));
+    for (const [kind, name, types] of [
+        ['face', 'face', ['face']],
+        ['edge', 'edge', ['edge']],
+        ['halfedge', 'half-edge', ['halfedge', 'edge']],
+        ['vertex', 'vertex', ['vertex', 'vertices']],
+    ]) {
+        await goTo(page, kind, 1);
+        const { [`For the selected ${name}`]: own, ...rest } = await listed(page);
+        assert.deepEqual(own, takes(...types).map((one) => one.name), kind);
+        assert.deepEqual(rest, {}, kind);
+    }
+    await checkAccessible(page, 'filtered', '#details');
+    // The switch shows all of them, those for the selection first.
+    await toggle.check();
+    assert.deepEqual(await everything(), all);
+    assert.deepEqual(Object.keys(await listed(page)), [
+        'For the selected vertex', 'Vertex', 'Edge', 'Face', 'Loop', 'Mesh',
+    ]);
+    await choose(page, 'triangulate');
+    await toggle.uncheck();
+    // The operation in the form stays in the list.
+    assert.equal(await page.locator('#operation').inputValue(), 'triangulate');
+    assert.deepEqual((await listed(page)).Mesh, ['triangulate']);
+});
+
+test('several elements are offered what takes all of them', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, GRID);
+    const place = await projector(page, daemon, mesh);
+    const faces = await getAll(daemon, mesh, 'faces');
+    await click(page, place.at(faces[0].vertices));
+    await waitForFrame(page, { selection: 'face:0' });
+    assert.ok((await listed(page))['For the selected face'].includes('face_poke'));
+    await click(page, place.at(faces[4].vertices), ['Shift']);
+    await waitForFrame(page, { selection: 'face:0 face:4' });
+    const own = (await listed(page))['For 2 faces'];
+    assert.ok(own.includes('face_extrude') && own.includes('face_delete'), `${own}`);
+    assert.ok(!own.includes('face_poke'), 'face_poke takes one face');
+    await page.locator('#canvas').press('Escape');
+    await waitForFrame(page, { selection: '' });
+    assert.ok((await listed(page)).Face.includes('face_poke'));
+});
+
+test('the search finds operations that the selection hides', async (t) => {
+    const { page } = await openMesh(t, CUBE);
+    await goTo(page, 'face', 0);
+    const search = page.getByRole('searchbox', { name: 'Search operations' });
+    assert.equal(await page.locator('#operation option[value="subdivide"]').count(), 0);
+    await search.focus();
+    await page.keyboard.type('subdiv');
+    assert.equal(await page.locator('#operation').inputValue(), 'subdivide');
+    await page.keyboard.press('Enter');
+    await field(page, 'steps').fill('1');
+    await expectVerdict(page, 'Would replace the whole mesh.');
+    await page.getByRole('button', { name: 'Apply' }).click();
+    await waitForFrame(page, { revision: 2 });
+});
+
+const areApart = (a, b) =>
+    a.y + a.height <= b.y || b.y + b.height <= a.y || a.x + a.width <= b.x || b.x + b.width <= a.x;
+
+test('what an edit would do stands below its field and covers nothing', async (t) => {
+    for (const viewport of [{ width: 800, height: 600 }, { width: 1280, height: 700 }]) {
+        const { page } = await openMesh(t, GRID, { viewport, allowed: [/status of 4\d\d/] });
+        await choose(page, 'remesh');
+        await field(page, 'face').fill('0');
+        const verdict = page.locator('#verdict');
+        for (const name of ['error', 'edge_length', 'min_length', 'steps', 'crease']) {
+            await field(page, name).fill('0.5');
+            await expectVerdict(page, /./);
+            assert.equal(await page.evaluate(() => document.activeElement.id), `param-${name}`);
+            const [said, own] = [await verdict.boundingBox(), await field(page, name).boundingBox()];
+            const what = `${viewport.width}: ${name}`;
+            assert.ok(said.height > 10 && said.y >= 0, what);
+            assert.ok(said.y + said.height <= viewport.height + 1, `${what} out of sight`);
+            assert.ok(own.y >= 0 && own.y + own.height <= viewport.height, `${what} scrolled away`);
+            for (const input of await page.locator('#parameters :is(input, select, button)').all()) {
+                const box = await input.boundingBox();
+                assert.ok(box === null || areApart(said, box), `${what} covers ${await input.getAttribute('id')}`);
+            }
+        }
+        await checkAccessible(page, 'verdict below its field', '#details');
+    }
 });

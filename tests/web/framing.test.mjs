@@ -9,7 +9,7 @@ import { pointAt, unpack } from '../../web/src/geometry.js';
 import { FIELD_OF_VIEW, UP } from '../../web/src/view.js';
 import { isNext, isPrev, isSelf, readCanvas } from './browser.mjs';
 import { get, getGeometry, post } from './daemon.mjs';
-import { cameraOf, goTo, press, setMode } from './page.mjs';
+import { cameraOf, chooseOperation, goTo, press, setMode } from './page.mjs';
 import { openMesh } from './visit.mjs';
 
 // Returns how far vertices are from the middle of the picture, as fractions of its half width or
@@ -85,7 +85,7 @@ test('the kind of element to go to follows the pick mode', async (t) => {
         assert.equal(await kind.inputValue(), value);
     }
     // A field of a form that waits for a click picks elements of its own kind.
-    await page.locator('#operation').selectOption('hole_fill');
+    await chooseOperation(page, 'hole_fill');
     await page.getByRole('button', { name: 'Pick halfedge in the view' }).click();
     assert.equal(await kind.inputValue(), 'halfedge');
     // The user may still go to an element of another kind.

@@ -6,7 +6,7 @@ import { test } from 'node:test';
 
 import { checkAccessible, projector, waitForFrame } from './browser.mjs';
 import { get, getAll, post } from './daemon.mjs';
-import { checkInspector, click, setMode } from './page.mjs';
+import { checkInspector, chooseOperation, click, setMode } from './page.mjs';
 import { openMesh } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
@@ -68,7 +68,7 @@ test('beside a hole a click on the surface picks the half-edge of the face', asy
 
 test('a hole is filled by a click in its middle', async (t) => {
     const { daemon, mesh, page, place, rim, corners } = await openBox(t);
-    await page.locator('#operation').selectOption('hole_fill');
+    await chooseOperation(page, 'hole_fill');
     await page.getByRole('button', { name: 'Pick halfedge in the view' }).click();
     await click(page, place.at(corners));
     await page.locator('#verdict').filter({ hasText: 'Would make' }).waitFor();

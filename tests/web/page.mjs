@@ -63,6 +63,14 @@ export async function setMode(page, mode) {
     await page.getByRole('radio', { name: mode, exact: true }).check();
 }
 
+// Chooses an operation in the list; if the list has only those that take the selection, asks for all.
+export async function chooseOperation(page, name) {
+    if ((await page.locator(`#operation option[value="${name}"]`).count()) === 0) {
+        await page.getByRole('checkbox', { name: 'Show all operations' }).check();
+    }
+    await page.locator('#operation').selectOption(name);
+}
+
 // Returns whether a request or an answer is that of an edit and not of a dry run.
 export function isEdit(message) {
     const request = message.request?.() ?? message;

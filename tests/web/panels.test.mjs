@@ -6,7 +6,7 @@ import { test } from 'node:test';
 
 import { checkAccessible, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, fillVector, goTo, isEdit, press, setMode } from './page.mjs';
+import { chooseOperation, expectToast, fillVector, goTo, isEdit, press, setMode } from './page.mjs';
 import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
@@ -95,7 +95,7 @@ async function apply(page) {
 
 test('a field that is left empty is left out, whatever its type', async (t) => {
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 4\d\d/] });
-    const choose = (name) => page.locator('#operation').selectOption(name);
+    const choose = (name) => chooseOperation(page, name);
     const fill = (name, text) => page.locator(`#param-${name}`).fill(text);
     await choose('plane_split');
     await fillVector(page, 'point', [0, 0, 0.25]);
@@ -125,7 +125,7 @@ test('a field that is left empty is left out, whatever its type', async (t) => {
 
 test('flags, choices, lists and no element at all are sent as such', async (t) => {
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 4\d\d/] });
-    const choose = (name) => page.locator('#operation').selectOption(name);
+    const choose = (name) => chooseOperation(page, name);
     const fill = (name, text) => page.locator(`#param-${name}`).fill(text);
     await choose('face_delete');
     await fill('face', '0, 1; 2');
@@ -158,7 +158,7 @@ test('flags, choices, lists and no element at all are sent as such', async (t) =
 
 test('more numbers than a field takes, and what only looks like one, are said', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
-    await page.locator('#operation').selectOption('edge_split');
+    await chooseOperation(page, 'edge_split');
     for (const [text, words] of [
         ['1 2', /edge must be one number/],
         ['0x10', /0x10.*not a number/],

@@ -9,7 +9,7 @@ import { test } from 'node:test';
 
 import { projector, waitForFrame } from './browser.mjs';
 import { get, getAll, startDaemon } from './daemon.mjs';
-import { click } from './page.mjs';
+import { chooseOperation, click } from './page.mjs';
 import { openPage } from './visit.mjs';
 
 async function open(t, daemon, name, revision) {
@@ -45,7 +45,7 @@ test('what was edited before a stop is undone in the page after it', async (t) =
     const [face] = before.lists[2].filter((one) => place.isSeen(one));
     await click(page, place.at(face.vertices));
     await waitForFrame(page, { selection: `face:${face.id}` });
-    await page.locator('#operation').selectOption('face_poke');
+    await chooseOperation(page, 'face_poke');
     await page.locator('#param-face').fill(`${face.id}`);
     await page.getByRole('button', { name: 'Apply' }).click();
     await waitForFrame(page, { revision: 2 });

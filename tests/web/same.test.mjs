@@ -8,7 +8,7 @@ import { test } from 'node:test';
 import { unpack } from '../../web/src/geometry.js';
 import { waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
-import { fillVector, isEdit } from './page.mjs';
+import { chooseOperation, fillVector, isEdit } from './page.mjs';
 import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 import { openPage } from './visit.mjs';
 
@@ -157,7 +157,7 @@ test('after random edits the arrays equal fresh ones', async (t) => {
         init: keepTextures,
     });
     await waitForFrame(page, { mesh, revision: 1 });
-    await page.locator('#operation').selectOption('vertex_move');
+    await chooseOperation(page, 'vertex_move');
     const whole = [];
     page.on('request', (request) => {
         if (request.url().endsWith('/geometry')) {

@@ -3,7 +3,7 @@
 
 import { projector, waitForFrame } from './browser.mjs';
 import { getAll, post } from './daemon.mjs';
-import { click, fillVector } from './page.mjs';
+import { chooseOperation, click, fillVector } from './page.mjs';
 
 // A flat grid, so that a click can reach all of it; vertex 4 y + x lies at (x, y).
 const GRID = { shape: 'grid', columns: 3, rows: 3 };
@@ -142,7 +142,7 @@ export async function openScenario({ daemon, page }, { name, mesh: content, befo
 
 // Fills the form of a scenario as a visitor does.
 export async function fillForm({ daemon, page, mesh }, { name, filled }) {
-    await page.locator('#operation').selectOption(name);
+    await chooseOperation(page, name);
     const place = await projector(page, daemon, mesh);
     for (const [param, value] of Object.entries(filled)) {
         const field = page.locator(`#param-${param.replace(' ', '-')}`);

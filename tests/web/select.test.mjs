@@ -6,13 +6,13 @@ import { test } from 'node:test';
 
 import { checkAccessible, projector, waitForFrame } from './browser.mjs';
 import { get, getAll, post } from './daemon.mjs';
-import { fillVector, goTo, isEdit, press } from './page.mjs';
+import { chooseOperation, fillVector, goTo, isEdit, press } from './page.mjs';
 import { openMesh } from './visit.mjs';
 
 const CAN = { name: 'can', shape: 'cylinder', segments: 12 };
 const GRID = { name: 'grid', shape: 'grid', columns: 6, rows: 6 };
 
-const choose = (page, name) => page.locator('#operation').selectOption(name);
+const choose = (page, name) => chooseOperation(page, name);
 const field = (page, name) => page.locator(`#param-${name}`);
 
 const shown = (page) =>

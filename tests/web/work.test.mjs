@@ -6,7 +6,7 @@ import { test } from 'node:test';
 
 import { checkAccessible, waitForFrame, waitForTold } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
-import { expectToast, fillVector, isEdit } from './page.mjs';
+import { chooseOperation, expectToast, fillVector, isEdit } from './page.mjs';
 import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
@@ -103,7 +103,7 @@ async function keepRunning(page) {
 }
 
 async function runWhole(page, name) {
-    await page.locator('#operation').selectOption(name);
+    await chooseOperation(page, name);
     await page.getByRole('button', { name: 'Apply' }).click();
 }
 
@@ -125,7 +125,7 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
     assert.equal((await get(daemon, `/${mesh}`)).revision, 2);
     // A small edit must not request a job.
     const small = page.waitForRequest(isEdit);
-    await page.locator('#operation').selectOption('face_poke');
+    await chooseOperation(page, 'face_poke');
     await page.locator('#param-face').fill('0');
     await page.getByRole('button', { name: 'Apply' }).click();
     assert.equal((await small).headers().prefer, undefined);
@@ -136,7 +136,7 @@ test('an operation that is refused as a job says why', async (t) => {
     // If the form is filled slowly, the page tries the edit as a dry run before the user sends it,
     // and the dry run may be refused.
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 400/] });
-    await page.locator('#operation').selectOption('plane_split');
+    await chooseOperation(page, 'plane_split');
     await fillVector(page, 'point', [0, 0, 0]);
     await fillVector(page, 'normal', [0, 0, 0]);
     await page.getByRole('button', { name: 'Apply' }).click();

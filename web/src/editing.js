@@ -85,6 +85,8 @@ export class Editing {
                 select: byId('operation'),
                 form: byId('parameters'),
                 search: byId('operation-search'),
+                all: byId('operation-all'),
+                verdict: byId('verdict'),
             },
             {
                 onRun,

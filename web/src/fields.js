@@ -40,6 +40,19 @@ export function isList({ plural, type }) {
     return plural !== undefined || type in PLURALS;
 }
 
+// Returns how many elements of these kinds an operation takes; of parameters that are alternatives,
+// one counts.
+export function roomFor({ params }, kinds) {
+    const rooms = new Map();
+    for (const param of params) {
+        if (kinds.includes(kindOf(param)) && !isPlace(param)) {
+            const key = param.group ?? param.name;
+            rooms.set(key, Math.max(rooms.get(key) ?? 0, isList(param) ? Infinity : 1));
+        }
+    }
+    return [...rooms.values()].reduce((sum, room) => sum + room, 0);
+}
+
 // Makes the control of a parameter. `meshes()` returns a promise of the list of meshes;
 // `pickable(param, control)` returns an element with the control's node and a button; after a click
 // on the button, a click on an element in the view fills the control.

@@ -16,6 +16,7 @@ import {
     kindOf,
     marksOf,
     readField,
+    roomFor,
 } from './fields.js';
 
 // By kind of element: the function that returns the ids of the elements of this kind to which a
@@ -27,9 +28,18 @@ const LINKS = {
     halfedge: (element) => element.halfedges?.slice(0, 1) ?? [],
 };
 
+// The kinds of parameters that a selected element fills, and its name for one and for several.
+const TAKEN = {
+    vertex: { kinds: ['vertex'], names: ['vertex', 'vertices'] },
+    edge: { kinds: ['edge'], names: ['edge', 'edges'] },
+    face: { kinds: ['face'], names: ['face', 'faces'] },
+    halfedge: { kinds: ['halfedge', 'edge'], names: ['half-edge', 'half-edges'] },
+};
+
 export class Tools {
     #chooser;
     #form;
+    #verdict;
     #onRun;
     #onTouch;
     #onArm;
@@ -47,16 +57,22 @@ export class Tools {
     // error)` is called after a change of the form: `operation` is null if the form is incomplete
     // or has an error. `onArm({name, kind, isList})` is called when a field begins to wait for
     // clicks in the view, and with undefined when it stops. `onDraw()` is called when the user wants
-    // to draw a lasso for the form, see takeLasso(). `meshes()` returns the list of meshes.
-    constructor({ select, form, search }, { onRun, onTouch, onArm, onDraw, meshes, onError }) {
+    // to draw a lasso for the form, see takeLasso(). `meshes()` returns the list of meshes. `verdict`
+    // is the element that says what the edit in the form would do; it is placed below the field in
+    // which the user types.
+    constructor(
+        { select, form, search, all, verdict },
+        { onRun, onTouch, onArm, onDraw, meshes, onError },
+    ) {
         this.#form = form;
+        this.#verdict = verdict;
         this.#onRun = onRun;
         this.#onTouch = onTouch;
         this.#onArm = onArm;
         this.#onDraw = onDraw;
         this.#meshes = () => meshes().catch((error) => (onError(error), []));
         this.#chooser = new Chooser(
-            { select, search },
+            { select, search, all },
             {
                 onChange: (isChosen) => {
                     this.#isChosen ||= isChosen;
@@ -94,7 +110,8 @@ export class Tools {
         if (isSame) {
             return;
         }
-        const fitting = this.#chooser.all.find((one) => this.#fits(one) && !isDeletion(one));
+        this.#chooser.setFilter(this.#filter());
+        const fitting = this.#fitting();
         if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#chooser.operation)) {
             this.#chooser.set(fitting.name);
             this.#build();
@@ -102,6 +119,20 @@ export class Tools {
             this.#fill();
             this.#touch();
         }
+    }
+
+    // Returns which operations take all selected elements, see Chooser.setFilter(); null if nothing
+    // is selected.
+    #filter() {
+        const { length } = this.#selection;
+        if (length === 0) {
+            return null;
+        }
+        const { kinds, names } = TAKEN[this.#selection.at(-1).kind];
+        return {
+            title: length === 1 ? `For the selected ${names[0]}` : `For ${length} ${names[1]}`,
+            takes: (operation) => roomFor(operation, kinds) >= length,
+        };
     }
 
     // --- clicks ---
@@ -148,6 +179,7 @@ export class Tools {
     // alternatives, the fields of the other alternatives are cleared.
     #typed(target) {
         const field = this.#fields.get(target.closest('.field').dataset.name);
+        field.row.after(this.#verdict);
         const { group, selects } = field.param;
         if (group !== undefined && field.control.isSaid) {
             for (const other of this.#fields.values()) {
@@ -242,6 +274,14 @@ export class Tools {
         return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
     }
 
+    // Returns the operation whose form is shown when the user has chosen none: one that takes all
+    // selected elements, else one that takes some of them, or undefined.
+    #fitting() {
+        const [kind, count] = [this.#selection.at(-1)?.kind, this.#selection.length];
+        const some = this.#chooser.all.filter((one) => this.#fits(one) && !isDeletion(one));
+        return some.find((one) => roomFor(one, [kind]) >= count) ?? some[0];
+    }
+
     setEnabled(enabled) {
         this.#isEnabled = enabled;
         for (const button of this.#form.querySelectorAll('button[type="submit"]')) {
@@ -312,6 +352,7 @@ export class Tools {
         this.#form.replaceChildren(
             make('p', { className: 'small' }, ...prose(operation?.doc ?? '')),
             ...rows,
+            this.#verdict,
             make(
                 'button',
                 { type: 'submit', className: 'primary wide', disabled: !this.#isEnabled },

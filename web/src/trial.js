@@ -25,9 +25,12 @@ export class Trial {
     // Makes a dry run of an operation after DELAY; a later call replaces it. `operation` is null if
     // the form is incomplete: then nothing is shown.
     ask(operation) {
+        const height = this.#box.offsetHeight;
         this.clear();
         this.#asked = operation;
         if (operation !== null) {
+            // The room of the last result is kept, so that the form does not jump.
+            this.#box.style.minHeight = `${height}px`;
             this.#timer = setTimeout(() => this.#run(operation), DELAY);
         }
     }
@@ -62,8 +65,8 @@ export class Trial {
         this.#running = running;
         try {
             const words = await this.#attempt(operation, running.signal);
-            if (words !== null && !running.signal.aborted) {
-                this.#say(words, false);
+            if (!running.signal.aborted) {
+                this.#say(words ?? '', false);
             }
         } catch (error) {
             // Status 0 means a lost connection, which the page shows in its bar and not in the
@@ -75,8 +78,12 @@ export class Trial {
     }
 
     #say(text, isRefused) {
+        this.#box.style.minHeight = '';
         this.#box.textContent = text;
         this.#box.classList.toggle('refused', isRefused);
+        if (this.#box.previousElementSibling?.contains(document.activeElement)) {
+            this.#box.scrollIntoView({ block: 'nearest' }); // the field above it is in use
+        }
     }
 }
 
