@@ -98,14 +98,25 @@ async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
 
+// Reads an answer that may take long to compute: if the server answers with a job, waits for it.
+async function readLong(path, signal, work = null) {
+    const answer = await request(path, { signal });
+    return answer.status === 202 ? finish(await answer.json(), work) : answer.json();
+}
+
 // Sends a POST and returns the JSON of the answer, or null if it has no body. If the server answers
 // with a job, because the request takes long, waits for the job and returns its result.
-async function postJson(path, body, work = null) {
+async function postJson(path, body, work = null, signal = undefined) {
     const headers = { 'Content-Type': 'application/json' };
     if (work !== null) {
         headers.Prefer = 'respond-async';
     }
-    const answer = await request(path, { method: 'POST', headers, body: JSON.stringify(body) });
+    const answer = await request(path, {
+        method: 'POST',
+        headers,
+        body: JSON.stringify(body),
+        signal,
+    });
     if (answer.status === 204) {
         return null;
     }
@@ -216,7 +227,25 @@ export async function check(mesh) {
 
 // Returns {revision, loops: [{halfedges, vertices, ...}]}.
 export function getBoundaries(mesh, signal) {
-    return getJson(`${meshPath(mesh)}/boundaries`, signal);
+    return readLong(`${meshPath(mesh)}/boundaries`, signal);
+}
+
+// Returns {revision, components: [{face, faces, vertices}]}.
+export function getComponents(mesh, signal) {
+    return readLong(`${meshPath(mesh)}/components`, signal);
+}
+
+// Returns the ids of the faces of the component that has this face, the nearest first.
+export async function getComponent(mesh, face, signal) {
+    const walk = { walk: 'breadth_first', from: { face } };
+    return (await postJson(`${meshPath(mesh)}/traverse`, walk, null, signal)).ids;
+}
+
+// Returns what a check finds: {revision, problems, defects, totals, thresholds, complete}; with
+// `withMeets` also the faces that intersect. If it takes long, `work` shows its progress, see edit().
+export function getCheck(mesh, withMeets, signal, work) {
+    const asked = withMeets ? '?self_intersections=true' : '';
+    return readLong(`${meshPath(mesh)}/check${asked}`, signal, work);
 }
 
 // Returns how far the mesh is from another one, or from its own revision if `other` is a number.
@@ -417,18 +446,19 @@ async function follow(path, since, { onOpen, onEvent }, signal) {
 // If `work` is not null, the server may run the edit as a job. Then work.begin(cancel) is called
 // once, with a function that cancels the job, and work.show(job) with each state of the job.
 
-export function edit(mesh, operation, revision, work = null) {
-    const body = { expected_revision: revision, ops: [operation] };
+// Sends one operation, or a list of which all are done or none.
+export function edit(mesh, operations, revision, work = null) {
+    const body = { expected_revision: revision, ops: [operations].flat() };
     return postJson(`${meshPath(mesh)}/edits`, body, work);
 }
 
-// Returns what an edit of the present mesh would change, without changing anything; null if the
-// server would need a long time to compute that.
-export async function tryEdit(mesh, operation, signal) {
+// Returns what an operation, or a list, would change in the present mesh, without changing anything;
+// null if the server would need a long time to compute that.
+export async function tryEdit(mesh, operations, signal) {
     const answer = await request(`${meshPath(mesh)}/edits`, {
         method: 'POST',
         headers: { 'Content-Type': 'application/json' },
-        body: JSON.stringify({ dry_run: true, ops: [operation] }),
+        body: JSON.stringify({ dry_run: true, ops: [operations].flat() }),
         signal,
     });
     return answer.status === 200 ? answer.json() : null;

@@ -43,6 +43,7 @@ export function showState(session, ready, isDrawn) {
     enable(byId('mesh-menu'), mesh !== null && session.connection !== 'gone');
     enable(byId('fit'), mesh !== null && isDrawn);
     enable(byId('progressive'), mesh !== null && isDrawn);
+    enable(byId('check'), mesh !== null);
     enable(byId('screenshot'), mesh !== null && isDrawn);
     enable(byId('goto-id'), mesh !== null);
     enable(byId('goto-button'), mesh !== null);

@@ -14,6 +14,7 @@ import { Importing } from './importing.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
 import { Legend } from './legend.js';
+import { Lens } from './lens.js';
 import { MeshList } from './list.js';
 import { MeshActs } from './mesh_acts.js';
 import { askShape } from './new_shape.js';
@@ -130,6 +131,27 @@ const stage = new Stage(
     },
 );
 const editing = new Editing(canvas, session, stage, toasts, () => refining.end());
+const lens = new Lens(
+    {
+        section: byId('lens'),
+        run: byId('lens-run'),
+        meets: byId('lens-meets'),
+        said: byId('lens-said'),
+        groups: byId('lens-groups'),
+        box: byId('lens-work'),
+        label: byId('lens-work-label'),
+        progress: byId('lens-work-progress'),
+        cancel: byId('lens-work-cancel'),
+    },
+    session,
+    {
+        show: async ({ kind, ids, ball }) => {
+            stage.frame(ball);
+            await session.selection.selectAll(kind, ids);
+        },
+        onError: fail,
+    },
+);
 const address = new Address(session, stage);
 const refining = new Refining(
     {
@@ -194,6 +216,7 @@ function update(what, change) {
         showSelection();
         editing.follow(what);
     }
+    lens.follow(what);
     if (what === 'gone') {
         refreshList().catch(fail);
     }
@@ -262,6 +285,7 @@ function showWhatMayBeDone() {
     showState(session, ready, stage.isThere);
     editing.setEnabled(ready);
     history.setEnabled(ready);
+    lens.setEnabled(ready, session.mesh !== null);
 }
 
 // Ends the showing of levels of detail. It is called when another mesh or revision is shown,
@@ -350,6 +374,7 @@ listenToKeys(canvas, {
     remove: () => byId('remove').click(),
     undo,
     redo,
+    check: () => byId('check').click(),
     help: () => byId('help').showModal(),
     clear: () => (refining.isWanted ? refining.end() : editing.giveUp()),
 });
@@ -369,6 +394,7 @@ byId('redo').addEventListener('click', redo);
 byId('show-boundary').addEventListener('change', (event) => {
     session.showBoundary(event.target.checked).catch(fail);
 });
+byId('check').addEventListener('click', () => lens.reveal());
 byId('fit').addEventListener('click', () => stage.fit());
 byId('progressive').addEventListener('click', toggleLevels);
 byId('refresh').addEventListener('click', () => signIn.start().then(refreshList).catch(fail));

@@ -302,10 +302,10 @@ export class Session {
         return face;
     }
 
-    // Runs an operation on the open mesh; if it may take long, `work` shows its progress, see
-    // edit() in api.js. Returns the server's answer, or null if there is none.
-    run(operation, work = null) {
-        return this.#edit((revision) => api.edit(this.mesh, operation, revision, work));
+    // Runs an operation, or a list of operations, on the open mesh; if it may take long, `work` shows
+    // its progress, see edit() in api.js. Returns the server's answer, or null if there is none.
+    run(operations, work = null) {
+        return this.#edit((revision) => api.edit(this.mesh, operations, revision, work));
     }
 
     // Undoes the last step, or all steps since the revision `to`.
