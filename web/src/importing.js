@@ -11,17 +11,27 @@ const MOST = 4;
 
 export class Importing {
     #toasts;
+    #report;
     #onOpen;
 
-    // `onOpen(summary)` opens a new mesh and returns a promise.
-    constructor(toasts, onOpen) {
-        [this.#toasts, this.#onOpen] = [toasts, onOpen];
+    // `report` keeps what each import has repaired and warned of. `onOpen(summary)` opens a new mesh
+    // and returns a promise.
+    constructor({ toasts, report }, onOpen) {
+        [this.#toasts, this.#report, this.#onOpen] = [toasts, report, onOpen];
+    }
+
+    // Opens the mesh that was made from a file. Returns the button for its report, null if that is
+    // empty.
+    async #open(summary, file) {
+        const isTelling = this.#report.keep(summary.id, file.name, summary.import);
+        await this.#onOpen(summary);
+        return isTelling ? { label: 'Show report', run: () => this.#report.open() } : null;
     }
 
     // Opens the mesh that was made from a file, and says what is wrong with it.
     async done(summary, batch) {
         const { name } = batch.file;
-        await this.#onOpen(summary);
+        const more = await this.#open(summary, batch.file);
         const [check, tag] = await Promise.all([api.check(summary.id), api.getTag(summary.id)]).catch(
             () => [null, null],
         );
@@ -30,15 +40,15 @@ export class Importing {
             ...found.filter(({ code }) => code !== 'open_border').map(({ text }) => text),
             ...remarksOf(summary),
         ];
-        const more = words.length > MOST ? [`${formatCount(words.length - MOST)} more notes`] : [];
-        const lines = [sizesOf(summary), ...words.slice(0, MOST), ...more];
+        const rest = words.length > MOST ? [`${formatCount(words.length - MOST)} more notes`] : [];
+        const lines = [sizesOf(summary), ...words.slice(0, MOST), ...rest];
         const text = lines.map((line) => `${line}.`).join(' ');
         const offer = () => this.#offerFor(summary, batch, found, tag);
         const isMendable = found.length > 0 && tag !== null;
         this.#toasts.tell(
             `Read ${name}`,
             text,
-            isMendable ? { label: 'Repair\u2026', run: () => offer().catch((e) => this.#toasts.show(e)) } : null,
+            isMendable ? { label: 'Repair\u2026', run: () => offer().catch((e) => this.#toasts.show(e)) } : more,
         );
     }
 
@@ -51,14 +61,14 @@ export class Importing {
             go: 'Use repaired mesh',
         };
         return offerRepairs(batch, words, { found, chosen }, async (repaired) => {
-            await this.#onOpen(repaired);
+            const more = await this.#open(repaired, batch.file);
             // The unrepaired mesh stays if it was changed since.
             const isGone = await api.remove(summary.id, tag).then(
                 () => true,
                 () => false,
             );
             const end = isGone ? '' : ' The mesh without repairs was changed meanwhile and stays, too.';
-            this.#toasts.tell(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`);
+            this.#toasts.tell(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`, more);
             await this.#onOpen(repaired);
         });
     }
@@ -78,8 +88,8 @@ export class Importing {
         };
         const { repair: chosen } = error;
         await offerRepairs(batch, words, { found: defectsOf(error), chosen }, async (repaired) => {
-            await this.#onOpen(repaired);
-            this.#toasts.tell(`Read ${name} with repairs`, `${sizesOf(repaired)}.`);
+            const more = await this.#open(repaired, batch.file);
+            this.#toasts.tell(`Read ${name} with repairs`, `${sizesOf(repaired)}.`, more);
         });
     }
 }

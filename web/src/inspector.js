@@ -2,6 +2,7 @@
 // elements.
 
 import { formatMeasure, make } from './dom.js';
+import { TITLES, linkTo, shortened } from './element_links.js';
 
 // The members of an element that are ids of other elements, and the kind of these other elements.
 const LINKS = {
@@ -19,11 +20,6 @@ const LINKS = {
     face: 'face',
     faces: 'face',
 };
-
-const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'Face' };
-
-// If a member has more ids than this, the rest is shown after a click on a button.
-const MOST = 16;
 
 // The number of digits with which a measure is shown: so few that three measures fit into a line.
 const DIGITS = 5;
@@ -103,28 +99,11 @@ export class Inspector {
         description.dataset.member = name;
         if (Array.isArray(value)) {
             description.classList.toggle('vector', kind === undefined);
-            description.append(...value.slice(0, MOST).map((item) => this.#value(kind, item)));
-            this.#offerRest(description, kind, value.slice(MOST));
+            description.append(...shortened(value, (item) => this.#value(kind, item)));
         } else {
             description.append(this.#value(kind, value));
         }
         return description;
-    }
-
-    #offerRest(description, kind, rest) {
-        if (rest.length === 0) {
-            return;
-        }
-        const button = make(
-            'button',
-            {
-                type: 'button',
-                className: 'rest',
-                onclick: () => button.replaceWith(...rest.map((item) => this.#value(kind, item))),
-            },
-            `${rest.length} more`,
-        );
-        description.append(button);
     }
 
     #value(kind, value) {
@@ -134,16 +113,7 @@ export class Inspector {
         if (kind === undefined) {
             return plainValue(value);
         }
-        return make(
-            'button',
-            {
-                type: 'button',
-                className: 'link',
-                'aria-label': `${TITLES[kind]} ${value}`,
-                onclick: () => this.#onFollow(kind, value),
-            },
-            `${value}`,
-        );
+        return linkTo(kind, value, this.#onFollow);
     }
 }
 

@@ -182,7 +182,8 @@ export class MeshList {
             make(
                 'span',
                 { className: 'mesh-counts' },
-                `${formatAbout(counts.vertices)} vertices, ${formatAbout(counts.faces)} faces`,
+                `${formatAbout(counts.vertices)} ${counts.vertices === 1 ? 'vertex' : 'vertices'}, ` +
+                    `${formatAbout(counts.faces)} ${counts.faces === 1 ? 'face' : 'faces'}`,
             ),
         );
         button.dataset.mesh = id;

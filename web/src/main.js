@@ -10,6 +10,7 @@ import { Editing } from './editing.js';
 import { askExport } from './exporting.js';
 import { framing } from './framing.js';
 import { History } from './history.js';
+import { ImportReport } from './import_report.js';
 import { Importing } from './importing.js';
 import { Inspector } from './inspector.js';
 import { keyList, listenToKeys } from './keys.js';
@@ -46,6 +47,17 @@ const inspector = new Inspector(
         onFollow: (kind, id) => session.selection.select(kind, id).catch(fail),
         heirOf: (element) => session.heirOf(element),
     },
+);
+const report = new ImportReport(
+    {
+        dialog: byId('report'),
+        file: byId('report-file'),
+        close: byId('report-close'),
+        repairs: byId('report-repairs'),
+        warnings: byId('report-warnings'),
+        opener: byId('report-open'),
+    },
+    { onFollow: (kind, id) => flyTo(kind, id).catch(fail) },
 );
 const legend = new Legend(
     { section: byId('materials'), list: byId('legend'), toggle: byId('show-materials') },
@@ -102,7 +114,7 @@ const acts = new MeshActs(
     { toasts, work, list },
     { onChange: refreshList, onOpen: (mesh) => session.open(mesh), onDeleted: leave },
 );
-const importing = new Importing(toasts, openNew);
+const importing = new Importing({ toasts, report }, openNew);
 new Uploads(
     { input: byId('file'), work, area: byId('drop') },
     {
@@ -210,6 +222,7 @@ function update(what, change) {
         byId('details').hidden = false;
         list.setCurrent(session.mesh);
         comparing.setMesh(session.mesh);
+        report.follow(session.mesh);
         stage.fit();
     }
     if (isChanged || what === 'selection') {
@@ -340,7 +353,12 @@ async function saveScreenshot() {
 
 async function goTo(event) {
     event.preventDefault();
-    await session.selection.select(byId('goto-kind').value, Number(byId('goto-id').value));
+    await flyTo(byId('goto-kind').value, Number(byId('goto-id').value));
+}
+
+// Selects an element and moves the camera to it.
+async function flyTo(kind, id) {
+    await session.selection.select(kind, id);
     frameSelection();
 }
 

@@ -1,7 +1,7 @@
 // trial.js - makes a dry run of the edit in a form before the user sends it, and shows the result
 // in words.
 
-import { formatCount } from './dom.js';
+import { formatCount, formatNumberOf } from './dom.js';
 
 // A dry run starts when the form has not changed for this many milliseconds.
 const DELAY = 300;
@@ -130,14 +130,13 @@ export function selectionOf({ selected, added, removed }) {
         ['\u2212', removed],
     ].flatMap(([sign, count]) => (count > 0 ? [`${sign}${formatCount(count)}`] : []));
     const end = ` (${changes.length > 0 ? changes.join(' ') : 'as before'})`;
-    return `${formatCount(selected)} ${selected === 1 ? 'element' : 'elements'}${end}`;
+    return `${formatNumberOf(selected, 'element')}${end}`;
 }
 
 // Returns the result of a segmentation in words.
 export function patchesOf({ patches, features }) {
-    const count = (number, one, many) => `${formatCount(number)} ${number === 1 ? one : many}`;
-    const marked = features > 0 ? `, with ${count(features, 'feature edge', 'feature edges')}` : '';
-    return `${count(patches, 'patch', 'patches')}${marked}`;
+    const marked = features > 0 ? `, with ${formatNumberOf(features, 'feature edge')}` : '';
+    return `${formatNumberOf(patches, 'patch', 'patches')}${marked}`;
 }
 
 function tally(found) {
