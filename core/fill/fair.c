@@ -147,11 +147,9 @@ static he_status make_domain(const he_patch *p, const surroundings *s, domain *o
     return HE_OK;
 }
 
-/* Solves the equations of order k for the new vertices. Sets *moved if one of them moved by more
- * than a small part of the length of its edges. */
-static he_status solve(he_patch *p, domain *d, unsigned k, bool *moved, he_error *err)
+/* Solves the equations of order k for the new vertices. */
+static he_status solve(he_patch *p, domain *d, unsigned k, he_error *err)
 {
-    static const double LITTLE = 0.05;
     const uint32_t n = d->surface.vertices;
     he_laplacian l = {.masses = NULL};
     he_harmonic *system = NULL;
@@ -177,7 +175,6 @@ static he_status solve(he_patch *p, domain *d, unsigned k, bool *moved, he_error
     }
     for (uint32_t v = p->rim; v < p->vertices && status == HE_OK; v++) {
         const he_vec3 to = {d->values[v], d->values[n + (size_t)v], d->values[2 * (size_t)n + v]};
-        *moved = *moved || he_vec3_length(he_vec3_sub(to, p->at[v])) > LITTLE * p->size[v];
         p->at[v] = to;
     }
     return status;
@@ -192,11 +189,11 @@ bool he_patch_must_stop(he_status status, const he_error *why, he_error *err)
     return stop;
 }
 
-/* Solves the equations of order k, or of the next lower order that has a solution. If there is
- * none, the patch stays as it is. */
-static he_status fair_once(he_patch *p, unsigned k, bool *moved, he_error *err)
+he_status he_patch_fair(he_patch *p, unsigned continuity, he_error *err)
 {
-    for (unsigned order = k; order >= 1; order--) {
+    /* If the equations have no solution, those of the next lower order are solved. If there are
+     * none, the patch stays as it is. */
+    for (unsigned order = continuity + 1; order >= 1 && p->vertices > p->rim; order--) {
         surroundings s = {.corners = {NULL, 0, 0}};
         domain d = {.corners = NULL};
         he_error why = {.status = HE_OK};
@@ -205,30 +202,16 @@ static he_status fair_once(he_patch *p, unsigned k, bool *moved, he_error *err)
             status = make_domain(p, &s, &d, &why);
         }
         if (status == HE_OK) {
-            status = solve(p, &d, order, moved, &why);
+            status = solve(p, &d, order, &why);
         }
         domain_clear(&d);
         surroundings_clear(&s);
-        if (status == HE_OK || he_patch_must_stop(status, &why, err)) {
+        if (status == HE_OK) {
+            return he_patch_relax(p, err);
+        }
+        if (he_patch_must_stop(status, &why, err)) {
             return status;
         }
     }
     return HE_OK;
-}
-
-he_status he_patch_fair(he_patch *p, unsigned continuity, he_error *err)
-{
-    /* The equations are for the surface that they change, so they are solved again for the new one,
-     * if that is another one. */
-    enum { TIMES = 2 };
-    he_status status = HE_OK;
-    bool moved = true;
-    for (unsigned i = 0; i < TIMES && moved && p->vertices > p->rim && status == HE_OK; i++) {
-        moved = false;
-        status = fair_once(p, continuity + 1, &moved, err);
-        if (status == HE_OK && moved) {
-            status = he_patch_relax(p, err);
-        }
-    }
-    return status;
 }

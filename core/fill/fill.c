@@ -41,11 +41,13 @@ he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *opt
     if (status == HE_OK) {
         status = he_patch_cover(&p, err);
     }
-    if (status == HE_OK) {
-        status = he_patch_refine(&p, options->edge_length / p.unit, err);
-    }
-    if (status == HE_OK) {
-        status = he_patch_fair(&p, (unsigned)options->continuity, err);
+    /* The equations are for the surface that they change, so a coarse patch is bent first. */
+    static const double coarseness[] = {2, 1};
+    for (size_t i = 0; i < 2 && status == HE_OK; i++) {
+        status = he_patch_refine(&p, options->edge_length / p.unit, coarseness[i], err);
+        if (status == HE_OK) {
+            status = he_patch_fair(&p, (unsigned)options->continuity, err);
+        }
     }
     if (status == HE_OK) {
         status = he_patch_values_find(&p, &values, err);

@@ -98,15 +98,17 @@ static inline he_vec3 he_triangle_normal(he_vec3 a, he_vec3 b, he_vec3 c)
  * Sharir, Filling gaps in the boundary of a polyhedron, 1995; Liepa, Filling holes in meshes,
  * 2003). A hole of more than HE_COVER_LOOP edges is first cut into loops of about that many.
  * Returns HE_NO_MEMORY or HE_CANCELLED. */
-enum { HE_COVER_LOOP = 128 };
+enum { HE_COVER_LOOP = 64 };
 HE_NODISCARD he_status he_patch_cover(he_patch *p, he_error *err);
 
-/* Adds vertices until edges are about as long as wanted: `edge_length`, in the coordinates of the
- * patch, or, if it is 0, as those of the rim; then they grow towards the middle of a hole that
- * would get too many faces otherwise. Edges are flipped as he_patch_relax does (Liepa 2003).
+/* Adds vertices until edges are about as long as wanted, or `coarseness` times as long. They should
+ * have the length `edge_length`, in the coordinates of the patch, or, if it is 0, that of the edges
+ * of the rim; then they grow towards the middle of a hole that would get too many faces otherwise.
+ * Edges are flipped as he_patch_relax does (Liepa 2003).
  * Returns HE_LIMIT if `edge_length` asks for more than HE_FILL_FACES faces, HE_NO_MEMORY or
  * HE_CANCELLED. */
-HE_NODISCARD he_status he_patch_refine(he_patch *p, double edge_length, he_error *err);
+HE_NODISCARD he_status he_patch_refine(he_patch *p, double edge_length, double coarseness,
+                                       he_error *err);
 
 /* Flips edges of which the opposite angles add up to more than 180 degrees, unless the surface
  * would fold or get a doubled edge. Returns HE_NO_MEMORY or HE_CANCELLED. */

@@ -314,7 +314,14 @@ static he_status plan(he_patch *p, double edge_length, spacing *out, he_error *e
     return HE_OK;
 }
 
-he_status he_patch_refine(he_patch *p, double edge_length, he_error *err)
+static void scale_sizes(he_patch *p, double factor)
+{
+    for (uint32_t v = 0; v < p->vertices; v++) {
+        p->size[v] *= factor;
+    }
+}
+
+he_status he_patch_refine(he_patch *p, double edge_length, double coarseness, he_error *err)
 {
     enum { PASSES = 60 };
     spacing wanted;
@@ -324,8 +331,15 @@ he_status he_patch_refine(he_patch *p, double edge_length, he_error *err)
     if (status == HE_OK) {
         status = plan(p, edge_length, &wanted, err);
     }
+    if (status == HE_OK) {
+        scale_sizes(p, coarseness);
+        wanted.length *= coarseness;
+    }
     for (unsigned i = 0; i < PASSES && more && status == HE_OK; i++) {
         status = divide_all(p, &wanted, &q, &more, err);
+    }
+    if (status == HE_OK) {
+        scale_sizes(p, 1 / coarseness);
     }
     queue_clear(&q);
     return status;
