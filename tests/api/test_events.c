@@ -392,9 +392,10 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
         if (back) {
             (void)send(b, "POST", "/v1/meshes/m/undo", NULL);
         } else if (strcmp(name, "compact") != 0 && strcmp(name, "subdivide") != 0 &&
-                   strcmp(name, "remesh") != 0 && strcmp(name, "material_set") != 0 &&
-                   strcmp(name, "select") != 0 && strcmp(name, "segment") != 0 &&
-                   strcmp(name, "deviation") != 0 && (faces < 20 || strcmp(name, "append") != 0)) {
+                   strcmp(name, "remesh") != 0 && strcmp(name, "fill_holes") != 0 &&
+                   strcmp(name, "material_set") != 0 && strcmp(name, "select") != 0 &&
+                   strcmp(name, "segment") != 0 && strcmp(name, "deviation") != 0 &&
+                   (faces < 20 || strcmp(name, "append") != 0)) {
             random_edit(&random, &now, row, text);
             (void)send(b, "POST", "/v1/meshes/m/edits", text);
         }
