@@ -152,6 +152,11 @@ enum {
  * about a million in a second. */
 #define API_COMPARE_PER_SECOND 1e6
 enum { API_MAX_PIECES = 1 << 23 };
+/* Rates of deformations: making the system of equations of 300,000 elements took 0.2 s for arap and
+ * 1 s for biharmonic, a step of arap 0.02 s. */
+#define API_ARAP_PER_SECOND       1.5e6
+#define API_BIHARMONIC_PER_SECOND 3e5
+#define API_BEND_PER_SECOND       1.5e7
 /* Elements per second of making a progressive mesh: for 2.7 million elements it took 2.9 s. */
 #define API_PROGRESSIVE_PER_SECOND 1e6
 /* How much work a list of operations may do while it holds the mesh's lock, on a worker thread and

@@ -375,6 +375,27 @@ static const api_route routes[] = {
          "component more than about 1e107 times smaller than the mesh's largest coordinate is "
          "never listed. All defects are counted, and the first 100 of each kind are listed."},
 
+    {.method = "POST",
+     .path = "/v1/meshes/{mesh}/deform",
+     .name = "preview_deform",
+     .decode = api_deform_decode,
+     .run = api_deform_post,
+     .role = API_ROLE_READ,
+     .reads = API_READS_VIEW,
+     .cost = api_deform_cost,
+     .flags = API_LONG,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = octets,
+     .statuses = {200, 202, 413, 415, 422},
+     .request = "op_deform",
+     .summary = "Preview a deformation",
+     .doc = "Computes what the operation `deform` would do, and changes nothing. With n handles "
+            "and following vertices, the answer has 28 n bytes, little-endian: three doubles for "
+            "the position of each, and then their ids as 32-bit integers. The system of equations "
+            "is kept, so a request with other goals for the same handles and fixed vertices of the "
+            "same revision takes a fraction of the time."},
+
     /* edits */
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/edits",

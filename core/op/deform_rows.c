@@ -1,6 +1,5 @@
+#include "op/deform_arguments.h"
 #include "op/rows.h"
-
-#include "deform/deform.h"
 
 enum {
     DEFORM_METHOD,
@@ -15,8 +14,8 @@ enum { DEFORM_OUT_MOVED, DEFORM_OUT_LARGEST, DEFORM_OUT_MEAN, DEFORM_OUT_ENERGY 
 
 static const char *const methods[] = {"arap", "biharmonic", NULL};
 
-static void read_arguments(const he_arg *args, he_deform_sets *sets, he_deform_goal *goal,
-                           unsigned *steps)
+void he_deform_arguments(const he_arg *args, he_deform_sets *sets, he_deform_goal *goal,
+                         unsigned *steps)
 {
     const he_arg *to = &args[DEFORM_TO], *by = &args[DEFORM_BY];
     *sets = (he_deform_sets){.method = (he_deform_method)args[DEFORM_METHOD].choice,
@@ -38,7 +37,7 @@ static he_status run_deform(he_mesh *m, const he_arg *args, he_results *out, he_
     he_deform_goal goal;
     unsigned steps;
     he_deformed done;
-    read_arguments(args, &sets, &goal, &steps);
+    he_deform_arguments(args, &sets, &goal, &steps);
     he_status status = he_deform(m, &sets, &goal, steps, &done, err);
     if (status == HE_OK) {
         he_results_set_number(out, DEFORM_OUT_MOVED, done.moved);
@@ -120,7 +119,7 @@ const he_op he_deform_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_NOT_FINITE, HE_LOCKED_ELEMENT},
         .change = {0, 0, 0},
-        .pace = 60,
+        .pace = 30,
         .run = run_deform,
     },
     {.name = NULL},

@@ -356,6 +356,8 @@ typedef enum st_derived_kind {
     /* The tree of boxes (BVH) by which rays and nearest points are found, made for one revision:
      * see api/ask/bvh_cache.h. */
     ST_DERIVED_BVH,
+    /* The system of equations of a deformation: see api/write/deformer_cache.h. */
+    ST_DERIVED_DEFORMER,
     ST_DERIVED_COUNT
 } st_derived_kind;
 

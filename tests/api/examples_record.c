@@ -315,7 +315,9 @@ static void record(const session *s, uint32_t row, api_out *out)
     }
     api_out_key_u64(out, "status", (uint64_t)r.status);
     api_out_key_string(out, "produces", type);
-    write_response(out, &text);
+    if (strcmp(type, "application/octet-stream") != 0) { /* bytes would tell a reader nothing */
+        write_response(out, &text);
+    }
     api_out_object_end(out);
     api_text_clear(&text);
     bench_reply_free(&r);

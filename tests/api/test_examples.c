@@ -123,9 +123,12 @@ static void find_example(const cJSON *document, const api_examples *file, const 
     const cJSON *operation =
         json_member(json_member(json_member(document, "paths"), route->path), method);
     snprintf(status, sizeof status, "%d", json_member(row, "status")->valueint);
-    find_in(json_member(json_member(json_member(operation, "responses"), status), "content"),
-            produces, file, api_example_find(file, API_EXAMPLE_RESPONSE, name, produces),
-            API_EXAMPLE_RESPONSE);
+    /* The file has no bytes of a binary answer. */
+    if (strcmp(produces, "application/octet-stream") != 0) {
+        find_in(json_member(json_member(json_member(operation, "responses"), status), "content"),
+                produces, file, api_example_find(file, API_EXAMPLE_RESPONSE, name, produces),
+                API_EXAMPLE_RESPONSE);
+    }
     if (consumes != NULL) {
         find_in(json_member(json_member(operation, "requestBody"), "content"),
                 consumes->valuestring, file,

@@ -26,13 +26,14 @@ typedef struct step {
 #define ONE_FILE                                                                               \
     "--x\r\nContent-Disposition: form-data; name=\"a.obj\"\r\n\r\nv 0 0 0\nv 1 0 0\nv 0 1 0\n" \
     "f 1 2 3\n\r\n--x--"
-#define MINIMAL "Prefer", "return=minimal"
-#define STALE   "If-Match", "\"0-0-0-x\""
-#define ABSENT  "If-None-Match", "*"
-#define ANY     "If-None-Match", "*"
-#define LARGE   "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"
-#define ASYNC   "Prefer", "respond-async"
-#define BIG     "too big" /* a placeholder for a body that is longer than a JSON request may be */
+#define MINIMAL  "Prefer", "return=minimal"
+#define STALE    "If-Match", "\"0-0-0-x\""
+#define ABSENT   "If-None-Match", "*"
+#define ANY      "If-None-Match", "*"
+#define DRAG(id) "{\"op\":\"deform\",\"vertex\":" id ",\"by\":[0,0,1]}"
+#define LARGE    "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"
+#define ASYNC    "Prefer", "respond-async"
+#define BIG      "too big" /* a placeholder for a body that is longer than a JSON request may be */
 
 static const step steps[] = {
     {"PUT", "/v1/meshes/m", 201, CUBE, {ABSENT}},
@@ -177,6 +178,10 @@ static const step steps[] = {
      422,
      "{\"walk\":\"loop\",\"from\":{\"halfedge\":99}}",
      {NULL}},
+    {"POST", "/v1/meshes/m/deform", 200, DRAG("0"), {NULL}},
+    {"POST", "/v1/meshes/m/deform", 413, BIG, {NULL}},
+    {"POST", "/v1/meshes/m/deform", 415, "{}", {TEXT}},
+    {"POST", "/v1/meshes/m/deform", 422, DRAG("99"), {NULL}},
     {"GET", "/v1/meshes/m/boundaries", 200, NULL, {NULL}},
     {"GET", "/v1/meshes/m/boundaries", 304, NULL, {ANY}},
     {"GET", "/v1/meshes/m/components", 200, NULL, {NULL}},
@@ -259,6 +264,7 @@ static const step steps[] = {
      202,
      "{\"walk\":\"rings\",\"from\":{\"vertex\":1},\"depth\":1}",
      {ASYNC}},
+    {"POST", "/v1/meshes/m/deform", 202, DRAG("1"), {ASYNC}},
     {"POST", "/v1/meshes?id=job", 202, CUBE, {ASYNC}},
     {"PUT", "/v1/meshes/job", 202, CUBE, {ASYNC}},
     {"POST", "/v1/meshes/m/copy", 202, NULL, {ASYNC}},
