@@ -97,6 +97,7 @@ test('a click on a hole flies to it, and fills it after a trial', async (t) => {
     assert.ok((await readCanvas(page)).countOf(isChosen) > 500, 'the rim is large in the view');
     // Both ways are tried, and nothing is changed by that.
     await tried(page, 'Fill with triangles', /^Would make: \+3 E \+4 F$/);
+    await tried(page, 'Fill smoothly', /^Would make: .*F$/);
     const fill = await tried(page, 'Fill with one face', /^Would make: \+1 F$/);
     assert.equal((await get(daemon, `/${mesh}`)).revision, 2);
     await checkAccessible(page, 'hole open');
@@ -141,7 +142,7 @@ test('a hole that cannot be filled is left out, and why is said', async (t) => {
     const twice = loops.filter(({ vertices }) => new Set(vertices).size < vertices.length);
     assert.equal(twice.length, 1);
     await group(page, 'loops').getByRole('button', { name: /^Fill all/ }).click();
-    const fill = await tried(page, 'Fill them', /^Would make: .*But 1 hole is left out: .+/);
+    const fill = await tried(page, 'Fill them', /^Would make: \+1 F\. 1 hole stays open \(touching itself: 1\)\.$/);
     await fill.click();
     await said(page, /^The holes are filled\./);
     assert.equal((await get(daemon, `/${mesh}`)).counts.boundary_loops, 1);

@@ -4,7 +4,7 @@
 // function that returns a promise of the operations. Its argument `facesOf(face)` reads the ids of
 // the faces of a component. A mend of all findings of a group has `title`, too, the words of the
 // button that offers it. If it has `parts`, its operations are independent of each other, and
-// `parts` names them, as in ['hole', 'holes']: those that are refused can be left out.
+// `parts` names them, as in ['face', 'faces']: those that are refused can be left out.
 
 // Edges of a face count as short if they are shorter than this part of the longest.
 const SHORT = 1e-3;
@@ -18,7 +18,8 @@ export function mendsOfLoop({ halfedge }, isTriangles) {
         { label: 'Fill with one face', done: 'The hole is filled.', make: fill('polygon') },
         { label: 'Fill with triangles', done: 'The hole is filled.', make: fill('triangulate') },
     ];
-    return isTriangles ? mends.reverse() : mends;
+    const smooth = { label: 'Fill smoothly', done: 'The hole is filled.', make: fill('smooth') };
+    return [...(isTriangles ? mends.reverse() : mends), smooth];
 }
 
 export function mendsOfComponent({ face }) {
@@ -118,12 +119,7 @@ const ALL = {
         title: 'Fill all',
         label: 'Fill them',
         done: 'The holes are filled.',
-        parts: ['hole', 'holes'],
-        make: each(loops, ({ halfedge }) => ({
-            op: 'hole_fill',
-            halfedge,
-            method: isTriangles ? 'triangulate' : 'polygon',
-        })),
+        make: always({ op: 'fill_holes', method: isTriangles ? 'triangulate' : 'polygon' }),
     }),
     bowtie: () => ({
         title: 'Split all',

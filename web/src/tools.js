@@ -191,7 +191,7 @@ export class Tools {
         if (selects) {
             this.disarm();
             this.#unfold();
-            this.#fill();
+            this.#fill(true);
         }
         this.#touch();
     }
@@ -433,15 +433,18 @@ export class Tools {
 
     // Fills each field with selected elements of the kind that its parameter takes, in the order of
     // selection; an element goes into one field only. Of several alternative parameters only the
-    // first that fits is filled. Fields that the user filled by clicks stay as they are.
-    #fill() {
+    // first that fits is filled. Fields that the user filled by clicks stay as they are; if
+    // `isEmptyOnly` is true, all fields that are not empty do.
+    #fill(isEmptyOnly = false) {
         const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
         const fields = this.#open;
-        const groups = new Set(fields.filter((one) => one.isTaken).map(({ param }) => param.group));
+        const isKept = ({ control, isTaken }) => isTaken || (isEmptyOnly && control.isSaid);
+        const groups = new Set(fields.filter(isKept).map(({ param }) => param.group));
         groups.delete(undefined);
-        for (const { param, control, isTaken } of fields) {
+        for (const field of fields) {
+            const { param, control } = field;
             const kind = kindOf(param);
-            if (kind === null || isPlace(param) || isTaken) {
+            if (kind === null || isPlace(param) || isKept(field)) {
                 continue;
             }
             const ids = groups.has(param.group) ? [] : left.get(kind);

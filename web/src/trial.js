@@ -81,8 +81,11 @@ export class Trial {
         this.#box.style.minHeight = '';
         this.#box.textContent = text;
         this.#box.classList.toggle('refused', isRefused);
-        if (this.#box.previousElementSibling?.contains(document.activeElement)) {
-            this.#box.scrollIntoView({ block: 'nearest' }); // the field above it is in use
+        const { activeElement } = document;
+        if (text !== '' && this.#box.previousElementSibling?.contains(activeElement)) {
+            // The field above is in use, so that both must be seen.
+            this.#box.scrollIntoView({ block: 'nearest' });
+            activeElement.scrollIntoView({ block: 'nearest' });
         }
     }
 }
@@ -93,7 +96,29 @@ export function wordsOf(answer) {
         return null;
     }
     const end = answer.undoable === false ? ' This edit cannot be undone.' : '';
-    return `${changesOf(answer)}${end}`;
+    return `${changesOf(answer)}${openOf(answer)}${end}`;
+}
+
+// Why the operation `fill_holes` leaves holes open, by the member of its result that counts them.
+const LEFT = {
+    large: 'too large',
+    touching: 'touching itself',
+    single: 'around a single face',
+    doubled: 'between edges that exist already',
+};
+
+// Returns how many holes an edit leaves open, in a sentence; '' if none.
+function openOf({ results }) {
+    const filled = results.find(({ left }) => left?.length > 0);
+    if (filled === undefined) {
+        return '';
+    }
+    const reasons = Object.entries(LEFT)
+        .filter(([name]) => filled[name] > 0)
+        .map(([name, words]) => `${words}: ${formatCount(filled[name])}`);
+    const { length } = filled.left;
+    const stays = length === 1 ? 'stays' : 'stay';
+    return `. ${formatNumberOf(length, 'hole')} ${stays} open (${reasons.join(', ')}).`;
 }
 
 function changesOf(answer) {
