@@ -84,17 +84,9 @@ export class Comparing {
 
     // `face` is the face of the open mesh at the place of the largest distance.
     #placeRow(title, side, face) {
-        const button = make(
-            'button',
-            {
-                type: 'button',
-                className: 'link',
-                'aria-label': `${title}: show the place, face ${face}`,
-                onclick: () => this.#callbacks.onPlace(face),
-            },
-            rangeOf(side),
-        );
-        return row(title, button);
+        const onclick = () => this.#callbacks.onPlace(face);
+        const button = make('button', { type: 'button', className: 'link', onclick }, `face ${face}`);
+        return row(title, `${rangeOf(side)} at `, button);
     }
 }
 
@@ -104,6 +96,6 @@ function rangeOf({ lower, upper }) {
     return low === high ? low : `${low} to ${high}`;
 }
 
-function row(title, value) {
-    return make('div', {}, make('dt', {}, title), make('dd', {}, value));
+function row(title, ...values) {
+    return make('div', {}, make('dt', {}, title), make('dd', {}, ...values));
 }
