@@ -147,7 +147,7 @@ static const struct {
      "{\"oneOf\":[{\"type\":\"array\",\"items\":"
      "{\"$ref\":\"#/components/schemas/id\"}},{\"type\":\"string\",\"const\":\"all\"}]}"},
     {"mesh_or_revision", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/mesh_id\"},"
-                         "{\"type\":\"integer\",\"minimum\":1}]}"},
+                         "{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":1}]}"},
     {"of_any", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/of\"},"
                "{\"$ref\":\"#/components/schemas/of_many\"}]}"},
     {"question", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/relation_query\"},"
