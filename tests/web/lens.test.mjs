@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
+import { mendsOfDefect } from '../../web/src/lens_mends.js';
 import { checkAccessible, isChosen, readCanvas, waitForFrame } from './browser.mjs';
 import { get, post } from './daemon.mjs';
 import { cameraOf, expectToast, isEdit, press } from './page.mjs';
@@ -94,6 +95,10 @@ test('a click on a hole flies to it, and fills it after a trial', async (t) => {
         halfedges.map((id) => `halfedge:${id}`).join(' '),
     );
     assert.notEqual(await cameraOf(page), before);
+    // The panel says more about the selected half-edges above the list, which stays in sight.
+    const { height } = page.viewportSize();
+    const box = await page.locator('.finding[aria-expanded="true"]').boundingBox();
+    assert.ok(box.y >= 0 && box.y + box.height <= height, `${JSON.stringify(box)}`);
     assert.ok((await readCanvas(page)).countOf(isChosen) > 500, 'the rim is large in the view');
     // Both ways are tried, and nothing is changed by that.
     await tried(page, 'Fill with triangles', /^Would make: \+3 E \+4 F$/);
@@ -297,4 +302,21 @@ test('many findings are shown in portions, and many loops filled at once', async
     await (await tried(page, 'Fill them', /^Would make: \+362 F$/)).click();
     await said(page, /no boundary/);
     assert.equal((await get(daemon, `/${mesh}`)).counts.boundary_loops, 0);
+});
+
+test('a face without area is mended as its shape asks', async () => {
+    const face = { id: 3, degree: 3, halfedges: [0, 2, 4], vertices: [0, 1, 2] };
+    const ways = (lengths, element = face) =>
+        Promise.all(
+            mendsOfDefect({ code: 'degenerate_face', id: 3 }, element, lengths).map(
+                async ({ make }) => (await make())[0],
+            ),
+        );
+    const dropped = { op: 'face_delete', faces: [3] };
+    assert.deepEqual(await ways([1, 1e-6, 1]), [{ op: 'edge_collapse', edge: 1 }, dropped]);
+    assert.deepEqual(await ways([0.5, 0.5, 1]), [{ op: 'edge_flip', edge: 2 }, dropped]);
+    // A polygon has no edge whose flip would help, and a defect of a later server no known cure.
+    const square = { ...face, degree: 4, halfedges: [0, 2, 4, 6] };
+    assert.deepEqual(await ways([1, 1, 1, 1], square), [dropped]);
+    assert.deepEqual(mendsOfDefect({ code: 'frayed', id: 3 }, undefined, []), []);
 });

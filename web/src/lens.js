@@ -310,7 +310,7 @@ export class Lens {
                     this.#all = null;
                     this.#rerender(`[data-key="${item.key}"]`);
                     if (!isOpen) {
-                        this.#show(item).catch(this.#acts.onError);
+                        this.#show(item).then(() => this.#bringBack()).catch(this.#acts.onError);
                     }
                 },
             },
@@ -334,6 +334,13 @@ export class Lens {
         this.#refocus = null;
         this.#elements.groups.querySelector(selector)?.focus({ preventScroll: true });
         this.#elements.section.parentElement.scrollTop = scrollTop;
+    }
+
+    // Scrolls the open item into sight: what the panel shows above about the elements that are now
+    // selected may have moved it.
+    #bringBack() {
+        const open = this.#elements.groups.querySelector('.finding[aria-expanded="true"]');
+        open?.parentElement.scrollIntoView({ block: 'nearest' });
     }
 
     // Selects what an item is about, and moves the camera there.
