@@ -142,8 +142,7 @@ const he_op he_edge_rows[] = {
     },
     {
         .name = "edge_join",
-        .doc = "Why the operation stopped: the target was reached, max_error allows no more "
-               "collapses, or no edge can be collapsed any more.",
+        .doc = "Remove a vertex of degree two and join its two edges.",
         .params = {[EDGE_JOIN_VERTEX] = {.name = "vertex",
                                          .type = HE_PARAM_ELEMENT,
                                          .kind = HE_VERTEX,

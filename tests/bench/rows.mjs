@@ -31,6 +31,7 @@ import { deform } from './rows_deform.mjs';
 import { fill } from './rows_fill.mjs';
 import { remesh } from './rows_remesh.mjs';
 import { segment } from './rows_segment.mjs';
+import { smooth } from './rows_smooth.mjs';
 import { solve } from './rows_solve.mjs';
 
 const M = 1e6;
@@ -418,6 +419,7 @@ export const parts = [
     ...remesh,
     ...deform,
     ...fill,
+    ...smooth,
     {
         part: 'json',
         input: 'torus',

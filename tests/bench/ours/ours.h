@@ -24,6 +24,7 @@ extern const bench_row bench_stored_rows[];
 extern const bench_row bench_segment_rows[];
 extern const bench_row bench_deform_rows[];
 extern const bench_row bench_fill_rows[];
+extern const bench_row bench_smooth_rows[];
 extern const bench_row bench_solve_rows[];
 extern const bench_row bench_compare_rows[];
 

@@ -39,6 +39,7 @@ extern const bench_row cgal_segment_rows[];
 extern const bench_row cgal_remesh_rows[];
 extern const bench_row cgal_deform_rows[];
 extern const bench_row cgal_fill_rows[];
+extern const bench_row cgal_smooth_rows[];
 extern const bench_row cgal_compare_rows[];
 
 #endif

@@ -67,6 +67,9 @@ bench_part bench_deform_part(const bench_side *side, uint32_t vertex);
 /* Computes where a handle goes: it is turned and lifted. */
 void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3]);
 
+/* The time of the step of smoothing, in square units of the torus. */
+#define BENCH_SMOOTH_TIME 1e-3
+
 /* Returns true if a vertex of the torus is in the cap that is cut off in the rows about filling
  * holes. */
 bool bench_in_cap(const bench_side *side, uint32_t vertex);
