@@ -39,7 +39,8 @@ static void put_mesh(client *c, const char *body)
 /* Sends an edit; returns the revision that the edit made, 0 if it was refused. */
 static uint64_t post(client *c, const char *path, const char *json)
 {
-    /* Some random edits take so long that they become a job, for whose end the daemon then waits. */
+    /* Some random edits take so long that they become a job, for whose end the daemon then waits.
+     */
     static const char *const lines[] = {"Content-Type: application/json", "Prefer: wait=60", NULL};
     reply r = client_send(c, "POST", path, lines, json);
     uint64_t revision = r.status == 200 ? (uint64_t)reply_number(&r, "revision") : 0;

@@ -134,8 +134,13 @@ test('an element on the far side is seen when one goes to it', async (t) => {
         for (const [kind, other] of [['vertex', vertices[0]], ['halfedge', halfedges[0]]]) {
             await goTo(page, kind, other);
             await page.locator('#canvas').blur();
-            const seen = (await readCanvas(page)).colour(width / 2, height / 2);
-            assert.ok(isChosen(seen), `${kind} ${other}: ${seen}`);
+            // A half-edge is framed with its face, so it is beside the middle.
+            const seen = await readCanvas(page);
+            const isShown =
+                kind === 'vertex'
+                    ? isChosen(seen.colour(width / 2, height / 2))
+                    : seen.countOf(isChosen) > 50;
+            assert.ok(isShown, `${kind} ${other}`);
             await page.getByRole('button', { name: 'Fit view' }).click();
         }
     }

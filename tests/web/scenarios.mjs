@@ -161,8 +161,8 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
         } else if (param.includes(' ')) {
             await page.getByLabel(param, { exact: true }).fill(value);
         } else if ((await field.evaluate(({ tagName }) => tagName)) === 'SELECT') {
-            // The id of a mesh is not known beforehand, so the value 'mesh' means the open mesh.
-            await field.selectOption(param === 'mesh' ? mesh : value);
+            // The id of a mesh is not known beforehand: 'which mesh' means the open mesh.
+            await field.selectOption(value === 'which mesh' ? mesh : value);
         } else {
             await field.fill(value);
         }
