@@ -151,7 +151,7 @@ enum {
  * default bound. A comparison makes at most API_MAX_PIECES parts of triangles in each direction,
  * about a million in a second. */
 #define API_COMPARE_PER_SECOND 1e6
-enum { API_MAX_PIECES = 1 << 23 };
+enum { API_MAX_PIECES = 1 << 21 };
 /* Rates of deformations: making the system of equations of 300,000 elements took 0.2 s for arap and
  * 1 s for biharmonic, a step of arap 0.02 s. */
 #define API_ARAP_PER_SECOND       1.5e6

@@ -19,7 +19,8 @@ static const double TREES[2] = {0.15, 0.3};
 /* What the request asks for, and what was found. */
 typedef struct comparison {
     api_other_mesh with;
-    double bound; /* 0: the default */
+    uint64_t with_elements; /* of the present revision of that mesh */
+    double bound;           /* 0: the default */
     uint32_t bins;
     uint64_t revision;
     he_bvh *tree[2];
@@ -55,6 +56,14 @@ static bool read_with(api_exchange *x, comparison *c)
     return api_other_mesh_find(x, &with, id, revision, &c->with);
 }
 
+/* Counts the elements of the other mesh while no mesh is locked: later the mesh in the path is, and
+ * the locks of two meshes are never held together. */
+static void count_other(comparison *c)
+{
+    st_mesh_info info;
+    c->with_elements = st_read_card(c->with.mesh, &info);
+}
+
 static bool read_request(api_exchange *x, comparison *c)
 {
     api_in in;
@@ -73,6 +82,7 @@ static void load_other(api_exchange *x)
 {
     comparison *c = x->state;
     if (api_other_mesh_load(x, &c->with)) {
+        count_other(c);
         api_read(x);
     }
 }
@@ -92,6 +102,7 @@ bool api_compare_decode(api_exchange *x)
         x->deferred = load_other;
         return false;
     }
+    count_other(c);
     return true;
 }
 
@@ -100,8 +111,7 @@ bool api_compare_decode(api_exchange *x)
 bool api_compare_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const comparison *c = x->state;
-    st_mesh_info info;
-    const uint64_t elements = api_elements_of(mesh) + st_read_card(c->with.mesh, &info);
+    const uint64_t elements = api_elements_of(mesh) + c->with_elements;
     out->elements = API_COSTLY_ELEMENTS + elements;
     out->seconds = (double)elements / API_COMPARE_PER_SECOND;
     return true;

@@ -104,6 +104,7 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/summary\"},"
                    "{\"$ref\":\"#/components/schemas/query_results\"},"
                    "{\"$ref\":\"#/components/schemas/walked\"},"
+                   "{\"$ref\":\"#/components/schemas/comparison\"},"
                    "{\"$ref\":\"#/components/schemas/boundaries\"},"
                    "{\"$ref\":\"#/components/schemas/components\"},"
                    "{\"$ref\":\"#/components/schemas/vertex_page\"},"

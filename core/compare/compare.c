@@ -195,6 +195,13 @@ static he_status check(const he_compared surfaces[2], const he_compare_options *
     return HE_OK;
 }
 
+uint64_t he_compare_budget(const he_compared surfaces[2])
+{
+    const uint64_t base = (uint64_t)1 << 33, for_each = 8192;
+    return base +
+           for_each * ((uint64_t)he_mesh_edges(surfaces[0].mesh) + he_mesh_edges(surfaces[1].mesh));
+}
+
 he_status he_compare(const he_compared surfaces[2], const he_compare_options *options,
                      he_progress *progress, he_comparison *out, he_error *err)
 {
@@ -208,7 +215,7 @@ he_status he_compare(const he_compared surfaces[2], const he_compare_options *op
         const he_compared *to = &surfaces[1 - i];
         c[i] = (he_comparing){.from = surfaces[i],
                               .to = *to,
-                              .budget = {.left = UINT64_MAX, .progress = progress},
+                              .budget = {.left = he_compare_budget(surfaces), .progress = progress},
                               .bound = ldexp(options->bound, -to->tree->exponent),
                               .most_pieces = options->most_pieces,
                               .triangle = HE_NONE,

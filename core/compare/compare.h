@@ -77,12 +77,17 @@ typedef struct he_comparison {
  * both surfaces. */
 double he_compare_default_bound(const he_compared surfaces[2]);
 
+/* Returns how many boxes and triangles may be looked at in each direction: thousands for each
+ * triangle, many times what surfaces take that are not made to be slow. */
+uint64_t he_compare_budget(const he_compared surfaces[2]);
+
 /* Compares two surfaces, which must not change meanwhile. `progress` may be NULL.
  * Returns HE_NO_FACES if one of the meshes has no faces.
  * Returns HE_BAD_VALUE if the bound is not above 0, or the number of bins is out of range.
  * Returns HE_NOT_FINITE if the bound is not finite.
  * Returns HE_LIMIT if a coordinate of one surface is more than 2^90 times larger than all of the
- * other one, so that products of coordinates would overflow.
+ * other one, so that products of coordinates would overflow, or if very many triangles are at one
+ * place, so that looking for nearest points takes more than he_compare_budget steps.
  * Returns HE_CANCELLED if the work was cancelled, HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_compare(const he_compared surfaces[2], const he_compare_options *options,
                                   he_progress *progress, he_comparison *out, he_error *err);

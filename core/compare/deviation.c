@@ -1,5 +1,6 @@
 #include "compare/deviation.h"
 
+#include "compare/compare.h"
 #include "compare/feature_normals.h"
 #include "edit/whole/attribute.h"
 
@@ -181,7 +182,9 @@ he_status he_deviation(he_mesh *m, const he_mesh *with, const char *attribute, h
     const he_column *former;
     he_column *column = NULL;
     he_deviated done;
-    measuring s = {.with = with, .budget = {.left = UINT64_MAX, .progress = m->progress}};
+    const he_compared both[2] = {{.mesh = m}, {.mesh = with}};
+    measuring s = {.with = with,
+                   .budget = {.left = he_compare_budget(both), .progress = m->progress}};
     he_status status = find(m, attribute, &former, err);
     if (status == HE_OK) {
         status = prepare(&s, m->progress, err);

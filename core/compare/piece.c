@@ -23,15 +23,20 @@ bool he_piece_cut(const he_piece *piece, const he_cut_plane *plane, he_piece *fr
     for (uint32_t i = 0; i < piece->count; i++) {
         extent = fmax(extent, he_vec3_extent(piece->corner[i]));
     }
-    uint32_t before = 0, after = 0;
+    uint32_t before = 0, after = 0, crossings = 0;
     for (uint32_t i = 0; i < piece->count; i++) {
         side[i] = he_vec3_dot(piece->corner[i], plane->normal) - plane->offset;
         side[i] = fabs(side[i]) <= ON_PLANE * extent ? 0 : side[i];
         before += side[i] > 0;
         after += side[i] < 0;
     }
-    /* Each part gets at most two corners in place of those on the other side. */
-    if (before == 0 || after == 0 || piece->count - after + 2 > HE_PIECE_CORNERS ||
+    for (uint32_t i = 0; i < piece->count; i++) {
+        const double next = side[(i + 1) % piece->count];
+        crossings += (side[i] > 0 && next < 0) || (side[i] < 0 && next > 0);
+    }
+    /* Each part gets at most two corners in place of those on the other side, unless rounding has
+     * left a piece that is not convex. */
+    if (before == 0 || after == 0 || crossings > 2 || piece->count - after + 2 > HE_PIECE_CORNERS ||
         piece->count - before + 2 > HE_PIECE_CORNERS) {
         return false;
     }

@@ -17,6 +17,7 @@ typedef struct entry {
 typedef struct cover {
     he_patch *p;
     entry *table;
+    uint32_t most; /* corners of a loop, at most HE_COVER_LOOP */
     uint64_t work; /* steps since progress was reported */
 } cover;
 
@@ -128,7 +129,7 @@ static he_status cover_range(cover *c, uint32_t first, uint32_t count, he_vec3 *
 {
     he_patch *p = c->p;
     assert(count >= 2);
-    loop l = {.count = count < HE_COVER_LOOP ? count : HE_COVER_LOOP};
+    loop l = {.count = count < c->most ? count : c->most};
     const uint32_t edges = count - 1, parts = l.count - 1;
     he_status status = HE_OK;
     l.closing = count == p->rim ? p->beyond[p->rim - 1] : (he_vec3){0, 0, 0};
@@ -156,6 +157,14 @@ static he_status cover_range(cover *c, uint32_t first, uint32_t count, he_vec3 *
     return status;
 }
 
+static void remove_triangles(he_patch *p)
+{
+    p->triangles = 0;
+    for (uint32_t i = 0; i < p->rim; i++) {
+        p->degree[i] = 0;
+    }
+}
+
 /* Covers the hole by triangles around a new vertex. */
 static he_status fan(he_patch *p, he_error *err)
 {
@@ -164,9 +173,7 @@ static he_status fan(he_patch *p, he_error *err)
     for (uint32_t i = 0; i < p->rim; i++) {
         sum = he_vec3_add(sum, he_vec3_scale(p->at[i], 1.0 / p->rim));
         size += p->size[i] / p->rim;
-        p->degree[i] = 0;
     }
-    p->triangles = 0;
     he_status status = he_patch_reserve(p, err);
     if (status != HE_OK) {
         return status;
@@ -180,14 +187,26 @@ static he_status fan(he_patch *p, he_error *err)
 
 he_status he_patch_cover(he_patch *p, he_error *err)
 {
+    /* A long hole is first cut along chords between some of its corners. If the mesh has one of
+     * these edges already, other corners are tried. */
+    static const uint32_t most[] = {HE_COVER_LOOP, HE_COVER_LOOP - 3, HE_COVER_LOOP - 5,
+                                    HE_COVER_LOOP - 11};
     cover c = {.p = p};
-    he_vec3 normal;
-    bool found = true;
+    bool found = false;
+    he_status status = HE_OK;
     c.table = he_mem_array(NULL, (size_t)HE_COVER_LOOP * HE_COVER_LOOP, sizeof *c.table);
     if (c.table == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to fill a hole of %u edges", p->rim);
     }
-    he_status status = cover_range(&c, 0, p->rim, &normal, &found, err);
+    for (size_t i = 0; i < sizeof most / sizeof *most && !found && status == HE_OK; i++) {
+        he_vec3 normal;
+        c.most = most[i];
+        found = true;
+        status = cover_range(&c, 0, p->rim, &normal, &found, err);
+        if (!found) {
+            remove_triangles(p);
+        }
+    }
     he_mem_free(c.table);
     if (status == HE_OK && !found) {
         status = fan(p, err);

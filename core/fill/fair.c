@@ -26,7 +26,7 @@ static void surroundings_clear(surroundings *s)
 /* Adds a face, cut into triangles from one corner, unless it was added before. */
 static he_status add_face(surroundings *s, const he_mesh *m, he_halfedge h, he_error *err)
 {
-    uint32_t index[3];
+    uint32_t index[3] = {0, 0, 0};
     bool added;
     he_status status = he_idmap_add(&s->faces, he_face_of(m, h).i, &index[0], &added, err);
     if (status != HE_OK || !added) {

@@ -4,13 +4,36 @@
 #include "geometry/geometry.h"
 #include "mesh/layout.h"
 
+#include <float.h>
+
+/* A face may have very many edges of the hole, so the normal of the last one is kept. */
+typedef struct last_normal {
+    uint32_t face;
+    bool known;
+    he_vec3 normal;
+} last_normal;
+
+static bool find_normal(const he_mesh *m, he_face f, last_normal *last, he_vec3 *out)
+{
+    if (last->face != f.i) {
+        *last = (last_normal){.face = f.i};
+        last->known = f.i != HE_NONE && he_face_normal(m, f, &last->normal);
+    }
+    *out = last->normal;
+    return last->known;
+}
+
 double he_fill_bend(const he_mesh *m, const he_ids *loop)
 {
     double most = 0;
+    last_normal inside = {.face = HE_NONE}, outside = {.face = HE_NONE};
     for (size_t i = 0; i < loop->count; i++) {
-        double angle;
-        if (he_edge_dihedral(m, he_edge_of((he_halfedge){loop->ids[i]}), &angle)) {
-            most = fmax(most, fabs(angle));
+        const he_halfedge h = {loop->ids[i]};
+        he_vec3 a, b;
+        if (find_normal(m, he_face_of(m, h), &inside, &a) &&
+            find_normal(m, he_face_of(m, he_twin(h)), &outside, &b)) {
+            const double angle = atan2(he_vec3_length(he_vec3_cross(a, b)), he_vec3_dot(a, b));
+            most = fmax(most, angle);
         }
     }
     return most;
@@ -43,8 +66,10 @@ he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *opt
     }
     /* The equations are for the surface that they change, so a coarse patch is bent first. */
     static const double coarseness[] = {2, 1};
+    const double wanted =
+        options->edge_length > 0 ? fmax(options->edge_length / p.unit, DBL_MIN) : 0;
     for (size_t i = 0; i < 2 && status == HE_OK; i++) {
-        status = he_patch_refine(&p, options->edge_length / p.unit, coarseness[i], err);
+        status = he_patch_refine(&p, wanted, coarseness[i], err);
         if (status == HE_OK) {
             status = he_patch_fair(&p, (unsigned)options->continuity, err);
         }
@@ -78,7 +103,8 @@ he_status he_hole_fill_smooth(he_mesh *m, he_halfedge h, const he_smooth_fill *o
     he_ids loop = {0};
     he_rim_chords chords = {.made = false};
     if (!isfinite(options->edge_length) || options->edge_length < 0) {
-        return he_fail_plain(err, HE_BAD_VALUE, "the length of edges must be finite and above 0");
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "the length of edges must be finite and not below 0");
     }
     he_status status = he_hole_loop(m, h, &loop, err);
     if (status == HE_OK) {

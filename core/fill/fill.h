@@ -4,8 +4,8 @@
 
 #include "edit/border/hole.h"
 
-/* The most faces with which one hole is refined. */
-enum { HE_FILL_FACES = 1000000 };
+/* The most faces with which one hole is refined, and all holes of a mesh together. */
+enum { HE_FILL_FACES = 1000000, HE_FILL_ALL_FACES = 4000000 };
 
 /* How smoothly the new surface meets the mesh; the values are the orders of continuity. */
 typedef enum he_continuity {
@@ -16,8 +16,8 @@ typedef enum he_continuity {
 } he_continuity;
 
 typedef struct he_smooth_fill {
-    /* The wanted length of the new edges, above 0. 0 stands for that of the edges around the hole,
-     * growing inwards in a hole that would get more than 50,000 faces otherwise. */
+    /* The wanted length of the new edges, or 0 for that of the edges around the hole, growing
+     * inwards in a hole that would get more than 50,000 faces otherwise. */
     double edge_length;
     he_continuity continuity;
 } he_smooth_fill;
@@ -86,8 +86,9 @@ typedef struct he_filled_holes {
  *
  * `out` may be NULL; otherwise he_filled_holes_clear frees it.
  * Returns HE_BAD_VALUE if a number is not finite or below 0.
- * Returns HE_LIMIT if `edge_length` asks for more than HE_FILL_FACES faces in a hole.
- * Returns HE_NO_MEMORY, HE_IDS_EXHAUSTED or HE_CANCELLED; no hole is filled then. */
+ * Returns HE_LIMIT if `edge_length` asks for more than HE_FILL_FACES faces in a hole, or if all
+ * holes together would get more than HE_FILL_ALL_FACES. Returns HE_NO_MEMORY, HE_IDS_EXHAUSTED or
+ * HE_CANCELLED; no hole is filled then. */
 HE_NODISCARD he_status he_fill_holes(he_mesh *m, const he_fill_holes_options *options,
                                      he_filled_holes *out, he_error *err);
 void he_filled_holes_clear(he_filled_holes *filled);

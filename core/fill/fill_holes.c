@@ -23,6 +23,7 @@ typedef struct filling {
     const he_fill_holes_options *options;
     he_rim_chords chords;
     uint64_t *seen; /* the half-edges of holes that were handled: a bit set */
+    uint64_t faces; /* that were made */
     he_filled_holes done;
 } filling;
 
@@ -64,12 +65,18 @@ static bool is_large(const he_fill_holes_options *o, const hole *h)
 static he_status fill_one(filling *w, const he_ids *loop, he_error *err)
 {
     const he_fill_method method = w->options->method;
+    const uint32_t before = he_mesh_faces(w->m);
+    if (w->faces > HE_FILL_ALL_FACES) {
+        return he_fail_plain(err, HE_LIMIT, "the holes would be filled with more than %d faces",
+                             (int)HE_FILL_ALL_FACES);
+    }
     he_status status =
         method == HE_FILL_ALL_SMOOTH
             ? he_fill_loop(w->m, loop, &w->options->smooth, &w->chords, NULL, err)
             : he_hole_fill(w->m, (he_halfedge){loop->ids[0]}, he_fill_of(method), NULL, err);
     if (status == HE_OK) {
         w->done.filled++;
+        w->faces += he_mesh_faces(w->m) - before;
         w->done.bend = fmax(w->done.bend, he_fill_bend(w->m, loop));
     }
     return status;

@@ -25,7 +25,9 @@ he_vec3 he_patch_inside(const he_patch *p, he_vec3 position)
 
 he_vec3 he_patch_outside(const he_patch *p, he_vec3 at)
 {
-    return he_vec3_add(p->base, he_vec3_scale(at, p->unit));
+    /* in halves, because a hole may be larger than the largest double */
+    const he_vec3 half = he_vec3_add(he_vec3_scale(p->base, 0.5), he_vec3_scale(at, 0.5 * p->unit));
+    return he_vec3_scale(half, 2);
 }
 
 /* --- the corners of the hole --- */

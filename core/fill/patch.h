@@ -91,7 +91,7 @@ static inline he_vec3 he_triangle_normal(he_vec3 a, he_vec3 b, he_vec3 c)
 /* The steps in which a patch is made, each in a file of its own. */
 
 /* Covers the hole by triangles between its corners, choosing those of the least area and the least
- * bend. If there are none without an edge that the mesh has already, the triangles go around a new
+ * bend. If none are found without an edge that the mesh has already, the triangles go around a new
  * vertex in the middle. The area A and the bend at an edge count by the sum of A and of
  * l^2 (1 - cos a) / 2, where l is the length of the edge and a the angle between the normals beside
  * it; the sum is made the least by dynamic programming over the parts of the loop (Barequet and

@@ -242,10 +242,11 @@ static bool divide(he_patch *p, const spacing *wanted, uint32_t triangle)
     const uint32_t v[3] = {p->corners[side], p->corners[side + 1], p->corners[side + 2]};
     const he_vec3 sum = he_vec3_add(he_vec3_add(p->at[v[0]], p->at[v[1]]), p->at[v[2]]);
     const he_vec3 middle = he_vec3_scale(sum, 1.0 / 3);
-    double distance[3], size = 0;
+    double distance[3], size = 0, largest = 0;
     uint32_t near = 0;
     for (uint32_t k = 0; k < 3; k++) {
         distance[k] = he_vec3_length(he_vec3_sub(p->at[v[k]], middle));
+        largest = fmax(largest, p->size[v[k]]);
         size += (p->size[v[k]] + wanted->growth * distance[k]) / 3;
         near = distance[k] < distance[near] ? k : near;
     }
@@ -254,6 +255,11 @@ static bool divide(he_patch *p, const spacing *wanted, uint32_t triangle)
         if (!(M_SQRT2 * distance[k] > fmax(size, p->size[v[k]]))) {
             return false;
         }
+    }
+    /* Triangles without area would only get more of their kind. */
+    static const double LEAST_AREA = 1e-6;
+    if (!(area(p, triangle) > LEAST_AREA * largest * largest)) {
+        return false;
     }
     const uint32_t bc = p->twins[side + 1], ca = p->twins[side + 2];
     const uint32_t w = he_patch_add_vertex(p, middle, size, p->corner[v[near]]);
@@ -306,7 +312,7 @@ static he_status plan(he_patch *p, double edge_length, spacing *out, he_error *e
     const double faces = foresee(p);
     if (edge_length > 0 && !(faces <= HE_FILL_FACES)) {
         return he_fail_plain(err, HE_LIMIT,
-                             "edges of this length would fill the hole with about %.0f faces, and "
+                             "edges of this length would fill the hole with about %.3g faces, and "
                              "at most %u are allowed",
                              faces, (unsigned)HE_FILL_FACES);
     }

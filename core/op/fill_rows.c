@@ -96,9 +96,9 @@ static he_status run_fill_holes(he_mesh *m, const he_arg *args, he_results *out,
     "The wanted length of the new edges. Default: that of the edges around the hole, growing " \
     "inwards in a hole that would get more than 50000 faces otherwise."
 
-#define CONTINUITY_DOC                                                                      \
-    "How smoothly the new surface continues the mesh. 0: it only meets it. 1: its tangent " \
-    "planes do, too. 2: also its curvature."
+#define CONTINUITY_DOC                                                                             \
+    "How smoothly the new surface continues the mesh at the edges of the hole. 0: without a gap. " \
+    "1: also with the same tangent planes. 2: also with the same curvature."
 
 const he_op he_fill_rows[] = {
     {

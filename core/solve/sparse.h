@@ -30,7 +30,7 @@ typedef struct he_entry {
 } he_entry;
 
 /* The largest number of rows, and of stored entries, of a matrix. */
-enum { HE_SPARSE_ROWS = 1 << 28, HE_SPARSE_ENTRIES = 1 << 30 };
+enum { HE_SPARSE_ROWS = 1 << 28, HE_SPARSE_ENTRIES = 1 << 27 };
 
 /* Makes a matrix with `n` rows. Entries at the same place are added in their order. Entries with
  * the value 0 are stored, so that the pattern depends on the places alone.

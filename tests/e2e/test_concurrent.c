@@ -72,6 +72,55 @@ static void *poke(void *context)
     return NULL;
 }
 
+/* Moves a vertex of one of two meshes, or compares both, again and again. */
+static void *move_or_compare(void *context)
+{
+    static const char *const paths[2] = {"/v1/meshes/a", "/v1/meshes/b"};
+    static const char *const others[2] = {"{\"with\":\"b\"}", "{\"with\":\"a\"}"};
+    visitor *v = context;
+    client *c = client_new(v->daemon);
+    for (int i = 0; i < REQUESTS; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "%s/%s", paths[i % 2], v->removes ? "edits" : "compare");
+        reply r = client_post(c, path,
+                              v->removes ? "{\"op\":\"vertex_move\",\"vertex\":0,\"by\":[0,0,1]}"
+                                         : others[i % 3 == 0 ? 1 - i % 2 : i % 2]);
+        if (r.status != 200 && v->strange == 0) {
+            v->strange = (int)r.status;
+        }
+        reply_free(&r);
+    }
+    client_free(c);
+    return NULL;
+}
+
+/* A comparison reads two meshes, in either order or twice the same one, and must never wait for a
+ * writer that waits for it. */
+static void comparisons_and_writers_do_not_block_each_other(void **state)
+{
+    (void)state;
+    daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
+    client *c = client_new(d);
+    for (int i = 0; i < 2; i++) {
+        reply r = client_send(c, "PUT", i == 0 ? "/v1/meshes/a" : "/v1/meshes/b", NULL,
+                              "{\"shape\":\"icosphere\",\"subdivisions\":1}");
+        assert_int_equal(r.status, 201);
+        reply_free(&r);
+    }
+    client_free(c);
+    visitor visitors[2 * CLIENTS];
+    pthread_t threads[2 * CLIENTS];
+    for (int i = 0; i < 2 * CLIENTS; i++) {
+        visitors[i] = (visitor){d, i % 2 == 1, 0};
+        assert_int_equal(pthread_create(&threads[i], NULL, move_or_compare, &visitors[i]), 0);
+    }
+    for (int i = 0; i < 2 * CLIENTS; i++) {
+        pthread_join(threads[i], NULL);
+        assert_int_equal(visitors[i].strange, 0);
+    }
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 /* Every edit of every writer must be applied exactly once. */
 static void each_edit_of_concurrent_writers_is_applied_once(void **state)
 {
@@ -106,6 +155,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(put_succeeds_while_others_delete_the_mesh),
+        cmocka_unit_test(comparisons_and_writers_do_not_block_each_other),
         cmocka_unit_test(each_edit_of_concurrent_writers_is_applied_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -32,6 +32,13 @@ static bool is_smooth(const md_call *c)
     return md_get(c, "method")->choice == HE_FILL_ALL_SMOOTH;
 }
 
+/* Returns true if hedge refused because a length that was asked for would make too many faces: only
+ * hedge knows how many. */
+static bool may_be_too_many(const md_call *c, he_status status)
+{
+    return status == HE_LIMIT && md_get(c, "edge_length")->given;
+}
+
 static void require(bool holds, const char *what, uint32_t id)
 {
     if (!holds) {
@@ -92,9 +99,16 @@ static uint64_t play_smooth(const md_call *c, or_mesh *o, const he_mesh *m, cons
             return OR_BIT(HE_REPEATED_CORNER);
         }
     }
-    if (he_mesh_copy(m, &made, NULL) != HE_OK ||
-        he_hole_fill_smooth(made, (he_halfedge){md_get(c, "halfedge")->id}, &options, &filled,
-                            NULL) != HE_OK) {
+    if (he_mesh_copy(m, &made, NULL) != HE_OK) {
+        abort();
+    }
+    const he_status status = he_hole_fill_smooth(made, (he_halfedge){md_get(c, "halfedge")->id},
+                                                 &options, &filled, NULL);
+    if (may_be_too_many(c, status)) {
+        he_mesh_free(made);
+        return OR_BIT(HE_LIMIT);
+    }
+    if (status != HE_OK) {
         abort();
     }
     require_stays(o, made);
@@ -194,8 +208,15 @@ static uint64_t play_fill_holes(const md_call *c, or_mesh *o, const he_mesh *m)
     he_filled_holes done;
     uint32_t touching, still;
     const uint32_t holes = count_holes(m, &touching);
-    if (he_mesh_copy(m, &made, NULL) != HE_OK ||
-        he_fill_holes(made, &options, &done, NULL) != HE_OK) {
+    if (he_mesh_copy(m, &made, NULL) != HE_OK) {
+        abort();
+    }
+    const he_status status = he_fill_holes(made, &options, &done, NULL);
+    if (may_be_too_many(c, status)) {
+        he_mesh_free(made);
+        return OR_BIT(HE_LIMIT);
+    }
+    if (status != HE_OK) {
         abort();
     }
     require_stays(o, made);

@@ -238,6 +238,46 @@ static void a_hole_whose_diagonals_exist_gets_a_vertex(void **state)
     he_mesh_free(m);
 }
 
+/* Makes a pyramid without a base, of base corners at `p`. */
+static he_mesh *make_pyramid(const he_vec3 p[4])
+{
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    for (int i = 0; i < 4; i++) {
+        (void)dense_add_vertex(&soup, p[i].x, p[i].y, p[i].z);
+    }
+    (void)dense_add_vertex(&soup, 0, 0, 1);
+    for (uint32_t i = 0; i < 4; i++) {
+        dense_add_triangle(&soup, i, (i + 1) % 4, 4);
+    }
+    return dense_built(&soup);
+}
+
+static void extreme_holes_get_finite_vertices_and_few_faces(void **state)
+{
+    (void)state;
+    static const double LARGE = 1.7e308;
+    static const he_vec3 bases[][4] = {
+        {{LARGE, 0, 0}, {0, LARGE, 0}, {-LARGE, 0, 0}, {0, -LARGE, 0}},
+        {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {2, 0, 0}}, /* without area */
+        {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+        {{1e-308, 0, 0}, {0, 1e-308, 0}, {-1e-308, 0, 0}, {0, -1e-308, 0}}};
+    static const double lengths[] = {LARGE / 20, 1e-6, 1e-6, 1e-309};
+    for (size_t i = 0; i < 4; i++) {
+        for (int continuity = 0; continuity < HE_CONTINUITIES; continuity++) {
+            he_mesh *m = make_pyramid(bases[i]);
+            const he_smooth_fill options = {lengths[i], (he_continuity)continuity};
+            he_filled filled = fill(m, some_hole(m), options);
+            assert_true(filled.faces.count < 10000);
+            for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+                assert_true(he_vec3_is_finite(at(m, v)));
+            }
+            he_filled_clear(&filled);
+            he_mesh_free(m);
+        }
+    }
+}
+
 /* --- attributes --- */
 
 static void attributes_continue_into_the_hole(void **state)
@@ -448,6 +488,7 @@ int main(void)
         cmocka_unit_test(edges_are_as_long_as_asked),
         cmocka_unit_test(a_hole_of_many_edges_does_not_get_too_many_faces),
         cmocka_unit_test(a_hole_whose_diagonals_exist_gets_a_vertex),
+        cmocka_unit_test(extreme_holes_get_finite_vertices_and_few_faces),
         cmocka_unit_test(attributes_continue_into_the_hole),
         cmocka_unit_test(fill_holes_says_what_it_left),
         cmocka_unit_test(random_holes_are_filled),
