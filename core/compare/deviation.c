@@ -122,7 +122,7 @@ static he_status fill(he_mesh *m, measuring *s, he_column *column, he_deviated *
     he_deviated sums = {HUGE_VAL, -HUGE_VAL, 0, 0, HE_NONE};
     he_status status = HE_OK;
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
-        double value;
+        double value = 0;
         if (!he_mesh_is_live(m, HE_VERTEX, v)) {
             continue;
         }
@@ -179,7 +179,7 @@ static he_status commit(he_mesh *m, const he_column *former, he_column **takes, 
 he_status he_deviation(he_mesh *m, const he_mesh *with, const char *attribute, he_deviated *out,
                        he_error *err)
 {
-    const he_column *former;
+    const he_column *former = NULL;
     he_column *column = NULL;
     he_deviated done;
     const he_compared both[2] = {{.mesh = m}, {.mesh = with}};
