@@ -3,7 +3,6 @@
 
 #include "mesh/marks.h"
 
-#include <math.h>
 #include <string.h>
 
 static bool has_columns(const he_content *c, he_kind domain)
@@ -46,69 +45,6 @@ he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err)
                : he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes of the finer mesh");
 }
 
-/* --- attribute values of any numeric type, as doubles --- */
-
-static double get(const he_column *column, size_t row, uint32_t component)
-{
-    const unsigned char *at =
-        he_column_value(column, row) + component * he_type_bytes(column->type);
-    int32_t integer;
-    uint32_t whole;
-    float single;
-    double number;
-    switch (column->type) {
-    case HE_BOOL:
-        return *at;
-    case HE_INT32:
-        memcpy(&integer, at, sizeof integer);
-        return integer;
-    case HE_UINT32:
-        memcpy(&whole, at, sizeof whole);
-        return whole;
-    case HE_FLOAT:
-        memcpy(&single, at, sizeof single);
-        return (double)single;
-    case HE_DOUBLE:
-        memcpy(&number, at, sizeof number);
-        return number;
-    case HE_TYPE_COUNT:
-        break;
-    }
-    return 0;
-}
-
-/* Stores a number in the type of the column. In columns of integers and booleans it is rounded to
- * the nearest value. */
-static void put(he_column *column, size_t row, uint32_t component, double value)
-{
-    unsigned char *at = he_column_row(column, row) + component * he_type_bytes(column->type);
-    int32_t integer;
-    uint32_t whole;
-    float single;
-    switch (column->type) {
-    case HE_BOOL:
-        *at = value >= 0.5;
-        break;
-    case HE_INT32:
-        integer = (int32_t)round(fmax(INT32_MIN, fmin(value, INT32_MAX)));
-        memcpy(at, &integer, sizeof integer);
-        break;
-    case HE_UINT32:
-        whole = (uint32_t)round(fmax(0, fmin(value, UINT32_MAX)));
-        memcpy(at, &whole, sizeof whole);
-        break;
-    case HE_FLOAT:
-        single = (float)value;
-        memcpy(at, &single, sizeof single);
-        break;
-    case HE_DOUBLE:
-        memcpy(at, &value, sizeof value);
-        break;
-    case HE_TYPE_COUNT:
-        break;
-    }
-}
-
 /* --- vertices --- */
 
 /* Computes the values of a vertex attribute in the finer mesh by the rules for positions, three
@@ -127,8 +63,9 @@ static he_status smooth_column(const he_subdivide_step *s, const he_column *from
     for (uint32_t k = 0; k < from->components && status == HE_OK; k += 3) {
         uint32_t left = from->components - k;
         for (uint32_t v = 0; v < rows; v++) {
-            before[v] = (he_vec3){get(from, v, k), left > 1 ? get(from, v, k + 1) : 0,
-                                  left > 2 ? get(from, v, k + 2) : 0};
+            before[v] = (he_vec3){he_column_number(from, v, k),
+                                  left > 1 ? he_column_number(from, v, k + 1) : 0,
+                                  left > 2 ? he_column_number(from, v, k + 2) : 0};
         }
         status = he_subdivide_place(s, before, after, err);
         for (uint32_t v = 0; v < fine && status == HE_OK; v++) {
@@ -136,12 +73,12 @@ static he_status smooth_column(const he_subdivide_step *s, const he_column *from
             if (s->to->vertex_halfedge[v] == HE_DEAD) {
                 continue;
             }
-            put(to, v, k, after[v].x);
+            he_column_put_number(to, k, after[v].x, he_column_row(to, v));
             if (left > 1) {
-                put(to, v, k + 1, after[v].y);
+                he_column_put_number(to, k + 1, after[v].y, he_column_row(to, v));
             }
             if (left > 2) {
-                put(to, v, k + 2, after[v].z);
+                he_column_put_number(to, k + 2, after[v].z, he_column_row(to, v));
             }
         }
     }
@@ -162,7 +99,7 @@ static double mean_of_face(const he_subdivide_step *s, const he_column *from, ui
         n++;
     } while (h != first);
     do {
-        total += get(from, h, k) / n;
+        total += he_column_number(from, h, k) / n;
         h = s->from->next[h];
     } while (h != first);
     return total;
@@ -173,9 +110,11 @@ static double blended(const he_subdivide_step *s, const he_column *from,
 {
     switch (source->how) {
     case HE_FROM_MIDDLE:
-        return 0.5 * get(from, source->a, k) + 0.5 * get(from, source->b, k);
+        return 0.5 * he_column_number(from, source->a, k) +
+               0.5 * he_column_number(from, source->b, k);
     case HE_FROM_THIRD:
-        return 2.0 / 3 * get(from, source->a, k) + 1.0 / 3 * get(from, source->b, k);
+        return 2.0 / 3 * he_column_number(from, source->a, k) +
+               1.0 / 3 * he_column_number(from, source->b, k);
     case HE_FROM_FACE:
         return mean_of_face(s, from, source->a, k);
     case HE_FROM_NOWHERE:
@@ -183,7 +122,7 @@ static double blended(const he_subdivide_step *s, const he_column *from,
     case HE_FROM_NEW:
         break;
     }
-    return get(from, source->a, k);
+    return he_column_number(from, source->a, k);
 }
 
 static void fill_corner(const he_subdivide_step *s, const he_column *from, he_column *to,
@@ -198,7 +137,7 @@ static void fill_corner(const he_subdivide_step *s, const he_column *from, he_co
         value = he_column_value(from, source->a);
     } else if (source->how != HE_FROM_NOWHERE && from->rule == HE_INTERPOLATE) {
         for (uint32_t k = 0; k < from->components; k++) {
-            put(to, h, k, blended(s, from, source, k));
+            he_column_put_number(to, k, blended(s, from, source, k), he_column_row(to, h));
         }
         return;
     }

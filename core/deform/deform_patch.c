@@ -1,7 +1,7 @@
 /* deform_patch.c - finds the free vertices, and the patch of triangles around them. */
 #include "deform/deformer.h"
 
-#include "geometry/vec3.h"
+#include "geometry/scale.h"
 #include "mesh/marks.h"
 #include "mesh/walk.h"
 
@@ -218,10 +218,7 @@ static void scale(he_deformer *d)
     }
     d->middle = he_vec3_add(he_vec3_scale(low, 0.5), he_vec3_scale(high, 0.5));
     const double extent = he_vec3_extent(he_vec3_sub(high, d->middle));
-    int exponent = 0;
-    (void)frexp(extent, &exponent);
-    exponent = exponent < -1000 ? -1000 : exponent > 1000 ? 1000 : exponent;
-    d->scale = extent > 0 ? ldexp(1, exponent) : 1;
+    d->scale = he_unit_of(extent);
     for (uint32_t v = 0; v < d->vertices; v++) {
         d->points[v] = he_vec3_scale(he_vec3_sub(d->at[v], d->middle), 1 / d->scale);
     }

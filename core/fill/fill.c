@@ -2,6 +2,7 @@
 
 #include "fill/patch.h"
 #include "geometry/geometry.h"
+#include "geometry/scale.h"
 #include "mesh/layout.h"
 
 #include <float.h>
@@ -32,8 +33,7 @@ double he_fill_bend(const he_mesh *m, const he_ids *loop)
         he_vec3 a, b;
         if (find_normal(m, he_face_of(m, h), &inside, &a) &&
             find_normal(m, he_face_of(m, he_twin(h)), &outside, &b)) {
-            const double angle = atan2(he_vec3_length(he_vec3_cross(a, b)), he_vec3_dot(a, b));
-            most = fmax(most, angle);
+            most = fmax(most, he_vec3_angle(a, b));
         }
     }
     return most;

@@ -1,5 +1,6 @@
 #include "fill/patch.h"
 
+#include "geometry/scale.h"
 #include "mesh/layout.h"
 
 /* A corner with more edges is a hub: whether an edge joins it to another hub is looked up. */
@@ -78,10 +79,7 @@ static double unit_of(const he_mesh *m, const he_ids *loop, he_vec3 base)
         extent = fmax(
             extent, he_vec3_extent(he_vec3_sub(he_vec3_scale(at, 0.5), he_vec3_scale(base, 0.5))));
     }
-    int exponent = 0;
-    (void)frexp(extent, &exponent);
-    exponent = exponent < -1000 ? -1000 : exponent > 1000 ? 1000 : exponent;
-    return extent > 0 ? ldexp(1, exponent) : 1;
+    return he_unit_of(extent);
 }
 
 /* Returns the unit normal on the other side of a boundary half-edge, of the first corners of the
@@ -100,8 +98,9 @@ static he_vec3 normal_beyond(const he_patch *p, he_halfedge h)
         sum = he_vec3_add(sum, he_triangle_normal(from, a, b));
         k = he_next(m, k);
     }
-    const double length = he_vec3_length(sum);
-    return length > 0 && isfinite(length) ? he_vec3_scale(sum, 1 / length) : (he_vec3){0, 0, 0};
+    he_vec3 normal;
+    (void)he_vec3_normalise(sum, &normal);
+    return normal;
 }
 
 static double distance(he_vec3 a, he_vec3 b)

@@ -25,6 +25,14 @@ static inline int he_exponent_of(double extent)
     return exponent < -1000 ? -1000 : exponent;
 }
 
+/* Returns the power of two, from 2^-1000 to 2^1000, in whose units coordinates up to `extent` are
+ * below 1, if it reaches that far; 1 if the extent is 0. */
+static inline double he_unit_of(double extent)
+{
+    const int exponent = he_exponent_of(extent);
+    return ldexp(1, exponent > 1000 ? 1000 : exponent);
+}
+
 static inline double he_saturated(double x)
 {
     return fmin(x, DBL_MAX);

@@ -131,12 +131,11 @@ void he_column_put_number(const he_column *column, uint32_t component, double nu
         *to = number >= 0.5;
         break;
     case HE_INT32:
-        number = fmax(INT32_MIN, fmin(number, INT32_MAX));
-        whole = (int32_t)(number < 0 ? number - 0.5 : number + 0.5);
+        whole = (int32_t)round(fmax(INT32_MIN, fmin(number, INT32_MAX)));
         memcpy(to, &whole, sizeof whole);
         break;
     case HE_UINT32:
-        natural = (uint32_t)(fmax(0, fmin(number, UINT32_MAX)) + 0.5);
+        natural = (uint32_t)round(fmax(0, fmin(number, UINT32_MAX)));
         memcpy(to, &natural, sizeof natural);
         break;
     case HE_FLOAT:

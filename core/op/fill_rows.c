@@ -92,13 +92,23 @@ static he_status run_fill_holes(he_mesh *m, const he_arg *args, he_results *out,
     "corners. smooth: triangles as large as those around the hole, on a surface that continues " \
     "the mesh."
 
-#define EDGE_LENGTH_DOC                                                                        \
-    "The wanted length of the new edges. Default: that of the edges around the hole, growing " \
-    "inwards in a hole that would get more than 50000 faces otherwise."
+#define EDGE_LENGTH                                                                               \
+    {                                                                                             \
+        .name = "edge_length", .type = HE_PARAM_NUMBER,                                           \
+        .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE, .min = 0, .max = DBL_MAX,                  \
+        .with = HE_WITH(HE_FILL_ALL_SMOOTH),                                                      \
+        .doc = "The wanted length of the new edges. Default: that of the edges around the hole, " \
+               "growing inwards in a hole that would get more than 50000 faces otherwise."        \
+    }
 
-#define CONTINUITY_DOC                                                                             \
-    "How smoothly the new surface continues the mesh at the edges of the hole. 0: without a gap. " \
-    "1: also with the same tangent planes. 2: also with the same curvature."
+#define CONTINUITY                                                                             \
+    {                                                                                          \
+        .name = "continuity", .type = HE_PARAM_NUMBER, .flags = HE_RANGE | HE_WHOLE, .min = 0, \
+        .max = 2, .fallback = HE_CONTINUOUS_TANGENT, .with = HE_WITH(HE_FILL_ALL_SMOOTH),      \
+        .doc = "How smoothly the new surface continues the mesh at the edges of the hole. 0: " \
+               "without a gap. 1: also with the same tangent planes. 2: also with the same "   \
+               "curvature."                                                                    \
+    }
 
 const he_op he_fill_rows[] = {
     {
@@ -114,21 +124,8 @@ const he_op he_fill_rows[] = {
                                          .flags = HE_SELECTS,
                                          .choices = fill_methods,
                                          .doc = METHODS_DOC},
-                   [HOLE_FILL_EDGE_LENGTH] = {.name = "edge_length",
-                                              .type = HE_PARAM_NUMBER,
-                                              .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE,
-                                              .min = 0,
-                                              .max = DBL_MAX,
-                                              .with = HE_WITH(HE_FILL_ALL_SMOOTH),
-                                              .doc = EDGE_LENGTH_DOC},
-                   [HOLE_FILL_CONTINUITY] = {.name = "continuity",
-                                             .type = HE_PARAM_NUMBER,
-                                             .flags = HE_RANGE | HE_WHOLE,
-                                             .min = 0,
-                                             .max = 2,
-                                             .fallback = HE_CONTINUOUS_TANGENT,
-                                             .with = HE_WITH(HE_FILL_ALL_SMOOTH),
-                                             .doc = CONTINUITY_DOC}},
+                   [HOLE_FILL_EDGE_LENGTH] = EDGE_LENGTH,
+                   [HOLE_FILL_CONTINUITY] = CONTINUITY},
         .results =
             {[HOLE_FILL_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
                                        "The new vertex, or null if there is not exactly one."},
@@ -168,21 +165,8 @@ const he_op he_fill_rows[] = {
                                             .max = DBL_MAX,
                                             .doc = "Holes whose box has a longer diagonal are "
                                                    "left. Default: holes of any size are filled."},
-                   [FILL_HOLES_EDGE_LENGTH] = {.name = "edge_length",
-                                               .type = HE_PARAM_NUMBER,
-                                               .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE,
-                                               .min = 0,
-                                               .max = DBL_MAX,
-                                               .with = HE_WITH(HE_FILL_ALL_SMOOTH),
-                                               .doc = EDGE_LENGTH_DOC},
-                   [FILL_HOLES_CONTINUITY] = {.name = "continuity",
-                                              .type = HE_PARAM_NUMBER,
-                                              .flags = HE_RANGE | HE_WHOLE,
-                                              .min = 0,
-                                              .max = 2,
-                                              .fallback = HE_CONTINUOUS_TANGENT,
-                                              .with = HE_WITH(HE_FILL_ALL_SMOOTH),
-                                              .doc = CONTINUITY_DOC}},
+                   [FILL_HOLES_EDGE_LENGTH] = EDGE_LENGTH,
+                   [FILL_HOLES_CONTINUITY] = CONTINUITY},
         .results = {[FILL_HOLES_OUT_FILLED] = {"filled", HE_RESULT_NUMBER, HE_FACE,
                                                "How many holes were filled."},
                     [FILL_HOLES_OUT_LEFT] = {"left", HE_RESULT_ELEMENTS, HE_HALFEDGE,

@@ -2,7 +2,7 @@
 
 #include "edit/piece/list.h"
 #include "edit/whole/positions.h"
-#include "geometry/vec3.h"
+#include "geometry/scale.h"
 #include "mesh/marks.h"
 #include "smooth/smoothing.h"
 
@@ -129,10 +129,7 @@ static void scale(he_smoothing *s)
     }
     const he_vec3 middle = he_vec3_add(he_vec3_scale(low, 0.5), he_vec3_scale(high, 0.5));
     const double extent = he_vec3_extent(he_vec3_sub(high, middle));
-    int exponent = 0;
-    (void)frexp(extent, &exponent);
-    exponent = exponent < -1000 ? -1000 : exponent > 1000 ? 1000 : exponent;
-    s->scale = extent > 0 ? ldexp(1, exponent) : 1;
+    s->scale = he_unit_of(extent);
     for (uint32_t v = 0; v < issued; v++) {
         const he_vec3 p = he_vec3_sub(he_position(m, (he_vertex){v}), middle);
         s->at[v] = he_vertex_is_live(m, (he_vertex){v}) ? he_vec3_scale(p, 1 / s->scale)
