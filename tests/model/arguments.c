@@ -197,6 +197,20 @@ or_plane md_plane(const md_call *c)
                       .tolerance = tolerance->given ? &tolerance->number : NULL};
 }
 
+bool md_is_listed(const he_arg *list, uint32_t id)
+{
+    bool found = false;
+    for (size_t i = 0; i < list->count && !found; i++) {
+        found = list->ids[i] == id;
+    }
+    return found;
+}
+
+bool md_covers(const he_arg *list, uint32_t id)
+{
+    return !list->given || md_is_listed(list, id);
+}
+
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg)
 {
     uint64_t refused = 0;

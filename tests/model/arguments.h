@@ -57,6 +57,11 @@ void md_give_plane(md_draft *d);
 /* Returns the plane of a call, from its arguments point, normal and tolerance. */
 or_plane md_plane(const md_call *c);
 
+/* md_is_listed returns whether a list of elements has an id; md_covers also returns true if the
+ * list was not given, which stands for all elements. */
+bool md_is_listed(const he_arg *list, uint32_t id);
+bool md_covers(const he_arg *list, uint32_t id);
+
 /* Returns the refusals of or_require for the elements of a list, and HE_REPEATED_ELEMENT if one is
  * repeated. */
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg);

@@ -49,15 +49,6 @@ static bool draw_deform(md_draft *d)
     return md_is_tame(d);
 }
 
-static bool is_listed(const he_arg *list, uint32_t id)
-{
-    bool found = false;
-    for (size_t i = 0; i < list->count && !found; i++) {
-        found = list->ids[i] == id;
-    }
-    return found;
-}
-
 static he_deform_goal goal_of(const md_call *c)
 {
     const he_arg *to = md_get(c, "to"), *by = md_get(c, "by"), *matrix = md_get(c, "matrix");
@@ -134,7 +125,7 @@ static void mark_free(const md_call *c, const or_mesh *o, bool may_move[OR_VERTI
                 continue;
             }
             const uint32_t other = may_move[a] ? b : a;
-            if (!is_listed(fixed, other) && !is_held(o, other)) {
+            if (!md_is_listed(fixed, other) && !is_held(o, other)) {
                 may_move[other] = changed = true;
             }
         }
@@ -153,7 +144,7 @@ static uint64_t play_deform(const md_call *c, or_mesh *o, const he_mesh *m)
         refused |= OR_BIT(HE_BAD_VALUE);
     }
     for (size_t i = 0; i < handles->count; i++) {
-        refused |= is_listed(fixed, handles->ids[i]) ? OR_BIT(HE_REPEATED_ELEMENT) : 0;
+        refused |= md_is_listed(fixed, handles->ids[i]) ? OR_BIT(HE_REPEATED_ELEMENT) : 0;
     }
     for (size_t i = 0; i < handles->count && refused == 0; i++) {
         const or_vertex *v = &o->vertex[handles->ids[i]];

@@ -24,19 +24,10 @@ static double edge_lengths(const he_mesh *m, double *longest)
     return sum;
 }
 
-static bool is_listed(const he_arg *list, uint32_t id)
-{
-    bool found = !list->given;
-    for (size_t i = 0; i < list->count && !found; i++) {
-        found = list->ids[i] == id;
-    }
-    return found;
-}
-
 /* Returns true if the operation works on face f of the oracle. */
 static bool is_chosen(const or_mesh *o, const he_arg *faces, uint32_t f)
 {
-    return o->face[f].alive && !o->face[f].locked && is_listed(faces, f);
+    return o->face[f].alive && !o->face[f].locked && md_covers(faces, f);
 }
 
 /* Returns about how many regular triangles with sides of this length have the area of the chosen

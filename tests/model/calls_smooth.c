@@ -44,15 +44,6 @@ static he_status run(const md_call *c, he_mesh *m)
     return he_smooth(m, &options, NULL, NULL);
 }
 
-static bool is_listed(const he_arg *list, uint32_t id)
-{
-    bool found = !list->given;
-    for (size_t i = 0; i < list->count && !found; i++) {
-        found = list->ids[i] == id;
-    }
-    return found;
-}
-
 /* Returns true if an edge of the oracle has fewer than two faces. */
 static bool is_boundary(const or_mesh *o, uint32_t e)
 {
@@ -114,7 +105,7 @@ static uint64_t play_smooth(const md_call *c, or_mesh *o, const he_mesh *m)
         return refused;
     }
     for (uint32_t v = 0; v < o->vertices && only_triangles; v++) {
-        if (is_listed(vertices, v) && may_move(o, v) && has_other_face(o, v)) {
+        if (md_covers(vertices, v) && may_move(o, v) && has_other_face(o, v)) {
             refused |= OR_BIT(HE_NOT_TRIANGLE);
         }
     }
@@ -135,7 +126,7 @@ static uint64_t play_smooth(const md_call *c, or_mesh *o, const he_mesh *m)
         if (!o->vertex[v].alive) {
             continue;
         }
-        if (!(is_listed(vertices, v) && may_move(o, v)) && !or_same_point(o->vertex[v].at, at)) {
+        if (!(md_covers(vertices, v) && may_move(o, v)) && !or_same_point(o->vertex[v].at, at)) {
             fprintf(stderr, "smooth moved vertex %u\n", v);
             abort();
         }

@@ -138,6 +138,15 @@ he_mesh *dense_copy(const he_mesh *m)
     return copy;
 }
 
+bool dense_same_point(he_vec3 a, he_vec3 b)
+{
+    const double before[] = {a.x, a.y, a.z}, after[] = {b.x, b.y, b.z};
+    uint64_t x[3], y[3];
+    memcpy(x, before, sizeof x);
+    memcpy(y, after, sizeof y);
+    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
+}
+
 he_vec3 dense_corner(const he_mesh *m, uint32_t f, unsigned i)
 {
     he_halfedge h = he_face_halfedge(m, (he_face){f});

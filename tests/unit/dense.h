@@ -29,6 +29,7 @@ he_mesh *dense_shape(const char *name, const char *param, double value);
 he_mesh *dense_cube(uint32_t side);
 he_mesh *dense_copy(const he_mesh *m);
 
+bool dense_same_point(he_vec3 a, he_vec3 b); /* returns true if two points have the same bits */
 he_vec3 dense_corner(const he_mesh *m, uint32_t face, unsigned i);
 /* Returns the vector that has the direction of the face's normal and the face's area as length. */
 he_vec3 dense_area(const he_mesh *m, uint32_t face);

@@ -47,16 +47,6 @@ static double apart(he_vec3 a, he_vec3 b)
     return he_vec3_length(he_vec3_sub(a, b));
 }
 
-/* Returns true if two points have the same bits. */
-static bool same(he_vec3 a, he_vec3 b)
-{
-    const double before[] = {a.x, a.y, a.z}, after[] = {b.x, b.y, b.z};
-    uint64_t x[3], y[3];
-    memcpy(x, before, sizeof x);
-    memcpy(y, after, sizeof y);
-    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
-}
-
 static void add_handle(lists *l, uint32_t v, he_vec3 goal)
 {
     assert_true(l->handle_count < ALL);
@@ -370,7 +360,7 @@ static void what_lies_behind_fixed_vertices_stays(void **state)
         for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
             const int row = (int)lround(at(before, v).x / size * N);
             const double way = apart(at(m, v), at(before, v));
-            assert_true(row > 5 ? way > 0 : same(at(m, v), at(before, v)));
+            assert_true(row > 5 ? way > 0 : dense_same_point(at(m, v), at(before, v)));
             moved += way > 0;
             largest = fmax(largest, way);
             sum += way;
@@ -400,7 +390,7 @@ static void vectors_and_points_agree(void **state)
     assert_int_equal(
         he_deform(other, &sets, &(he_deform_goal){.to = to, .count = 3}, 3, NULL, NULL), HE_OK);
     assert_true(he_mesh_equal(m, other));
-    assert_true(same(at(m, 17), to[1]));
+    assert_true(dense_same_point(at(m, 17), to[1]));
     assert_int_equal(he_deform(m, &sets, &(he_deform_goal){.to = to, .count = 2}, 3, NULL, NULL),
                      HE_BAD_VALUE);
     for (unsigned steps = 0; steps <= HE_DEFORM_STEPS + 1; steps += HE_DEFORM_STEPS + 1) {
@@ -451,14 +441,14 @@ static void require_result(const he_mesh *before, const he_mesh *after, const li
         assert_true(apart(at(after, l->handles[i]), l->goals[i]) <= 0);
     }
     for (size_t i = 0; i < l->fixed_count; i++) {
-        assert_true(same(at(before, l->fixed[i]), at(after, l->fixed[i])));
+        assert_true(dense_same_point(at(before, l->fixed[i]), at(after, l->fixed[i])));
     }
     for (uint32_t v = 0; v < he_mesh_issued(before, HE_VERTEX); v++) {
         if (he_mesh_is_live(before, HE_VERTEX, v)) {
             assert_true(he_vec3_is_finite(at(after, v)));
             he_set_position(back, (he_vertex){v}, at(before, v));
             assert_true(he_bits_get(is_handle, v) || !he_is_locked(&marks, HE_VERTEX, v) ||
-                        same(at(before, v), at(after, v)));
+                        dense_same_point(at(before, v), at(after, v)));
         }
     }
     for (uint32_t h = 0; h < he_mesh_issued(before, HE_HALFEDGE); h++) {
@@ -467,7 +457,8 @@ static void require_result(const he_mesh *before, const he_mesh *after, const li
                            f = he_face_of(before, (he_halfedge){h}).i;
             if (he_is_locked(&marks, HE_EDGE, h / 2) ||
                 (f != HE_NONE && he_is_locked(&marks, HE_FACE, f))) {
-                assert_true(he_bits_get(is_handle, v) || same(at(before, v), at(after, v)));
+                assert_true(he_bits_get(is_handle, v) ||
+                            dense_same_point(at(before, v), at(after, v)));
             }
         }
     }

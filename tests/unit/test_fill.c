@@ -361,21 +361,12 @@ static bool tell(void *context, const char *phase, double done)
     return --*left != 0;
 }
 
-static bool same_bits(he_vec3 a, he_vec3 b)
-{
-    const double before[] = {a.x, a.y, a.z}, after[] = {b.x, b.y, b.z};
-    uint64_t x[3], y[3];
-    memcpy(x, before, sizeof x);
-    memcpy(y, after, sizeof y);
-    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
-}
-
 /* Requires that all elements of the mesh before are as they were, but for the holes. */
 static void require_kept(const he_mesh *before, const he_mesh *after)
 {
     for (uint32_t v = 0; v < he_mesh_issued(before, HE_VERTEX); v++) {
         if (he_mesh_is_live(before, HE_VERTEX, v)) {
-            assert_true(same_bits(at(before, v), at(after, v)));
+            assert_true(dense_same_point(at(before, v), at(after, v)));
         }
     }
     for (uint32_t h = 0; h < he_mesh_issued(before, HE_HALFEDGE); h++) {

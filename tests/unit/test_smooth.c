@@ -29,16 +29,6 @@ static he_vec3 at(const he_mesh *m, uint32_t v)
     return he_position(m, (he_vertex){v});
 }
 
-/* Returns true if two points have the same bits. */
-static bool same(he_vec3 a, he_vec3 b)
-{
-    const double before[] = {a.x, a.y, a.z}, after[] = {b.x, b.y, b.z};
-    uint64_t x[3], y[3];
-    memcpy(x, before, sizeof x);
-    memcpy(y, after, sizeof y);
-    return x[0] == y[0] && x[1] == y[1] && x[2] == y[2];
-}
-
 static double volume(const he_mesh *m)
 {
     double sum = 0;
@@ -289,7 +279,7 @@ static void require_stays(const he_mesh *before, const he_mesh *after, const uin
         }
         assert_true(he_vec3_is_finite(at(after, v)));
         if (!he_bits_get(chosen, v) || he_is_locked(&marks, HE_VERTEX, v)) {
-            assert_true(same(at(before, v), at(after, v)));
+            assert_true(dense_same_point(at(before, v), at(after, v)));
         }
     }
     for (uint32_t h = 0; h < he_mesh_issued(before, HE_HALFEDGE); h++) {
@@ -301,7 +291,7 @@ static void require_stays(const he_mesh *before, const he_mesh *after, const uin
                        f = he_face_of(before, (he_halfedge){h}).i;
         if (f == HE_NONE || he_is_feature(&marks, (he_edge){e}) ||
             he_is_locked(&marks, HE_EDGE, e) || he_is_locked(&marks, HE_FACE, f)) {
-            assert_true(same(at(before, v), at(after, v)));
+            assert_true(dense_same_point(at(before, v), at(after, v)));
         }
     }
 }

@@ -47,19 +47,6 @@ static void clear_lists(lists *l)
     free(l->goals);
 }
 
-static void write_positions(const bench_side *side, const he_mesh *m)
-{
-    FILE *file = bench_open(side, FILE_NAME, "wb");
-    for (uint32_t v = 0; v < side->input.vertices; v++) {
-        const he_vec3 p = he_position(m, (he_vertex){v});
-        const double c[3] = {p.x, p.y, p.z};
-        if (fwrite(c, sizeof c, 1, file) != 1) {
-            bench_require(HE_NO_MEMORY);
-        }
-    }
-    (void)fclose(file);
-}
-
 static void deform(bench_side *side, bench_result *out)
 {
     he_mesh *m;
@@ -72,7 +59,7 @@ static void deform(bench_side *side, bench_result *out)
     bench_require(he_deform(m, &sets, &goal, 10, NULL, NULL));
     out->value = bench_seconds() - start;
     out->amount = side->input.vertices;
-    write_positions(side, m);
+    bench_write_positions(side, FILE_NAME, m, 0);
     he_mesh_free(m);
     clear_lists(&l);
 }
@@ -102,7 +89,7 @@ static void drag(bench_side *side, he_deform_method method, bench_result *out)
     const he_deform_goal goal = {.to = l.goals, .count = l.handle_count};
     bench_require(he_mesh_copy(m, &m, NULL));
     bench_require(he_deform(m, &sets, &goal, 1, NULL, NULL));
-    write_positions(side, m);
+    bench_write_positions(side, FILE_NAME, m, 0);
     he_mesh_free(m);
     clear_lists(&l);
 }

@@ -71,6 +71,20 @@ void bench_write(const bench_side *side, const he_mesh *m, const char *format, c
     free(piece);
 }
 
+void bench_write_positions(const bench_side *side, const char *name, const he_mesh *m,
+                           uint32_t first)
+{
+    FILE *file = bench_open(side, name, "wb");
+    for (uint32_t v = first; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        const he_vec3 p = he_position(m, (he_vertex){v});
+        const double c[3] = {p.x, p.y, p.z};
+        if (fwrite(c, sizeof c, 1, file) != 1) {
+            bench_require(HE_NO_MEMORY);
+        }
+    }
+    (void)fclose(file);
+}
+
 static void import(bench_side *side, const char *format, const char *name, bench_result *out)
 {
     double start = bench_seconds();

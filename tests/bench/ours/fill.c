@@ -42,15 +42,7 @@ static void fill(bench_side *side, bench_result *out)
     out->value = bench_seconds() - start;
     out->amount = (double)filled.faces.count;
     he_filled_clear(&filled);
-    FILE *file = bench_open(side, FILE_NAME, "wb");
-    for (uint32_t v = side->input.vertices; v < he_mesh_issued(m, HE_VERTEX); v++) {
-        const he_vec3 p = he_position(m, (he_vertex){v});
-        const double c[3] = {p.x, p.y, p.z};
-        if (fwrite(c, sizeof c, 1, file) != 1) {
-            bench_require(HE_NO_MEMORY);
-        }
-    }
-    (void)fclose(file);
+    bench_write_positions(side, FILE_NAME, m, side->input.vertices);
     he_mesh_free(m);
 }
 

@@ -39,6 +39,10 @@ void bench_read(const bench_side *side, const char *format, const char *name, he
 /* Writes the mesh to a file of the benchmark's folder; `encoding` may be empty. */
 void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
                  const char *name);
+/* Writes the positions of the vertices of a mesh, from number `first` on, into a file of the
+ * benchmark's folder. */
+void bench_write_positions(const bench_side *side, const char *name, const he_mesh *m,
+                           uint32_t first);
 /* Measures the distance in both directions between the input and a mesh of triangles in a PLY file
  * of the benchmark's folder, and reports the larger one. VALUE: the root mean square; NEAR: the
  * farthest distance, which estimates the Hausdorff distance; AMOUNT: points where a face is turned

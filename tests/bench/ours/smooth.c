@@ -19,15 +19,7 @@ static void smooth(bench_side *side, bench_result *out)
     bench_require(he_smooth(m, &options, NULL, NULL));
     out->value = bench_seconds() - start;
     out->amount = side->input.vertices;
-    FILE *file = bench_open(side, FILE_NAME, "wb");
-    for (uint32_t v = 0; v < side->input.vertices; v++) {
-        const he_vec3 p = he_position(m, (he_vertex){v});
-        const double c[3] = {p.x, p.y, p.z};
-        if (fwrite(c, sizeof c, 1, file) != 1) {
-            bench_require(HE_NO_MEMORY);
-        }
-    }
-    (void)fclose(file);
+    bench_write_positions(side, FILE_NAME, m, 0);
     he_mesh_free(m);
 }
 

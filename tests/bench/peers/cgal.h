@@ -6,6 +6,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <vector>
 
@@ -30,6 +31,21 @@ Mesh &cgal_mesh(bench_side *side);
 uint64_t cgal_hash(const Mesh &mesh);
 /* Reports the counts of a mesh and the sum of its coordinates. */
 void cgal_describe(const Mesh &mesh, bench_result *out);
+
+/* Writes the points of vertices of a mesh into a file of the benchmark's folder. */
+template <typename Vertices>
+void cgal_write_points(const bench_side *side, const char *name, const Mesh &mesh,
+                       const Vertices &vertices)
+{
+    FILE *file = bench_open(side, name, "wb");
+    for (Vertex v : vertices) {
+        const double c[3] = {mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()};
+        if (std::fwrite(c, sizeof c, 1, file) != 1) {
+            std::exit(1);
+        }
+    }
+    std::fclose(file);
+}
 
 extern const bench_row cgal_kernel_rows[];
 extern const bench_row cgal_edit_rows[];

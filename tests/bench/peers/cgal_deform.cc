@@ -4,24 +4,10 @@
 
 #include <CGAL/Surface_mesh_deformation.h>
 
-#include <cstdio>
-
 namespace
 {
 typedef CGAL::Surface_mesh_deformation<Mesh, CGAL::Default, CGAL::Default, CGAL::ORIGINAL_ARAP>
     Deformation;
-
-void write_positions(const bench_side *side, const Mesh &mesh)
-{
-    FILE *file = bench_open(side, "deformed.bin", "wb");
-    for (Vertex v : mesh.vertices()) {
-        const double c[3] = {mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()};
-        if (std::fwrite(c, sizeof c, 1, file) != 1) {
-            std::exit(1);
-        }
-    }
-    std::fclose(file);
-}
 
 void prepare(bench_side *side, Deformation &deformation, const Mesh &mesh)
 {
@@ -58,7 +44,7 @@ void deform(bench_side *side, bench_result *out)
     deformation.deform(10, 0);
     out->value = bench_seconds() - start;
     out->amount = side->input.vertices;
-    write_positions(side, mesh);
+    cgal_write_points(side, "deformed.bin", mesh, mesh.vertices());
 }
 
 void deform_drag(bench_side *side, bench_result *out)
@@ -71,7 +57,7 @@ void deform_drag(bench_side *side, bench_result *out)
     deformation.deform(1, 0);
     out->value = bench_seconds() - start;
     out->amount = side->input.vertices;
-    write_positions(side, mesh);
+    cgal_write_points(side, "deformed.bin", mesh, mesh.vertices());
 }
 } // namespace
 

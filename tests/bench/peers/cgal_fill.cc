@@ -4,7 +4,6 @@
 
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 
-#include <cstdio>
 #include <iterator>
 #include <vector>
 
@@ -44,14 +43,7 @@ void fill(bench_side *side, bench_result *out)
         mesh, hole, std::back_inserter(faces), std::back_inserter(vertices));
     out->value = bench_seconds() - start;
     out->amount = static_cast<double>(faces.size());
-    FILE *file = bench_open(side, "filled.bin", "wb");
-    for (Vertex v : vertices) {
-        const double c[3] = {mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()};
-        if (std::fwrite(c, sizeof c, 1, file) != 1) {
-            std::exit(1);
-        }
-    }
-    std::fclose(file);
+    cgal_write_points(side, "filled.bin", mesh, vertices);
 }
 } // namespace
 

@@ -4,8 +4,6 @@
 
 #include <CGAL/Polygon_mesh_processing/smooth_shape.h>
 
-#include <cstdio>
-
 namespace
 {
 void smooth(bench_side *side, bench_result *out)
@@ -16,14 +14,7 @@ void smooth(bench_side *side, bench_result *out)
                                                 CGAL::parameters::number_of_iterations(1));
     out->value = bench_seconds() - start;
     out->amount = side->input.vertices;
-    FILE *file = bench_open(side, "smoothed.bin", "wb");
-    for (Vertex v : mesh.vertices()) {
-        const double c[3] = {mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z()};
-        if (std::fwrite(c, sizeof c, 1, file) != 1) {
-            std::exit(1);
-        }
-    }
-    std::fclose(file);
+    cgal_write_points(side, "smoothed.bin", mesh, mesh.vertices());
 }
 } // namespace
 
