@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { compose, textOf } from '../../web/src/affine.js';
-import { numbersOf, toggleWord } from '../../web/src/numbers.js';
+import { compose, textOf } from '../../web/src/kit/affine.js';
+import { numbersOf, toggleWord } from '../../web/src/kit/numbers.js';
 
 const STILL = { scale: [1, 1, 1], rotate: [0, 0, 0], translate: [0, 0, 0], about: [0, 0, 0] };
 

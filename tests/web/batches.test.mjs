@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { File } from 'node:buffer'; // in node 18, File is not a global
 import { test } from 'node:test';
 
-import { batchesOf } from '../../web/src/batches.js';
+import { batchesOf } from '../../web/src/wire/batches.js';
 import { get, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';
 import { openPage } from './visit.mjs';

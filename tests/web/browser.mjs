@@ -5,9 +5,9 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 
 import { PerspectiveCamera, Vector3 } from '../../web/node_modules/three/build/three.module.js';
-import { MOST_PIXELS, arrowOf, middleOf } from '../../web/src/arrows.js';
-import { ballOf, pointAt, unpack } from '../../web/src/geometry.js';
-import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance, pixelAtOne } from '../../web/src/view.js';
+import { MOST_PIXELS, arrowOf, middleOf } from '../../web/src/geometry/arrows.js';
+import { ballOf, pointAt, unpack } from '../../web/src/geometry/geometry.js';
+import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance, pixelAtOne } from '../../web/src/geometry/view.js';
 import { get, getGeometry } from './daemon.mjs';
 import { readPng } from './png.mjs';
 

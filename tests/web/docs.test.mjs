@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { typeOf } from '../../web/src/schema.js';
+import { typeOf } from '../../web/src/wire/schema.js';
 import { checkAccessible } from './browser.mjs';
 import { startDaemon } from './daemon.mjs';
 import { openPage } from './visit.mjs';

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { EventReader } from '../../web/src/events.js';
+import { EventReader } from '../../web/src/wire/events.js';
 
 const STREAM =
     'retry: 3000\nid: a.1\n\n: comment\n\nevent: edit\nid: a.2\ndata: {"x":1}\n\n' +

@@ -5,9 +5,9 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { fileNameOf, formatBytes } from '../../web/src/download.js';
-import { choicesOf, sentencesOf } from '../../web/src/exporting.js';
-import { parametersOf } from '../../web/src/schema.js';
+import { fileNameOf, formatBytes } from '../../web/src/kit/download.js';
+import { choicesOf, sentencesOf } from '../../web/src/meshes/exporting.js';
+import { parametersOf } from '../../web/src/wire/schema.js';
 import { checkAccessible, waitForFrame, waitForTold } from './browser.mjs';
 import { post, startDaemon } from './daemon.mjs';
 import { openMesh } from './visit.mjs';

@@ -5,8 +5,8 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { PerspectiveCamera, Vector3 } from '../../web/node_modules/three/build/three.module.js';
-import { pointAt, unpack } from '../../web/src/geometry.js';
-import { FIELD_OF_VIEW, UP } from '../../web/src/view.js';
+import { pointAt, unpack } from '../../web/src/geometry/geometry.js';
+import { FIELD_OF_VIEW, UP } from '../../web/src/geometry/view.js';
 import { isNext, isPrev, isSelf, readCanvas } from './browser.mjs';
 import { get, getGeometry, post } from './daemon.mjs';
 import { cameraOf, chooseOperation, goTo, press, setMode } from './page.mjs';

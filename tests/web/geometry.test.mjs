@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { angleBetween, describe, foldAngle } from '../../web/src/around.js';
-import { arrowOf, middleOf, pointsOf } from '../../web/src/arrows.js';
+import { angleBetween, describe, foldAngle } from '../../web/src/open/around.js';
+import { arrowOf, middleOf, pointsOf } from '../../web/src/geometry/arrows.js';
 import {
     HEADER_BYTES,
     ROW,
@@ -22,9 +22,9 @@ import {
     pointAt,
     trianglesOfFace,
     unpack,
-} from '../../web/src/geometry.js';
-import { formatLink, parseLink } from '../../web/src/link.js';
-import { choose, readSquare } from '../../web/src/pick.js';
+} from '../../web/src/geometry/geometry.js';
+import { formatLink, parseLink } from '../../web/src/open/link.js';
+import { choose, readSquare } from '../../web/src/geometry/pick.js';
 import {
     distanceToPoint,
     distanceToSegment,
@@ -32,7 +32,7 @@ import {
     middleOf as middleOfPoints,
     reachFrom,
     turnTo,
-} from '../../web/src/view.js';
+} from '../../web/src/geometry/view.js';
 
 // Builds an answer of GET .../geometry as the server sends it: points are [x, y, z, state],
 // triangles [a, b, c, face, sides].

@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { findFaces, trianglesOfFace, unpack } from '../../web/src/geometry.js';
-import { applyDelta } from '../../web/src/geometry_delta.js';
+import { findFaces, trianglesOfFace, unpack } from '../../web/src/geometry/geometry.js';
+import { applyDelta } from '../../web/src/geometry/geometry_delta.js';
 import { get, startDaemon } from './daemon.mjs';
 import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 

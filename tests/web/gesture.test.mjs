@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { ROW } from '../../web/src/geometry.js';
-import { begin, drag, regionsOf } from '../../web/src/gesture.js';
+import { ROW } from '../../web/src/geometry/geometry.js';
+import { begin, drag, regionsOf } from '../../web/src/edit/gesture.js';
 
 // Makes the arrays of a mesh of squares, of two triangles each, from the ids of their corners.
 // Vertex 3 y + x lies at (x, y).

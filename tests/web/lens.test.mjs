@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { mendsOfDefect } from '../../web/src/lens_mends.js';
+import { mendsOfDefect } from '../../web/src/lens/mends.js';
 import { checkAccessible, isChosen, readCanvas, waitForFrame } from './browser.mjs';
 import { get, post } from './daemon.mjs';
 import { cameraOf, expectToast, isEdit, press } from './page.mjs';

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { copyNameOf } from '../../web/src/mesh_acts.js';
+import { copyNameOf } from '../../web/src/meshes/acts.js';
 import { checkAccessible, waitForFrame, waitForTold } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';

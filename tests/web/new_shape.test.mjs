@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { rangeOf, wordsFor } from '../../web/src/new_shape.js';
-import { shapesOf } from '../../web/src/schema.js';
+import { rangeOf, wordsFor } from '../../web/src/meshes/new_shape.js';
+import { shapesOf } from '../../web/src/wire/schema.js';
 import { checkAccessible } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { openPage } from './visit.mjs';

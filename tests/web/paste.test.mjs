@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { fileOf } from '../../web/src/paste.js';
+import { fileOf } from '../../web/src/meshes/paste.js';
 import { waitForTold } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';

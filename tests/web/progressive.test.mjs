@@ -4,10 +4,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { faceOf, unpack } from '../../web/src/geometry.js';
-import { Levels } from '../../web/src/levels.js';
-import { Pace } from '../../web/src/pace.js';
-import { ProgressiveReader } from '../../web/src/progressive.js';
+import { faceOf, unpack } from '../../web/src/geometry/geometry.js';
+import { Levels } from '../../web/src/geometry/levels.js';
+import { Pace } from '../../web/src/geometry/pace.js';
+import { ProgressiveReader } from '../../web/src/geometry/progressive.js';
 import { get, getAll, getGeometry, post, startDaemon } from './daemon.mjs';
 import { numbersFrom } from './random.mjs';
 

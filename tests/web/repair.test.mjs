@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { defectsIn, defectsOf, doneBy, sizesOf } from '../../web/src/defects.js';
+import { defectsIn, defectsOf, doneBy, sizesOf } from '../../web/src/meshes/defects.js';
 import { checkAccessible, waitForFrame, waitForTold } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { sentencesOf, tallyOf } from '../../web/src/imported.js';
+import { sentencesOf, tallyOf } from '../../web/src/meshes/imported.js';
 import { checkAccessible, waitForTold } from './browser.mjs';
 import { get, startDaemon } from './daemon.mjs';
 import { cameraOf, checkInspector } from './page.mjs';

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { FloatType, RGBAFormat } from '../../web/node_modules/three/build/three.module.js';
-import { ROW } from '../../web/src/geometry.js';
+import { ROW } from '../../web/src/geometry/geometry.js';
 import { Rows } from '../../web/src/gl/rows.js';
 
 function rows(count) {

@@ -5,7 +5,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { unpack } from '../../web/src/geometry.js';
+import { unpack } from '../../web/src/geometry/geometry.js';
 import { waitForFrame } from './browser.mjs';
 import { get, getGeometry, post, startDaemon } from './daemon.mjs';
 import { chooseOperation, fillVector, isEdit } from './page.mjs';

@@ -1,9 +1,9 @@
 // docs.js - the manual at /docs: this server's OpenAPI document as a page. Each endpoint has a
 // section whose id is its operationId, and each schema one whose id is schema-NAME.
 
-import { getDescription } from './api.js';
-import { make } from './dom.js';
-import { alternatives, typeOf } from './schema.js';
+import { getDescription } from './wire/api.js';
+import { make } from './kit/dom.js';
+import { alternatives, typeOf } from './wire/schema.js';
 
 // Returns nodes that describe the type of a schema; the names of other schemas in this description
 // are links.

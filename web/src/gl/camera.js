@@ -4,7 +4,7 @@
 import { Matrix4, PerspectiveCamera } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-import { FIELD_OF_VIEW, UP, fitDistance, turnTo } from '../view.js';
+import { FIELD_OF_VIEW, UP, fitDistance, turnTo } from '../geometry/view.js';
 
 const ZOOM = 0.8; // factor by which one zoom step changes the distance
 

@@ -21,9 +21,9 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
-import { MOST_PIXELS, arrowOf } from '../arrows.js';
-import { edgesOfTriangles, hasVertex, pointAt, trianglesOfFace } from '../geometry.js';
-import { pixelAtOne } from '../view.js';
+import { MOST_PIXELS, arrowOf } from '../geometry/arrows.js';
+import { edgesOfTriangles, hasVertex, pointAt, trianglesOfFace } from '../geometry/geometry.js';
+import { pixelAtOne } from '../geometry/view.js';
 import { ARROW_FRAGMENT, ARROW_VERTEX, DOT_FRAGMENT, MARK_VERTEX } from './shaders.js';
 
 const CHOSEN = 0xffb347;

@@ -17,9 +17,9 @@ import {
     WebGLRenderer,
 } from 'three';
 
-import { ballOf } from '../geometry.js';
-import { readSquare } from '../pick.js';
-import { DIRECTION } from '../view.js';
+import { ballOf } from '../geometry/geometry.js';
+import { readSquare } from '../geometry/pick.js';
+import { DIRECTION } from '../geometry/view.js';
 import { Camera } from './camera.js';
 import { Marks } from './marks.js';
 import { Surface } from './surface.js';

@@ -3,7 +3,7 @@
 
 import { DataTexture, NearestFilter } from 'three';
 
-import { ROW } from '../geometry.js';
+import { ROW } from '../geometry/geometry.js';
 
 // If more than this fraction of all texels has changed, the whole texture is uploaded: the fraction
 // is MANY for changes of single texels, MOST for changes of long ranges.

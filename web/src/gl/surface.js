@@ -18,7 +18,7 @@ import {
     Vector3,
 } from 'three';
 
-import { ROW } from '../geometry.js';
+import { ROW } from '../geometry/geometry.js';
 import { Rows } from './rows.js';
 import {
     DOT_FRAGMENT,

@@ -1,0 +1,101 @@
+// comparing.js - the form that compares the open mesh with another mesh, or with one of its own
+// earlier revisions, and shows how far they are apart and where.
+
+import { formatMeasure, make } from '../kit/dom.js';
+
+export class Comparing {
+    #elements;
+    #callbacks;
+    #mesh = null;
+
+    // `form` contains `kind`, a choice of mesh or revision, with the fields `other` and `revision`,
+    // and `result`, a list that gets the numbers. `compare(other)` returns a promise of the server's
+    // answer, `meshes()` one of the list of meshes; `onPlace(face)` is called when the user wants to
+    // see a face of the open mesh.
+    constructor(elements, callbacks) {
+        const { form, kind, other } = elements;
+        this.#elements = elements;
+        this.#callbacks = callbacks;
+        kind.addEventListener('change', () => this.#showFields());
+        other.addEventListener('focus', () => this.#readMeshes().catch(callbacks.onError));
+        form.addEventListener('submit', (event) => {
+            event.preventDefault();
+            this.#run().catch(callbacks.onError);
+        });
+        this.#showFields();
+    }
+
+    // Called when another mesh is opened.
+    setMesh(mesh) {
+        const { revision, result } = this.#elements;
+        this.#mesh = mesh;
+        revision.value = '';
+        result.replaceChildren();
+    }
+
+    // Called when the open mesh has changed, so that its faces may be others.
+    forget() {
+        this.#elements.result.replaceChildren();
+    }
+
+    #showFields() {
+        const { kind, other, revision } = this.#elements;
+        const isMesh = kind.value === 'mesh';
+        other.hidden = !isMesh;
+        other.disabled = !isMesh;
+        revision.hidden = isMesh;
+        revision.disabled = isMesh;
+    }
+
+    async #readMeshes() {
+        const { other } = this.#elements;
+        const chosen = other.value;
+        const items = (await this.#callbacks.meshes()).filter(({ id }) => id !== this.#mesh);
+        const options = items.map(({ id, name }) => make('option', { value: id }, name || id));
+        other.replaceChildren(make('option', { value: '' }, 'which mesh'), ...options);
+        other.value = items.some(({ id }) => id === chosen) ? chosen : '';
+    }
+
+    async #run() {
+        const { kind, other, revision, button, result } = this.#elements;
+        const mesh = this.#mesh;
+        button.disabled = true;
+        try {
+            const found = await this.#callbacks.compare(
+                kind.value === 'mesh' ? other.value : Number(revision.value),
+            );
+            if (mesh === this.#mesh) {
+                result.replaceChildren(...this.#rowsOf(found));
+            }
+        } finally {
+            button.disabled = false;
+        }
+    }
+
+    #rowsOf({ lower, upper, forward, backward }) {
+        return [
+            row('Largest distance', rangeOf({ lower, upper })),
+            row('Mean', formatMeasure(Math.max(forward.mean, backward.mean))),
+            row('Root mean square', formatMeasure(Math.max(forward.rms, backward.rms))),
+            this.#placeRow('From this mesh', forward, forward.place.face),
+            this.#placeRow('From the other', backward, backward.place.near_face),
+        ];
+    }
+
+    // `face` is the face of the open mesh at the place of the largest distance.
+    #placeRow(title, side, face) {
+        const onclick = () => this.#callbacks.onPlace(face);
+        const button = make('button', { type: 'button', className: 'link', onclick }, `face ${face}`);
+        return row(title, `${rangeOf(side)} at `, button);
+    }
+}
+
+// Returns a distance between its two bounds as text, as one number if they look the same.
+function rangeOf({ lower, upper }) {
+    const [low, high] = [formatMeasure(lower), formatMeasure(upper)];
+    return low === high ? low : `${low} to ${high}`;
+}
+
+function row(title, ...values) {
+    return make('div', {}, make('dt', {}, title), make('dd', {}, ...values));
+}

@@ -1,0 +1,171 @@
+// trial.js - makes a dry run of the edit in a form before the user sends it, and shows the result
+// in words.
+
+import { formatCount, formatNumberOf } from '../kit/dom.js';
+
+// A dry run starts when the form has not changed for this many milliseconds.
+const DELAY = 300;
+
+const LETTERS = { vertices: 'V', edges: 'E', faces: 'F' };
+
+export class Trial {
+    #box;
+    #attempt;
+    #timer = 0;
+    #running = null;
+    #asked = null; // the operation of the last dry run
+
+    // `attempt(operation, signal)` makes a dry run and returns a promise of the text to show, or of
+    // null if there is nothing to show.
+    constructor(box, attempt) {
+        this.#box = box;
+        this.#attempt = attempt;
+    }
+
+    // Makes a dry run of an operation after DELAY; a later call replaces it. `operation` is null if
+    // the form is incomplete: then nothing is shown.
+    ask(operation) {
+        const height = this.#box.offsetHeight;
+        this.clear();
+        this.#asked = operation;
+        if (operation !== null) {
+            // The room of the last result is kept, so that the form does not jump.
+            this.#box.style.minHeight = `${height}px`;
+            this.#timer = setTimeout(() => this.#run(operation), DELAY);
+        }
+    }
+
+    // Called when the mesh has changed: makes the dry run again, because its result may be
+    // different now.
+    askAgain() {
+        if (this.#asked !== null) {
+            this.ask(this.#asked);
+        }
+    }
+
+    // Shows why the form cannot be sent.
+    refuse(error) {
+        this.clear();
+        this.#sayRefused(error);
+    }
+
+    #sayRefused(error) {
+        this.#say(`Not possible: ${error.detail || error.message}`, true);
+    }
+
+    clear() {
+        clearTimeout(this.#timer);
+        this.#running?.abort();
+        this.#asked = null;
+        this.#say('', false);
+    }
+
+    async #run(operation) {
+        const running = new AbortController();
+        this.#running = running;
+        try {
+            const words = await this.#attempt(operation, running.signal);
+            if (!running.signal.aborted) {
+                this.#say(words ?? '', false);
+            }
+        } catch (error) {
+            // Status 0 means a lost connection, which the page shows in its bar and not in the
+            // form.
+            if (!running.signal.aborted && error.status !== 0) {
+                this.#sayRefused(error);
+            }
+        }
+    }
+
+    #say(text, isRefused) {
+        this.#box.style.minHeight = '';
+        this.#box.textContent = text;
+        this.#box.classList.toggle('refused', isRefused);
+        const { activeElement } = document;
+        if (text !== '' && this.#box.previousElementSibling?.contains(activeElement)) {
+            // The field above is in use, so that both must be seen.
+            this.#box.scrollIntoView({ block: 'nearest' });
+            activeElement.scrollIntoView({ block: 'nearest' });
+        }
+    }
+}
+
+// Returns the answer to a dry run in words, or null if there was no answer.
+export function wordsOf(answer) {
+    if (answer === null) {
+        return null;
+    }
+    const end = answer.undoable === false ? ' This edit cannot be undone.' : '';
+    return `${changesOf(answer)}${openOf(answer)}${end}`;
+}
+
+// Why the operation `fill_holes` leaves holes open, by the member of its result that counts them.
+const LEFT = {
+    large: 'too large',
+    touching: 'touching itself',
+    single: 'around a single face',
+    doubled: 'between edges that exist already',
+};
+
+// Returns how many holes an edit leaves open, in a sentence; '' if none.
+function openOf({ results }) {
+    const filled = results.find(({ left }) => left?.length > 0);
+    if (filled === undefined) {
+        return '';
+    }
+    const reasons = Object.entries(LEFT)
+        .filter(([name]) => filled[name] > 0)
+        .map(([name, words]) => `${words}: ${formatCount(filled[name])}`);
+    const { length } = filled.left;
+    const stays = length === 1 ? 'stays' : 'stay';
+    return `. ${formatNumberOf(length, 'hole')} ${stays} open (${reasons.join(', ')}).`;
+}
+
+function changesOf(answer) {
+    const { created, deleted, modified, replaced } = answer;
+    const chosen = answer.results.find(({ selected }) => selected !== undefined);
+    if (chosen !== undefined) {
+        return `Would select: ${selectionOf(chosen)}.`;
+    }
+    const divided = answer.results.find(({ patches }) => patches !== undefined);
+    if (divided !== undefined) {
+        return `Would divide the faces into ${patchesOf(divided)}.`;
+    }
+    const signs = [
+        ['+', created],
+        ['\u2212', deleted],
+    ];
+    const sizes = signs.flatMap(([sign, found]) => tally(found).map((word) => `${sign}${word}`));
+    const changed = tally(modified);
+    if (sizes.length > 0) {
+        return `Would make: ${sizes.join(' ')}`;
+    }
+    if (replaced) {
+        return answer.results.some(({ op }) => op === 'compact')
+            ? 'Would change the ids of all elements.'
+            : 'Would replace the whole mesh.';
+    }
+    return changed.length > 0 ? `Would change: ${changed.join(' ')}` : 'Would change nothing.';
+}
+
+// Returns the result of a selection in words.
+export function selectionOf({ selected, added, removed }) {
+    const changes = [
+        ['+', added],
+        ['\u2212', removed],
+    ].flatMap(([sign, count]) => (count > 0 ? [`${sign}${formatCount(count)}`] : []));
+    const end = ` (${changes.length > 0 ? changes.join(' ') : 'as before'})`;
+    return `${formatNumberOf(selected, 'element')}${end}`;
+}
+
+// Returns the result of a segmentation in words.
+export function patchesOf({ patches, features }) {
+    const marked = features > 0 ? `, with ${formatNumberOf(features, 'feature edge')}` : '';
+    return `${formatNumberOf(patches, 'patch', 'patches')}${marked}`;
+}
+
+function tally(found) {
+    return Object.entries(LETTERS)
+        .filter(([kind]) => found?.[kind]?.length > 0)
+        .map(([kind, letter]) => `${found[kind].length} ${letter}`);
+}

@@ -1,0 +1,216 @@
+// list.js - the list of meshes, in an order that the user chooses, and only those whose names
+// contain what the user types.
+
+import { formatAbout, make } from '../kit/dom.js';
+
+// A filter is applied when it has not changed for this many milliseconds.
+const DELAY = 200;
+
+// With so many meshes or more, the order and the filter are shown.
+const MANY = 5;
+
+// With a filter, a page of the server may be empty although there are more; at most so many pages
+// are read for one of the list.
+const MOST_PAGES = 50;
+
+export class MeshList {
+    #list;
+    #more;
+    #find;
+    #none;
+    #readPage;
+    #onOpen;
+    #onMore;
+    #onError;
+    #current = null;
+    #cursor = null;
+    #reading = 0;
+    #leaving = new Set(); // ids of meshes that are about to be deleted
+
+    // `find` contains the fields `filter` and `order`, and `none` is the element that says that
+    // there is no such mesh. `readPage({sort, contains, cursor})` reads a page of the list, {items,
+    // next}; `onOpen(id)` is called when the user chooses a mesh, `onMore(button, {id, name})` when
+    // the user wants the menu of its actions.
+    constructor({ list, more, find, none }, { readPage, onOpen, onMore, onError }) {
+        this.#list = list;
+        this.#more = more;
+        this.#find = find;
+        this.#none = none;
+        this.#readPage = readPage;
+        this.#onOpen = onOpen;
+        this.#onMore = onMore;
+        this.#onError = onError;
+        more.addEventListener('click', () => this.#append().catch(onError));
+        const again = () => this.refresh().catch(onError);
+        let timer = 0;
+        find.filter.addEventListener('input', () => {
+            clearTimeout(timer);
+            timer = setTimeout(again, DELAY);
+        });
+        find.order.addEventListener('change', again);
+    }
+
+    // The text that the names of the listed meshes contain, or ''.
+    get filter() {
+        return this.#find.filter.value.trim();
+    }
+
+    // Reads on until there are meshes to show, or no more pages.
+    async #read(cursor) {
+        const contains = this.filter;
+        const sort = this.#find.order.value;
+        let page = await this.#readPage({ sort, contains, cursor });
+        for (let i = 1; page.items.length === 0 && page.next !== null && i < MOST_PAGES; i++) {
+            page = await this.#readPage({ sort, contains, cursor: page.next });
+        }
+        return page;
+    }
+
+    // Reads the list of meshes again. Returns the ids of its first page.
+    async refresh() {
+        const reading = ++this.#reading;
+        const { items, next } = await this.#read(null);
+        if (reading === this.#reading) {
+            this.#keepFocus(() => {
+                this.#list.replaceChildren(...items.map((item) => this.#row(item)));
+            });
+            this.#bringIntoSight();
+            this.#setNext(next);
+            this.#showFound(items.length);
+        }
+        return items.map(({ id }) => id);
+    }
+
+    // The names of the meshes in the list.
+    get names() {
+        return [...this.#list.querySelectorAll('.mesh-name')].map((name) => name.textContent);
+    }
+
+    // Changes rows by calling `act()`. If a button in them has the focus, the button that takes its
+    // place gets the focus.
+    #keepFocus(act) {
+        const { activeElement: focused } = document;
+        const { mesh } = focused?.closest('li')?.firstElementChild.dataset ?? {};
+        const isInside = this.#list.contains(focused);
+        act();
+        if (isInside && !focused.isConnected) {
+            const row = [...this.#list.children].find(
+                ({ firstElementChild: button }) => button.dataset.mesh === mesh,
+            );
+            row?.querySelector(`.${focused.classList[0]}`)?.focus();
+        }
+    }
+
+    // Marks the open mesh.
+    setCurrent(id) {
+        this.#current = id;
+        for (const row of this.#list.children) {
+            this.#mark(row.firstElementChild);
+        }
+        this.#bringIntoSight();
+    }
+
+    // Scrolls the list, but not the page, so that the row of the open mesh is seen.
+    #bringIntoSight() {
+        const row = this.#list.querySelector('li:has([aria-current])');
+        if (row !== null) {
+            const [list, box] = [this.#list, row].map((one) => one.getBoundingClientRect());
+            const over = (from, to, least, most) => Math.min(from - least, 0) || Math.max(to - most, 0);
+            this.#list.scrollBy(
+                over(box.left, box.right, list.left, list.right),
+                over(box.top, box.bottom, list.top, list.bottom),
+            );
+        }
+    }
+
+    // Marks a mesh that is about to be deleted.
+    setLeaving(id, isLeaving) {
+        if (isLeaving) {
+            this.#leaving.add(id);
+        } else {
+            this.#leaving.delete(id);
+        }
+        for (const row of this.#list.children) {
+            this.#mark(row.firstElementChild);
+        }
+    }
+
+    // The id of the mesh after this one in the list, or before it if it is the last; null if it is
+    // the only one or is not in the list.
+    neighbour(id) {
+        const rows = [...this.#list.children].map((row) => row.firstElementChild.dataset.mesh);
+        const at = rows.indexOf(id);
+        return at < 0 ? null : (rows[at + 1] ?? rows[at - 1] ?? null);
+    }
+
+    // Updates the row of the mesh that a summary describes.
+    update(summary) {
+        for (const row of this.#list.children) {
+            if (row.firstElementChild.dataset.mesh === summary.id) {
+                this.#keepFocus(() => row.replaceWith(this.#row(summary)));
+                return;
+            }
+        }
+    }
+
+    async #append() {
+        const reading = this.#reading;
+        const { items, next } = await this.#read(this.#cursor);
+        if (reading === this.#reading) {
+            this.#list.append(...items.map((item) => this.#row(item)));
+            this.#setNext(next);
+        }
+    }
+
+    // Shows the fields of the search if they are of use, and says if nothing was found.
+    #showFound(count) {
+        const { filter } = this;
+        this.#find.box.hidden = filter === '' && count < MANY;
+        this.#none.textContent = filter !== '' && count === 0 ? `No name contains \u201c${filter}\u201d.` : '';
+    }
+
+    #setNext(next) {
+        this.#cursor = next;
+        this.#more.hidden = next === null;
+    }
+
+    #row({ id, name, counts }) {
+        const button = make(
+            'button',
+            { type: 'button', className: 'mesh', onclick: () => this.#onOpen(id) },
+            make('span', { className: 'mesh-name', dir: 'auto' }, name || id),
+            make(
+                'span',
+                { className: 'mesh-counts' },
+                `${formatAbout(counts.vertices)} ${counts.vertices === 1 ? 'vertex' : 'vertices'}, ` +
+                    `${formatAbout(counts.faces)} ${counts.faces === 1 ? 'face' : 'faces'}`,
+            ),
+        );
+        button.dataset.mesh = id;
+        const more = make(
+            'button',
+            {
+                type: 'button',
+                className: 'more edits',
+                'aria-label': `Actions for ${name || id}`,
+                'aria-haspopup': 'menu',
+                'aria-expanded': 'false',
+                onclick: () => this.#onMore(more, { id, name }),
+            },
+            '\u22ef',
+        );
+        const row = make('li', {}, button, more);
+        this.#mark(button);
+        return row;
+    }
+
+    #mark(button) {
+        if (button.dataset.mesh === this.#current) {
+            button.setAttribute('aria-current', 'true');
+        } else {
+            button.removeAttribute('aria-current');
+        }
+        const isLeaving = this.#leaving.has(button.dataset.mesh);
+        button.parentElement?.classList.toggle('leaving', isLeaving);
+    }
+}

@@ -1,0 +1,245 @@
+// stage.js - the 3D view: the renderer, which is missing if the browser has no WebGL, and clicks.
+
+import { NoWebGL, Renderer } from '../gl/render.js';
+import { HOLE_REACH, REACH, choose } from '../geometry/pick.js';
+
+// If the pointer moved further than this many CSS pixels between press and release, it turned the
+// camera; otherwise it clicked.
+const CLICK_PIXELS = 4;
+
+// The camera is at rest if it has not moved for this many milliseconds. Only then the page's
+// address is updated, because browsers limit how often it may change.
+const REST = 250;
+
+export class Stage {
+    #canvas;
+    #modes;
+    #contentNow;
+    #renderer = null;
+    #isLevel = false; // a level of detail is shown, which has no ids
+    #acts;
+    #timer = 0;
+
+    // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
+    // for the kind of element to pick. `content()` returns the Content that is shown, or null.
+    // `onPick(chosen, also)` is called after a click with the result of choose(); `also` says that
+    // the Shift key was held. `onMode(kind)` is called when clicks begin to pick elements of another
+    // kind. `onRest()` is called when the camera has come to rest.
+    constructor(canvas, { noWebGL, contextLost, modes }, { content, onPick, onMode, onRest, onError }) {
+        this.#canvas = canvas;
+        this.#modes = modes;
+        this.#contentNow = content;
+        this.#acts = { onPick, onMode, onRest, onError };
+        try {
+            this.#renderer = new Renderer(canvas, {
+                onFrame: (label) => this.#markFrame(label),
+                onLost: (lost) => {
+                    contextLost.hidden = !lost;
+                },
+                onMove: (isHeld) => this.#moved(isHeld),
+            });
+        } catch (error) {
+            noWebGL.hidden = false;
+            if (!(error instanceof NoWebGL)) {
+                onError(error);
+            }
+        }
+        modes.addEventListener('change', () => this.setPickMode(this.#pickMode));
+        this.#listenToClicks();
+    }
+
+    // Whether there is a renderer, so that the mesh is drawn.
+    get isThere() {
+        return this.#renderer !== null;
+    }
+
+    // --- what is shown ---
+
+    // Shows the mesh in the arrays `geometry`. `label` says what the next frame shows: {mesh,
+    // revision, selection, materials}, or {mesh, revision, faces} for a level of detail.
+    show(geometry, label) {
+        this.#isLevel = false;
+        this.#draw(label, () => this.#renderer?.show(geometry, label));
+    }
+
+    // Called when the arrays were changed; the arguments are as in applyDelta(). Draws the changed
+    // mesh.
+    update(change, label) {
+        this.#draw(label, () => this.#renderer?.update(change, label));
+    }
+
+    // Shows a level of detail until the mesh is shown again. Nothing can be picked or marked in the
+    // level. Throws a RangeError if it is too large; then the mesh that was shown before stays
+    // visible.
+    showLevel(geometry, label) {
+        this.#renderer.show(geometry, label);
+        this.#isLevel = true;
+    }
+
+    // Shows another level of detail, whose arrays have changed within `ranges`, see Levels.
+    refine(ranges, label) {
+        this.#renderer.refine(ranges, label);
+    }
+
+    #draw(label, act) {
+        try {
+            act();
+        } catch (error) {
+            this.#renderer.show(null, label);
+            this.#acts.onError(error);
+        }
+    }
+
+    // Writes what the frame shows into data attributes of the canvas, so that tests can wait for a
+    // certain frame.
+    #markFrame(label) {
+        for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces']) {
+            if (label?.[name] === undefined) {
+                delete this.#canvas.dataset[name];
+            } else {
+                this.#canvas.dataset[name] = label[name];
+            }
+        }
+    }
+
+    // The renderer if the mesh is drawn and marks can be drawn on it, or null. Renderer has the
+    // functions that draw the marks.
+    get #marked() {
+        return this.#isLevel ? null : this.#renderer;
+    }
+
+    select(marks, arrows, label) {
+        this.#marked?.select(marks, arrows, label);
+    }
+
+    markField(marks) {
+        this.#marked?.markField(marks);
+    }
+
+    setBoundary(ends) {
+        this.#marked?.setBoundary(ends);
+    }
+
+    preview(lines) {
+        this.#marked?.preview(lines);
+    }
+
+    // Sets the materials of faces, see materials.js.
+    showMaterials(materials, label) {
+        this.#renderer?.showMaterials(materials, label);
+    }
+
+    updateMaterials(materials, change, label) {
+        this.#renderer?.updateMaterials(materials, change, label);
+    }
+
+    // Shows or hides the colours of materials.
+    colorFaces(isColored) {
+        this.#renderer?.colorFaces(isColored);
+    }
+
+    capture() {
+        return this.#renderer.capture();
+    }
+
+    // --- the camera ---
+
+    fit() {
+        this.#renderer?.fit();
+    }
+
+    // Moves the camera so that it sees the ball that framing() returned or, if it is null, the
+    // whole mesh.
+    frame(found) {
+        if (found === null) {
+            this.#renderer?.fit();
+        } else {
+            this.#renderer?.frame(found);
+        }
+    }
+
+    zoom(nearer) {
+        this.#renderer?.zoom(nearer);
+    }
+
+    // Called when the camera has moved. The canvas has the attribute `data-moving` from the first
+    // move until onRest() was called.
+    #moved(isHeld) {
+        this.#canvas.dataset.moving = '';
+        clearTimeout(this.#timer);
+        if (!isHeld) {
+            this.#timer = setTimeout(() => {
+                this.#acts.onRest();
+                delete this.#canvas.dataset.moving;
+            }, REST);
+        }
+    }
+
+    // Returns position and axes of the camera, see Renderer.view.
+    get view() {
+        return this.#renderer.view;
+    }
+
+    // The matrix that maps view coordinates to clip coordinates, column-major.
+    get matrix() {
+        return this.#renderer.matrix;
+    }
+
+    // Position of the camera and of the point that it looks at, six numbers; undefined without a
+    // renderer.
+    get camera() {
+        return this.#renderer?.camera;
+    }
+
+    set camera(numbers) {
+        if (this.#renderer !== null) {
+            this.#renderer.camera = numbers;
+        }
+    }
+
+    // --- clicks ---
+
+    // Scrolls the page so that the view is visible.
+    bringIntoSight() {
+        this.#canvas.scrollIntoView({ block: 'nearest' });
+    }
+
+    get #pickMode() {
+        return this.#modes.querySelector('input:checked').value;
+    }
+
+    // Sets the kind of elements that clicks pick.
+    setPickMode(mode) {
+        this.#modes.querySelector(`input[value="${mode}"]`).checked = true;
+        this.#renderer?.showVertices(mode === 'vertex');
+        this.#acts.onMode(mode);
+    }
+
+    #listenToClicks() {
+        let down = null;
+        this.#canvas.addEventListener('pointerdown', (event) => {
+            down = event.isPrimary && event.button === 0 ? event : null;
+        });
+        this.#canvas.addEventListener('pointerup', (event) => {
+            const { clientX: x, clientY: y } = event;
+            const isClick =
+                down !== null && Math.hypot(x - down.clientX, y - down.clientY) <= CLICK_PIXELS;
+            if (isClick && this.#marked !== null && this.#contentNow() !== null) {
+                this.#acts.onPick(this.#choose(x, y), event.shiftKey);
+            }
+        });
+    }
+
+    // Returns the element that a click at a place in the window picks, see choose(), or null.
+    #choose(clientX, clientY) {
+        const box = this.#canvas.getBoundingClientRect();
+        const [x, y] = [clientX - box.left, clientY - box.top];
+        const { matrix } = this.#renderer;
+        const mode = this.#pickMode;
+        const { geometry, boundary } = this.#contentNow();
+        const seen = this.#renderer.look(x, y, mode === 'halfedge' ? HOLE_REACH : REACH);
+        const look = (...place) => this.#renderer.look(...place, REACH);
+        const screen = { matrix, width: box.width, height: box.height, x, y, boundary, look };
+        return choose(mode, geometry, seen, screen);
+    }
+}
