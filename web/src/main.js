@@ -29,7 +29,9 @@ import { Uploads } from './meshes/upload.js';
 import { Work } from './kit/work.js';
 
 const canvas = byId('canvas');
-const toasts = new Toasts(byId('toasts'));
+const toasts = new Toasts(byId('toasts'), {
+    onElement: (kind, id) => flyTo(kind, id).catch(fail),
+});
 const fail = (error) => toasts.show(error);
 
 const session = new Session(update, fail);
@@ -218,6 +220,7 @@ function update(what, change) {
         showMaterials(change ?? null);
     }
     if (what === 'mesh') {
+        toasts.setMesh(session.mesh);
         byId('empty').hidden = true;
         byId('details').hidden = false;
         list.setCurrent(session.mesh);

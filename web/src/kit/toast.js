@@ -1,18 +1,58 @@
 // toast.js - shows messages to the user. Errors stay until they are closed, so that there is no
-// time limit for reading. Messages of success disappear by themselves.
+// time limit for reading. Messages of success disappear by themselves, but not while the pointer or
+// the focus is on a message.
+//
+// The newest messages are shown, and a button shows the earlier ones. A message that is repeated is
+// shown once, with a count. A message about a mesh goes away when another mesh is opened.
 
 import { make } from './dom.js';
 
+// How many messages are shown at once, and how many are kept.
 const MOST = 4;
+const MOST_KEPT = 50;
 
 // Milliseconds for which a message of success is shown.
 const SHORT = 8000;
 
 export class Toasts {
     #region;
+    #bar;
+    #more;
+    #actions;
+    #mesh = null;
+    #showsAll = false;
 
-    constructor(region) {
+    // The messages are put into the element `region`. `actions` has onElement(kind, id), which is
+    // called when the user wants to see the element that an error is about.
+    constructor(region, actions) {
         this.#region = region;
+        this.#actions = actions;
+        this.#more = make('button', { type: 'button', className: 'quiet', onclick: () => this.#toggle() });
+        const closeAll = make(
+            'button',
+            { type: 'button', className: 'quiet', onclick: () => this.#closeAll() },
+            'Close all',
+        );
+        this.#bar = make('div', { className: 'toast-bar', hidden: true }, this.#more, closeAll);
+        region.append(this.#bar);
+        region.addEventListener('keydown', (event) => {
+            if (event.key === 'Escape') {
+                this.#close(event.target.closest('.toast:not(.waits)'));
+            }
+        });
+    }
+
+    // Says that another mesh is open. Messages about the mesh that was open before go away.
+    setMesh(mesh) {
+        if (mesh === this.#mesh) {
+            return;
+        }
+        const left = this.#mesh;
+        this.#mesh = mesh;
+        if (left !== null) {
+            this.#toasts.filter(({ dataset }) => dataset.mesh === left).forEach((one) => one.remove());
+            this.#arrange();
+        }
     }
 
     // Shows an error, in the server's words if the error has them.
@@ -23,7 +63,14 @@ export class Toasts {
         // pointer of an error begins, is not shown.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
-        this.#add('alert', title, `${detail}${where}`);
+        const toast = this.#add('alert', title, `${detail}${where}`, error.mesh ?? null);
+        const { element } = error;
+        if (toast !== null && element && error.code !== 'no_such_element' && error.mesh === this.#mesh) {
+            const { kind, id } = element;
+            const onclick = () => this.#actions.onElement(kind, id);
+            const label = `Show ${kind === 'halfedge' ? 'half-edge' : kind} ${id}`;
+            toast.firstElementChild.append(make('button', { type: 'button', onclick }, label));
+        }
     }
 
     // Shows a message about something that is about to happen, until it is closed by the page. `text`
@@ -56,46 +103,136 @@ export class Toasts {
         };
     }
 
-    // Shows a message of success for a while. If there is something to do about it, `next` is
-    // {label, run}, the label and the function of a button; then the message stays until it is
-    // closed.
+    // Shows a message of success, about the open mesh, for a while. If there is something to do about
+    // it, `next` is {label, run}, the label and the function of a button; then the message stays
+    // until it is closed.
     tell(title, detail, next = null) {
-        const toast = this.#add('status', title, detail);
+        const toast = this.#add('status', title, detail, this.#mesh);
+        if (toast === null) {
+            return;
+        }
         if (next === null) {
-            setTimeout(() => toast.remove(), SHORT);
+            this.#closeLater(toast);
             return;
         }
         const onclick = () => {
-            toast.remove();
+            this.#close(toast);
             next.run();
         };
         toast.firstElementChild.append(make('button', { type: 'button', onclick }, next.label));
     }
 
-    #add(role, title, text) {
-        const toast = make(
-            'div',
-            { className: role === 'alert' ? 'toast' : 'toast well', role },
-            make(
-                'div',
-                {},
-                make('strong', {}, title),
-                make('p', {}, text),
-            ),
+    // Returns all messages that can be closed, newest first.
+    get #toasts() {
+        return [...this.#region.querySelectorAll('.toast:not(.waits)')];
+    }
+
+    // Adds a message above all others, and returns its element. If the same message is there, counts
+    // it once more and returns null.
+    #add(role, title, text, mesh) {
+        const same = this.#toasts.find(
+            (one) =>
+                one.getAttribute('role') === role &&
+                one.dataset.mesh === (mesh ?? '') &&
+                one.querySelector('strong').textContent === title &&
+                one.querySelector('p').textContent === text,
+        );
+        if (same !== undefined) {
+            this.#repeat(same);
+            return null;
+        }
+        const toast = make('div', { className: role === 'alert' ? 'toast' : 'toast well', role });
+        toast.dataset.mesh = mesh ?? '';
+        toast.dataset.count = '1';
+        toast.append(
+            make('div', {}, make('strong', {}, title), make('p', {}, text)),
             make(
                 'button',
                 {
                     type: 'button',
                     className: 'close',
                     'aria-label': 'Close message',
-                    onclick: () => toast.remove(),
+                    onclick: () => this.#close(toast),
                 },
                 '\u00d7',
             ),
         );
         this.#region.prepend(toast);
-        const old = [...this.#region.querySelectorAll('.toast:not(.waits)')].slice(MOST);
-        old.forEach((one) => one.remove());
+        this.#arrange();
         return toast;
+    }
+
+    // Shows that a message was repeated: counts it, and makes it the newest one.
+    #repeat(toast) {
+        const count = Number(toast.dataset.count) + 1;
+        toast.dataset.count = `${count}`;
+        const times = toast.querySelector('.times') ?? make('span', { className: 'times' });
+        times.textContent = `${count} times`;
+        toast.querySelector('strong').after(times);
+        if (toast !== this.#region.firstElementChild) {
+            this.#region.prepend(toast);
+        }
+        this.#arrange();
+    }
+
+    // Closes a message after a while, in which neither the pointer nor the focus is on a message.
+    #closeLater(toast) {
+        let shown = toast.dataset.count;
+        const end = () => {
+            if (!toast.isConnected) {
+                return;
+            }
+            if (toast.dataset.count !== shown || this.#region.matches(':hover, :focus-within')) {
+                shown = toast.dataset.count;
+                setTimeout(end, SHORT);
+            } else {
+                this.#close(toast);
+            }
+        };
+        setTimeout(end, SHORT);
+    }
+
+    // Closes a message. If the focus is in it, the next message gets the focus, so that it is not
+    // lost.
+    #close(toast) {
+        if (!toast) {
+            return;
+        }
+        const hadFocus = toast.contains(document.activeElement);
+        const next = toast.nextElementSibling?.querySelector('.close');
+        toast.remove();
+        this.#arrange();
+        if (hadFocus) {
+            (next ?? this.#toasts[0]?.querySelector('.close'))?.focus({ preventScroll: true });
+        }
+    }
+
+    #closeAll() {
+        this.#toasts.forEach((one) => one.remove());
+        this.#arrange();
+    }
+
+    #toggle() {
+        this.#showsAll = !this.#showsAll;
+        this.#arrange();
+    }
+
+    // Hides the earlier messages, or shows them if the user wants to see all, and forgets those that
+    // are too many to keep.
+    #arrange() {
+        this.#toasts.slice(MOST_KEPT).forEach((one) => one.remove());
+        const all = this.#toasts;
+        const earlier = all.slice(MOST);
+        this.#showsAll &&= earlier.length > 0;
+        all.forEach((one) => {
+            one.hidden = false;
+        });
+        earlier.forEach((one) => {
+            one.hidden = !this.#showsAll;
+        });
+        this.#region.classList.toggle('all', this.#showsAll);
+        this.#more.textContent = this.#showsAll ? 'Show fewer' : `${earlier.length} earlier`;
+        this.#more.hidden = earlier.length === 0;
+        this.#bar.hidden = all.length < 2;
     }
 }

@@ -68,8 +68,8 @@ export class Importing {
                 () => false,
             );
             const end = isGone ? '' : ' The mesh without repairs was changed meanwhile and stays, too.';
-            this.#toasts.tell(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`, more);
             await this.#onOpen(repaired);
+            this.#toasts.tell(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`, more);
         });
     }
 

@@ -27,7 +27,7 @@ const MEDIA_TYPES = {
 };
 
 // An error that the server, or a proxy in front of it, answered: the members of an RFC 9457
-// problem.
+// problem, and `mesh`, the id of the mesh that the request was about, or null.
 export class Problem extends Error {
     constructor({
         status = 0,
@@ -38,6 +38,8 @@ export class Problem extends Error {
         repair = [],
         elements = [],
         total = 0,
+        element = null,
+        mesh = null,
     }) {
         super(detail || title);
         this.status = status;
@@ -48,6 +50,8 @@ export class Problem extends Error {
         this.repair = repair;
         this.elements = elements;
         this.total = total;
+        this.element = element;
+        this.mesh = mesh;
     }
 }
 
@@ -89,7 +93,9 @@ async function request(path, options = {}) {
         return request(path, options);
     }
     if (!answer.ok) {
-        throw problemOf(answer.status, await answer.text());
+        const problem = problemOf(answer.status, await answer.text());
+        problem.mesh = meshOf(path);
+        throw problem;
     }
     return answer;
 }
@@ -101,7 +107,7 @@ async function getJson(path, signal) {
 // Reads an answer that may take long to compute: if the server answers with a job, waits for it.
 async function readLong(path, signal, work = null) {
     const answer = await request(path, { signal });
-    return answer.status === 202 ? finish(await answer.json(), work) : answer.json();
+    return answer.status === 202 ? finish(await answer.json(), work, meshOf(path)) : answer.json();
 }
 
 // Sends a POST and returns the JSON of the answer, or null if it has no body. If the server answers
@@ -120,7 +126,13 @@ async function postJson(path, body, work = null, signal = undefined) {
     if (answer.status === 204) {
         return null;
     }
-    return answer.status === 202 ? finish(await answer.json(), work) : answer.json();
+    return answer.status === 202 ? finish(await answer.json(), work, meshOf(path)) : answer.json();
+}
+
+// Returns the id of the mesh that is in the path of a request, or null.
+function meshOf(path) {
+    const found = /^v1\/meshes\/([^/?]+)/.exec(path);
+    return found === null ? null : decodeURIComponent(found[1]);
 }
 
 function meshPath(mesh) {
@@ -480,8 +492,9 @@ function cancelled() {
     return new Problem({ title: 'Cancelled', detail: 'Nothing was changed.', code: 'cancelled' });
 }
 
-// Waits for a job: returns its result or throws its problem.
-async function finish(first, work) {
+// Waits for a job: returns its result or throws its problem. `mesh` is the id of the mesh that the job
+// is about, or null.
+async function finish(first, work, mesh = null) {
     const path = `v1/jobs/${first.id}`;
     let stop = () => {};
     const stopped = () => new Promise((resolve) => {
@@ -504,7 +517,7 @@ async function finish(first, work) {
         throw cancelled();
     }
     if (job.state === 'failed') {
-        throw job.problem ? new Problem(job.problem) : problemOf(job.status, '');
+        throw job.problem ? new Problem({ ...job.problem, mesh }) : problemOf(job.status, '');
     }
     return job.result ?? null;
 }
