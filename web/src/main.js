@@ -23,6 +23,8 @@ import { Refining } from './open/refining.js';
 import { Session } from './open/session.js';
 import { SignIn } from './panels/sign_in.js';
 import { Stage } from './stage/stage.js';
+import { Guide } from './teach/guide.js';
+import { Offering } from './teach/offering.js';
 import { Statistics } from './panels/statistics.js';
 import { Toasts } from './kit/toast.js';
 import { Uploads } from './meshes/upload.js';
@@ -144,7 +146,14 @@ const stage = new Stage(
         onError: fail,
     },
 );
-const editing = new Editing(canvas, session, stage, toasts, () => refining.end());
+const offering = new Offering(byId('lesson-open'), session, {
+    onApply: (operation) => editing.run(operation).catch(fail),
+    onError: fail,
+});
+const editing = new Editing(canvas, session, stage, toasts, {
+    onPicking: () => refining.end(),
+    onKnown: (operation) => offering.offer(operation),
+});
 const lens = new Lens(
     {
         section: byId('lens'),
@@ -165,6 +174,17 @@ const lens = new Lens(
         },
         onError: fail,
     },
+);
+const guide = new Guide(
+    {
+        box: byId('guide'),
+        title: byId('guide-title'),
+        text: byId('guide-text'),
+        next: byId('guide-next'),
+        end: byId('guide-end'),
+    },
+    session,
+    { onMade: openNew, onRun: (operations) => session.run(operations), onError: fail },
 );
 const address = new Address(session, stage);
 const refining = new Refining(
@@ -221,6 +241,7 @@ function update(what, change) {
     }
     if (what === 'mesh') {
         toasts.setMesh(session.mesh);
+        guide.follow(session.mesh);
         byId('empty').hidden = true;
         byId('details').hidden = false;
         list.setCurrent(session.mesh);
@@ -415,6 +436,7 @@ byId('redo').addEventListener('click', redo);
 byId('show-boundary').addEventListener('change', (event) => {
     session.showBoundary(event.target.checked).catch(fail);
 });
+byId('examples').addEventListener('click', () => guide.choose());
 byId('check').addEventListener('click', () => lens.reveal());
 byId('fit').addEventListener('click', () => stage.fit());
 byId('progressive').addEventListener('click', toggleLevels);
@@ -433,6 +455,7 @@ inspector.show(session.selection);
 api.getOperations()
     .then((operations) => {
         editing.setOperations(operations);
+        offering.setOperations(operations);
         showWhatMayBeDone();
     })
     .catch(fail);

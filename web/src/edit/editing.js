@@ -65,7 +65,9 @@ export class Editing {
     #marking = 0; // number of the last request for the elements that the form's fields name
 
     // `onPicking()` is called when a field of the form begins to wait for a click in the view.
-    constructor(canvas, session, stage, toasts, onPicking) {
+    // `onKnown(operation)` is called when a dry run has found that the operation in the form is
+    // possible, and with null when that is not known any more.
+    constructor(canvas, session, stage, toasts, { onPicking, onKnown }) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
         this.#onPicking = onPicking;
         const onError = (error) => toasts.show(error);
@@ -79,7 +81,7 @@ export class Editing {
             },
             onError,
         );
-        this.#trial = new Trial(byId('verdict'), (...asked) => this.#try(...asked));
+        this.#trial = new Trial(byId('verdict'), (...asked) => this.#try(...asked), onKnown);
         this.#tools = new Tools(
             {
                 select: byId('operation'),

@@ -14,12 +14,15 @@ export class Trial {
     #timer = 0;
     #running = null;
     #asked = null; // the operation of the last dry run
+    #onKnown;
 
     // `attempt(operation, signal)` makes a dry run and returns a promise of the text to show, or of
-    // null if there is nothing to show.
-    constructor(box, attempt) {
+    // null if there is nothing to show. `onKnown(operation)` is called with an operation that a dry
+    // run has found possible, and with null when it is not known any more whether the form is.
+    constructor(box, attempt, onKnown) {
         this.#box = box;
         this.#attempt = attempt;
+        this.#onKnown = onKnown;
     }
 
     // Makes a dry run of an operation after DELAY; a later call replaces it. `operation` is null if
@@ -57,6 +60,7 @@ export class Trial {
         clearTimeout(this.#timer);
         this.#running?.abort();
         this.#asked = null;
+        this.#onKnown(null);
         this.#say('', false);
     }
 
@@ -67,6 +71,7 @@ export class Trial {
             const words = await this.#attempt(operation, running.signal);
             if (!running.signal.aborted) {
                 this.#say(words ?? '', false);
+                this.#onKnown(operation);
             }
         } catch (error) {
             // Status 0 means a lost connection, which the page shows in its bar and not in the

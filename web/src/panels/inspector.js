@@ -3,6 +3,7 @@
 
 import { formatMeasure, make } from '../kit/dom.js';
 import { TITLES, linkTo, shortened } from '../kit/element_links.js';
+import { explained } from '../kit/words.js';
 
 // The members of an element that are ids of other elements, and the kind of these other elements.
 const LINKS = {
@@ -57,7 +58,7 @@ export class Inspector {
         this.#members.hidden = last === undefined;
         this.#members.replaceChildren(
             ...Object.entries(last?.element ?? {}).flatMap(([name, value]) => [
-                make('dt', {}, name),
+                make('dt', {}, explained(name)),
                 this.#description(name, value, LINKS[name]),
             ]),
         );
@@ -87,7 +88,7 @@ export class Inspector {
                 const description = this.#description(name, ids, kind);
                 delete description.dataset.member;
                 description.dataset.ring = name;
-                return [make('dt', {}, name), description];
+                return [make('dt', {}, explained(name)), description];
             }),
         );
     }

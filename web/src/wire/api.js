@@ -220,6 +220,12 @@ export function getHistory(mesh, cursor = null, signal = undefined) {
     return getJson(`${meshPath(mesh)}/edits?limit=${HISTORY_PAGE}${after}`, signal);
 }
 
+// Returns the elements of a small mesh, at most 1,000; `kinds` is 'vertices', 'edges', 'faces' or
+// 'halfedges'.
+export async function getElements(mesh, kinds) {
+    return (await getJson(`${meshPath(mesh)}/${kinds}?limit=1000`)).items;
+}
+
 export function getElement(mesh, kind, id) {
     return getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}`);
 }
