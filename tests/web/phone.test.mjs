@@ -1,0 +1,67 @@
+// Tests of the page on a telephone: the view, picking, undo and export stay at hand while one reads
+// the panels.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { checkAccessible, projector, waitForFrame } from './browser.mjs';
+import { getAll } from './daemon.mjs';
+import { openMesh } from './visit.mjs';
+
+const CUBE = { name: 'cube', shape: 'cube' };
+const PHONES = [{ width: 320, height: 568 }, { width: 390, height: 844 }];
+
+// Returns the part of an element that is seen, as {left, top, right, bottom}, or null if another one
+// covers its middle.
+const seen = (page, selector) =>
+    page.evaluate((wanted) => {
+        const node = document.querySelector(wanted);
+        const { left, top, right, bottom } = node.getBoundingClientRect();
+        const hit = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+        return hit !== null && node.contains(hit) ? { left, top, right, bottom } : null;
+    }, selector);
+
+for (const viewport of PHONES) {
+    test(`picking, undo and export stay at hand, ${viewport.width} wide`, async (t) => {
+        const context = await openMesh(t, CUBE, { viewport, hasTouch: true, isMobile: true });
+        const { daemon, mesh, page } = context;
+        const width = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(width <= viewport.width, `${width} px wide`);
+        await page.locator('#statistics').scrollIntoViewIfNeeded();
+        for (const wanted of ['#canvas', '#export', '#undo', '#pick-modes']) {
+            const box = await seen(page, wanted);
+            assert.ok(box !== null, `${wanted} is covered`);
+            assert.ok(box.top >= 0 && box.bottom <= viewport.height + 1, wanted);
+            assert.ok(box.left >= 0 && box.right <= viewport.width, wanted);
+        }
+        // A tap picks although the page is scrolled, and the panel says what was picked.
+        const place = await projector(page, daemon, mesh);
+        const [face] = (await getAll(daemon, mesh, 'faces')).filter((f) => place.isSeen(f));
+        await page.locator('#canvas').tap({ position: place.at(face.vertices) });
+        await waitForFrame(page, { selection: `face:${face.id}` });
+        await page.locator('#split').tap();
+        await waitForFrame(page, { revision: 2 });
+        await page.locator('#undo').tap();
+        await waitForFrame(page, { revision: 3 });
+        await checkAccessible(page, 'a telephone');
+    });
+}
+
+test('what gets the focus is not covered by the view or the tools', async (t) => {
+    const { page } = await openMesh(t, CUBE, { viewport: { width: 390, height: 844 } });
+    await page.locator('#goto-id').focus();
+    for (let i = 0; i < 30; i++) {
+        await page.keyboard.press('Tab');
+        const { name, isSeen } = await page.evaluate(() => {
+            const node = document.activeElement;
+            const { left, top, width, height } = node.getBoundingClientRect();
+            const hit = document.elementFromPoint(left + width / 2, top + height / 2);
+            const label = node.closest('label');
+            return {
+                name: node.id || node.textContent,
+                isSeen: node === document.body || node.contains(hit) || label?.contains(hit) === true,
+            };
+        });
+        assert.ok(isSeen, `${name} is covered`);
+    }
+});
