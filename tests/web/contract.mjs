@@ -21,6 +21,7 @@ const LISTED = [
 // The statuses with which a request may be refused before the server looks at its path.
 const BEFORE_ROUTING = [400, 403, 413, 414, 421, 429, 431, 501, 503, 505];
 const PROBLEM = 'application/problem+json';
+const PROBLEM_SCHEMA = { $ref: '#/components/schemas/problem' };
 
 // --- closed schemas ---
 
@@ -133,11 +134,12 @@ export class Contract {
     constructor(document) {
         this.document = document;
         this.ajv = newAjv(document);
-        this.compiled = new Map();
+        this.compiled = new Map(); // by the text of a schema
+        this.checks = new Map(); // by the schema itself, an object of the document
         this.operations = [];
         this.paths = Object.entries(document.paths).map(([template, item]) => {
             const { parameters = [], ...methods } = item;
-            const path = { template, parameters, methods: {} };
+            const path = { template, segments: template.split('/'), parameters, methods: {} };
             for (const [method, operation] of Object.entries(methods)) {
                 const found = { name: `${method.toUpperCase()} ${template}`, operation, hits: 0 };
                 path.methods[method] = found;
@@ -205,8 +207,9 @@ export class Contract {
     }
 
     match(path) {
-        return this.paths.find(({ template, parameters }) => {
-            const values = variablesOf(template, path);
+        const given = path.split('/');
+        return this.paths.find(({ segments, parameters }) => {
+            const values = variablesOf(segments, given);
             return values !== null && parameters.every((p) => allowed(p, values[p.name]));
         });
     }
@@ -219,22 +222,29 @@ export class Contract {
 
     // Returns what is wrong with a value according to a schema, or null if nothing is.
     validate(schema, value) {
-        const key = JSON.stringify(schema);
-        if (!this.compiled.has(key)) {
-            const rooted = JSON.parse(key.replaceAll('"#/', '"hedge#/'));
-            this.compiled.set(key, this.ajv.compile(closed(rooted, false)));
-        }
-        const check = this.compiled.get(key);
+        const check = this.compile(schema);
         return check(value) ? null : this.ajv.errorsText(check.errors, { dataVar: '' });
+    }
+
+    // Returns the function that ajv makes of a schema. Equal schemas share one, and an object that
+    // was seen before is not even compared: there are hundreds of thousands of exchanges.
+    compile(schema) {
+        if (!this.checks.has(schema)) {
+            const key = JSON.stringify(schema);
+            if (!this.compiled.has(key)) {
+                const rooted = JSON.parse(key.replaceAll('"#/', '"hedge#/'));
+                this.compiled.set(key, this.ajv.compile(closed(rooted, false)));
+            }
+            this.checks.set(schema, this.compiled.get(key));
+        }
+        return this.checks.get(schema);
     }
 
     checkProblem({ method, status }, { media, whole, bytes }, wrong) {
         if (media !== PROBLEM) {
             wrong.push(`a refusal is ${PROBLEM}, not ${media}`);
         } else if (whole && method !== 'HEAD') {
-            this.checkJson({ $ref: '#/components/schemas/problem' }, bytes, wrong, (problem) =>
-                statusOf(problem, status),
-            );
+            this.checkJson(PROBLEM_SCHEMA, bytes, wrong, (problem) => statusOf(problem, status));
         }
     }
 
@@ -363,8 +373,8 @@ export class Contract {
     }
 
     // Checks the parameters of a request that was accepted.
-    checkParameters({ template, parameters }, operation, path, query, { headers }, wrong) {
-        const values = variablesOf(template, path);
+    checkParameters({ segments, parameters }, operation, path, query, { headers }, wrong) {
+        const values = variablesOf(segments, path.split('/'));
         for (const { name, schema } of parameters) {
             this.checkText(`{${name}}`, schema, values[name], wrong);
         }
@@ -474,20 +484,18 @@ function variables({ template }) {
     return template.split('{').length;
 }
 
-// Returns the values that a path has for the variables of a template such as /meshes/{mesh}, or
-// null if the path does not fit the template.
-function variablesOf(template, path) {
-    const wanted = template.split('/');
-    const given = path.split('/');
+// Returns the values that the segments of a path have for the variables of a template such as
+// /meshes/{mesh}, whose segments are `wanted`, or null if the path does not fit the template.
+function variablesOf(wanted, given) {
     if (wanted.length !== given.length) {
         return null;
     }
     const values = {};
-    for (const [i, part] of wanted.entries()) {
+    for (let i = 0; i < wanted.length; i++) {
         const text = decode(given[i]);
-        if (part.startsWith('{') && text !== '') {
-            values[part.slice(1, -1)] = text;
-        } else if (part !== text) {
+        if (wanted[i].startsWith('{') && text !== '') {
+            values[wanted[i].slice(1, -1)] = text;
+        } else if (wanted[i] !== text) {
             return null;
         }
     }
@@ -495,6 +503,9 @@ function variablesOf(template, path) {
 }
 
 function decode(text) {
+    if (!text.includes('%')) {
+        return text;
+    }
     try {
         return decodeURIComponent(text);
     } catch {
