@@ -33,6 +33,8 @@ typedef struct level {
     he_vec3 *place;
     bool *vertex, *edge, *face;
     uint32_t (*end)[2], (*corner)[3];
+    /* By vertex: 1 more than the latest vertex u to whose faces a split moved an edge from here. */
+    uint32_t *fan;
     const char *next; /* position in the answer of the next vertex split */
     uint32_t left;    /* number of vertex splits still to be read */
 } level;
@@ -53,6 +55,7 @@ static level first_level(const bench_reply *r)
     l.face = calloc(l.faces + 1, sizeof *l.face);
     l.end = calloc(l.edges + 1, sizeof *l.end);
     l.corner = calloc(l.faces + 1, sizeof *l.corner);
+    l.fan = calloc(l.vertices + 1, sizeof *l.fan);
     p += HEADER;
     for (uint32_t i = u32_at(r->body + 16); i > 0; i--, p += VERTEX) {
         l.vertex[u32_at(p)] = true;
@@ -81,6 +84,7 @@ static void level_clear(level *l)
     free(l->face);
     free(l->end);
     free(l->corner);
+    free(l->fan);
 }
 
 static void add_edge(level *l, uint32_t halfedge, uint32_t from, uint32_t to)
@@ -104,14 +108,15 @@ static void add_face(level *l, uint32_t face, uint32_t a, uint32_t b, uint32_t c
     }
 }
 
-/* Replaces the edge between the vertices v and x by an edge between u and x. */
-static void move_edge(level *l, uint32_t v, uint32_t x, uint32_t u)
+/* Replaces v by u in each edge between v and a vertex x with fan[x] == u + 1. */
+static void move_edges(level *l, uint32_t v, uint32_t u)
 {
     for (uint32_t e = 0; e < l->edges; e++) {
-        for (unsigned k = 0; l->edge[e] && k < 2; k++) {
-            if (l->end[e][k] == v && l->end[e][1 - k] == x) {
-                l->end[e][k] = u;
-            }
+        uint32_t *end = l->end[e];
+        if (end[0] == v && l->edge[e] && l->fan[end[1]] == u + 1) {
+            end[0] = u;
+        } else if (end[1] == v && l->edge[e] && l->fan[end[0]] == u + 1) {
+            end[1] = u;
         }
     }
 }
@@ -134,10 +139,11 @@ static void split(level *l)
             if (x == v) {
                 l->corner[f][k] = u;
             } else if (x != c && x != d) {
-                move_edge(l, v, x, u);
+                l->fan[x] = u + 1;
             }
         }
     }
+    move_edges(l, v, u);
     add_edge(l, u32_at(p + 20), u, v);
     add_edge(l, u32_at(p + 24), u, c);
     add_edge(l, u32_at(p + 28), u, d);
