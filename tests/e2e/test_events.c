@@ -2,12 +2,13 @@
  * edits and broken connections; and there are slow and dead clients, a thousand listeners, and a
  * stop of the daemon.
  *
- * The environment gives EDITS (default 2000; make proof takes 10000) and SEED (default: from the
- * clock). */
+ * The environment gives EDITS (default 2000, fewer under a sanitizer; make proof takes 10000) and
+ * SEED (default: from the clock). */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/mirror.h"
 #include "tests/random_edit.h"
+#include "tests/sanitized.h"
 
 #include "op/op.h"
 #include "system/clock.h"
@@ -229,7 +230,7 @@ static uint64_t random_request(copy *c, md_random *r)
 static void a_copy_stays_equal_through_random_edits(void **state)
 {
     (void)state;
-    uint64_t edits = seed_setting("EDITS", 2000), done = 0, asked = 0, last = 1;
+    uint64_t edits = seed_setting("EDITS", SANITIZED ? 600 : 2000), done = 0, asked = 0, last = 1;
     md_random random = {seed_setting("SEED", (uint64_t)time(NULL))};
     printf("note: SEED=%" PRIu64 " EDITS=%" PRIu64 "\n", random.state, edits);
     daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});

@@ -8,6 +8,7 @@
  * no group can be created, the test says so and gives the daemon the memory budget that it would
  * derive from 300 MiB. */
 #include "tests/e2e/client.h"
+#include "tests/sanitized.h"
 
 #include "system/memory_limit.h"
 
@@ -25,11 +26,7 @@
 #define MIB (UINT64_C(1) << 20)
 
 /* A sanitizer needs memory of its own, more than the limit of the group. */
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-enum { IN_GROUP = 0 };
-#else
-enum { IN_GROUP = 1 };
-#endif
+enum { IN_GROUP = !SANITIZED };
 
 enum { LIMIT_MIB = 300, MANY = 400, PATH_BYTES = 512 };
 

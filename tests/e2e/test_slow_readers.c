@@ -2,6 +2,7 @@
  * mesh. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
+#include "tests/sanitized.h"
 
 #include "server/http/limits.h"
 
@@ -19,11 +20,7 @@
 #include <cmocka.h>
 
 /* The mesh has SIDE x SIDE quads: a million, and fewer under a sanitizer, which is slow. */
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-enum { SIDE = 500 };
-#else
-enum { SIDE = 1000 };
-#endif
+enum { SIDE = SANITIZED ? 500 : 1000 };
 
 enum { SLOW = 4, RECEIVE_BUFFER = 1 << 16, FIRST = 1024, EDITS = 20 };
 

@@ -7,6 +7,7 @@
 
 #include "tests/codings.h"
 #include "tests/pace.h"
+#include "tests/sanitized.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,13 +20,8 @@
 
 /* A sanitizer adds memory of its own, so memory is not compared in a build with a sanitizer; and it
  * makes the daemon many times slower, so files are smaller there. */
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-static const bool counts_memory = false;
-enum { ONE = 4 << 20 };
-#else
-static const bool counts_memory = true;
-enum { ONE = 16 << 20 };
-#endif
+static const bool counts_memory = !SANITIZED;
+enum { ONE = SANITIZED ? 4 << 20 : 16 << 20 };
 
 enum { OVER = 256 << 20, ROOM = 600, TIMES_ORDINARY = 10 };
 

@@ -18,6 +18,7 @@
 #include "model/net.h"
 #include "model/starts.h"
 #include "tests/failing.h"
+#include "tests/sanitized.h"
 #include "tests/seed.h"
 
 #include <inttypes.h>
@@ -405,7 +406,7 @@ static void every_edit_agrees_with_the_oracle(void **state)
     assert_true(w != NULL && all != NULL && files != NULL);
     struct timespec now;
     (void)clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t edits = seed_setting("EDITS", 50000);
+    uint64_t edits = seed_setting("EDITS", SANITIZED ? 20000 : 50000);
     w->seed = seed_setting("SEED", (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec);
     w->random.state = w->seed;
     w->oracle = or_new();

@@ -13,6 +13,7 @@
 #include "model/shapes.h"
 #include "model/starts.h"
 #include "tests/failing.h"
+#include "tests/sanitized.h"
 #include "tests/seed.h"
 
 #include <inttypes.h>
@@ -280,7 +281,7 @@ static void each_result_is_that_of_the_oracle(void (*once)(world *w), const char
 {
     world *w = calloc(1, sizeof *w);
     assert_non_null(w);
-    const uint64_t seed = seed_of_run(), meshes = seed_setting("MESHES", 1000);
+    const uint64_t seed = seed_of_run(), meshes = seed_setting("MESHES", SANITIZED ? 300 : 1000);
     w->oracle = or_new();
     assert_non_null(w->oracle);
     md_starts starts = md_starts_find();

@@ -10,6 +10,7 @@
 #include "geometry/scale.h"
 #include "mesh/write.h"
 #include "tests/failing.h"
+#include "tests/sanitized.h"
 #include "tests/seed.h"
 
 #include <float.h>
@@ -439,7 +440,7 @@ static void play(const random_family *of, md_random *r)
 static void random_meshes_have_sound_bounds(void **state)
 {
     (void)state;
-    const uint64_t seed = seed_of_run(), rounds = seed_setting("ROUNDS", 500);
+    const uint64_t seed = seed_of_run(), rounds = seed_setting("ROUNDS", SANITIZED ? 100 : 500);
     for (uint64_t i = 0; i < rounds; i++) {
         md_random r = {seed + i};
         play(&random_families[(seed + i) % RANDOM_FAMILIES], &r);
@@ -450,7 +451,7 @@ static void random_meshes_have_sound_bounds(void **state)
 static void no_sample_is_outside_the_bounds(void **state)
 {
     (void)state;
-    enum { SAMPLES = 1000000 };
+    enum { SAMPLES = SANITIZED ? 100000 : 1000000 };
     md_random r = {seed_of_run()};
     he_mesh *m = dense_torus(60), *simpler = dense_copy(m);
     (void)dense_decimate(simpler, 600, INFINITY);

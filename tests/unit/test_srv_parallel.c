@@ -8,6 +8,7 @@
 #include "mesh/walk.h"
 #include "system/parallel.h"
 #include "tests/failing.h"
+#include "tests/sanitized.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -147,9 +148,10 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
 
 /* --- parallel algorithms of core --- */
 
-/* SIDE makes the meshes of the tests so large that they are divided into many parts of work. If
- * `shuffled` is set, vertices and faces are in random order. */
-enum { SIDE = 220 };
+/* SIDE makes the meshes of the tests so large that they are divided into several parts of work,
+ * vertices as well as faces. If `shuffled` is set, vertices and faces are in random order. */
+enum { SIDE = SANITIZED ? 150 : 220 };
+_Static_assert(HE_PART_ROWS < SIDE * SIDE, "the vertices are one part");
 
 static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
 {

@@ -1,6 +1,7 @@
 /* Tests of the sorted lists of meshes (st_cards_by), for a store in memory and for one on the disk:
  * each is compared with a slow oracle, which sorts what is known of the meshes. */
 #include "tests/pace.h"
+#include "tests/sanitized.h"
 #include "tests/seed.h"
 #include "tests/store_sql.h"
 #include "tests/unit/fixture.h"
@@ -410,7 +411,7 @@ static void a_mesh_that_keeps_its_place_is_listed_once(void **state)
 
 /* --- large stores --- */
 
-enum { LARGE = 100000, LARGE_PAGE = 100 };
+enum { LARGE = SANITIZED ? 20000 : 100000, LARGE_PAGE = 100 };
 
 /* Reads a whole list in pages, and requires that it has `size` meshes in order. */
 static double page_through(st_card_order order, size_t size)
