@@ -13,6 +13,7 @@
 #include "store/publish/limits.h"
 #include "tests/failing.h"
 #include "tests/seed.h"
+#include "tests/sanitized.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -77,7 +78,7 @@ static size_t rarest(const unsigned done[ROWS])
 static void every_operation_undo_and_redo_is_told_exactly(void **state)
 {
     (void)state;
-    enum { EDITS = 6000, MOST = 100000 };
+    enum { EDITS = SANITIZED ? 2000 : 6000, MOST = 100000 };
     unsigned done[ROWS] = {0}, anew = 0, steps = 0;
     md_random random = {seed_of_run()};
     char text[RANDOM_EDIT_TEXT];

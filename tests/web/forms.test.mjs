@@ -399,6 +399,19 @@ test('the search finds operations that the selection hides', async (t) => {
 const areApart = (a, b) =>
     a.y + a.height <= b.y || b.y + b.height <= a.y || a.x + a.width <= b.x || b.x + b.width <= a.x;
 
+// Returns the places of all elements that have one and fit a selector, asked for at once: a form has
+// dozens of them.
+function readBoxes(page, selector) {
+    return page.locator(selector).evaluateAll((all) =>
+        all
+            .filter((each) => each.getClientRects().length > 0)
+            .map((each) => {
+                const { x, y, width, height } = each.getBoundingClientRect();
+                return { id: each.id, x, y, width, height };
+            }),
+    );
+}
+
 test('what an edit would do stands below its field and covers nothing', async (t) => {
     for (const viewport of [{ width: 800, height: 600 }, { width: 1280, height: 700 }]) {
         const { page } = await openMesh(t, GRID, { viewport, allowed: [/status of 4\d\d/] });
@@ -414,9 +427,10 @@ test('what an edit would do stands below its field and covers nothing', async (t
             assert.ok(said.height > 10 && said.y >= 0, what);
             assert.ok(said.y + said.height <= viewport.height + 1, `${what} out of sight`);
             assert.ok(own.y >= 0 && own.y + own.height <= viewport.height, `${what} scrolled away`);
-            for (const input of await page.locator('#parameters :is(input, select, button)').all()) {
-                const box = await input.boundingBox();
-                assert.ok(box === null || areApart(said, box), `${what} covers ${await input.getAttribute('id')}`);
+            const boxes = await readBoxes(page, '#parameters :is(input, select, button)');
+            assert.ok(boxes.length > 10, `${what}: ${boxes.length} fields`);
+            for (const { id, ...box } of boxes) {
+                assert.ok(areApart(said, box), `${what} covers ${id}`);
             }
         }
         await checkAccessible(page, 'verdict below its field', '#details');
