@@ -73,6 +73,7 @@ export async function openPageIn(
 ) {
     const context = await browser.newContext({
         viewport: { width: 1280, height: 800 },
+        colorScheme: 'dark', // that of the colours below
         ...options,
     });
     const page = await context.newPage();

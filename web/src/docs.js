@@ -3,6 +3,7 @@
 
 import { getDescription } from './wire/api.js';
 import { make } from './kit/dom.js';
+import './look/theme.js';
 import { alternatives, typeOf } from './wire/schema.js';
 
 // Returns nodes that describe the type of a schema; the names of other schemas in this description

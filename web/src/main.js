@@ -16,6 +16,7 @@ import { Inspector } from './panels/inspector.js';
 import { keyList, listenToKeys } from './stage/keys.js';
 import { Legend } from './stage/legend.js';
 import { Lens } from './lens/lens.js';
+import { Look } from './look/look.js';
 import { MeshList } from './meshes/list.js';
 import { MeshActs } from './meshes/acts.js';
 import { askShape } from './meshes/new_shape.js';
@@ -27,6 +28,7 @@ import { Guide } from './teach/guide.js';
 import { Offering } from './teach/offering.js';
 import { Statistics } from './panels/statistics.js';
 import { Toasts } from './kit/toast.js';
+import { onUnit } from './kit/units.js';
 import { Uploads } from './meshes/upload.js';
 import { Work } from './kit/work.js';
 
@@ -143,8 +145,41 @@ const stage = new Stage(
             byId('goto-kind').value = kind;
         },
         onRest: () => address.write(),
+        onFrame: () => look.frameDrawn(),
+        onSlow: () => look.slow(),
+        onBroken: (reason) => look.broken(reason),
         onError: fail,
     },
+);
+const look = new Look(
+    stage,
+    {
+        panel: {
+            button: byId('view-button'),
+            box: byId('view-panel'),
+            close: byId('view-close'),
+            form: byId('view-form'),
+            reset: byId('view-reset'),
+        },
+        section: {
+            axes: byId('section-axes'),
+            box: byId('section-box'),
+            slider: byId('section-slider'),
+            at: byId('section-at'),
+            unit: byId('section-unit'),
+            flip: byId('section-flip'),
+            free: byId('section-free'),
+            turn: byId('section-turn'),
+            tilt: byId('section-tilt'),
+            view: byId('section-view'),
+            length: byId('section-length'),
+            area: byId('section-area'),
+            loops: byId('section-loops'),
+        },
+        labels: { box: byId('view-labels'), grid: byId('view-grid'), cross: byId('view-cross') },
+        needs: byId('look-needs'),
+    },
+    { content: () => session.shown, onError: fail },
 );
 const offering = new Offering(byId('lesson-open'), session, {
     onApply: (operation) => editing.run(operation).catch(fail),
@@ -201,6 +236,7 @@ const refining = new Refining(
     stage,
     {
         onBegin: () => {
+            look.suspend();
             editing.stopPicking();
             showWhatMayBeDone();
         },
@@ -224,6 +260,7 @@ function update(what, change) {
     } else if (isChanged) {
         stage.update(change, label());
     }
+    look.follow(what);
     if (isChanged || what === 'facts') {
         stage.setBoundary(session.shown.boundary);
         showFacts();
@@ -260,6 +297,13 @@ function update(what, change) {
     showWhatMayBeDone();
 }
 
+onUnit(() => {
+    if (session.shown !== null) {
+        showFacts();
+        inspector.show(session.selection);
+    }
+});
+
 // Returns a label that says what the next frame will show.
 function label() {
     const { mesh, shown: content, selection } = session;
@@ -276,8 +320,10 @@ function label() {
           };
 }
 
-// The property `geometry` of the canvas is for tests, which compare it with what the server sends.
+// The properties `geometry` and `look` of the canvas are for tests, which compare the first with what the
+// server sends, and set the state of the second.
 Object.defineProperty(canvas, 'geometry', { get: () => session.shown?.geometry ?? null });
+Object.defineProperty(canvas, 'look', { value: look });
 
 function showSelection() {
     const { shown: content, selection } = session;
@@ -409,6 +455,8 @@ listenToKeys(canvas, {
     frame: frameSelection,
     zoomIn: () => stage.zoom(true),
     zoomOut: () => stage.zoom(false),
+    view: () => look.toggle(),
+    nextWay: () => look.nextWay(),
     move: () => editing.start('move', true),
     extrude: () => editing.start('extrude', true),
     inset: () => editing.start('inset', true),

@@ -99,13 +99,15 @@ export class Camera {
         ).elements;
     }
 
-    // Sets the near and the far plane close to the mesh, which lies within distance 1 of the
-    // origin, because the depth buffer is more exact if these planes are close together.
-    setDepthRange() {
+    // Sets the near and the far plane close to what is drawn, because the depth buffer is more exact
+    // if these planes are close together. The mesh lies within distance 1 of the origin, and other
+    // lines within distance `reach`.
+    setDepthRange(reach) {
         const distance = this.three.position.length();
         const near = 0.02 * this.#controls.getDistance();
-        this.three.near = Math.max(distance - 1.1, near);
-        this.three.far = distance + 1.1;
+        const most = 0.1 + Math.max(reach, 1);
+        this.three.near = Math.max(distance - most, near);
+        this.three.far = distance + most;
         this.three.updateProjectionMatrix();
         this.three.updateMatrixWorld();
     }

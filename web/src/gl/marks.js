@@ -24,21 +24,11 @@ import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js
 import { MOST_PIXELS, arrowOf } from '../geometry/arrows.js';
 import { edgesOfTriangles, hasVertex, pointAt, trianglesOfFace } from '../geometry/geometry.js';
 import { pixelAtOne } from '../geometry/view.js';
+import { COLORS } from './colors.js';
 import { ARROW_FRAGMENT, ARROW_VERTEX, DOT_FRAGMENT, MARK_VERTEX } from './shaders.js';
 
 const CHOSEN = 0xffb347;
 const CHOSEN_START = 0x7a4a10; // colour at the origin of a selected half-edge
-const BOUNDARY = 0x35d0e6;
-const PREVIEW = 0xf4f6fa;
-// Colours of half-edges by their role, see around.js; style/details.css has the same colours.
-const ARROWS = {
-    self: 0xffb347,
-    next: 0x6be675,
-    prev: 0xe27bff,
-    twin: 0x5fa8ff,
-    near: 0xf4f6fa,
-};
-const FIELD = 0xf4f6fa;
 const MARK_SIZE = 13; // in CSS pixels, as all sizes here
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
@@ -59,21 +49,26 @@ export class Marks {
     preview;
     #geometry = null;
     #pixel = { value: 1 };
+    #colors = COLORS.dark;
+    #halfedges = [];
 
-    // `material` is the material with which three.js draws selected triangles.
-    constructor(material) {
+    // `materials` are those with which three.js draws selected triangles, `cut`, `ink` and `paper` are
+    // uniforms of SurfaceLook.
+    constructor(materials, { cut, ink, paper }) {
         // Selected triangles are drawn a second time, a little nearer than the rest of the mesh.
-        this.chosen = new Mesh(new BufferGeometry(), material);
-        material.polygonOffsetFactor = 0.5;
-        material.polygonOffsetUnits = 0.5;
-        this.boundary = segments(plain(line(LessEqualDepth, 1), BOUNDARY_WIDTH, BOUNDARY));
+        this.chosen = new Mesh(new BufferGeometry(), materials[0]);
+        for (const material of materials) {
+            material.polygonOffsetFactor = 0.5;
+            material.polygonOffsetUnits = 0.5;
+        }
+        this.boundary = segments(plain(line(LessEqualDepth, 1), BOUNDARY_WIDTH));
         this.arrows = new Mesh(
             new BufferGeometry(),
             new RawShaderMaterial({
                 glslVersion: GLSL3,
                 vertexShader: ARROW_VERTEX,
                 fragmentShader: ARROW_FRAGMENT,
-                uniforms: { pixel: this.#pixel, mostPixels: { value: MOST_PIXELS } },
+                uniforms: { pixel: this.#pixel, mostPixels: { value: MOST_PIXELS }, cut },
                 side: DoubleSide,
                 blending: NoBlending,
             }),
@@ -82,11 +77,31 @@ export class Marks {
         // they are behind it.
         this.lines = segments(line(LessEqualDepth, 1));
         this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
-        this.vertices = dots(new Vector3(1, 0.7, 0.28));
-        this.fieldLines = segments(plain(line(AlwaysDepth, 1), FIELD_WIDTH, FIELD));
-        this.fieldVertices = dots(new Vector3(0.96, 0.97, 0.98));
-        this.preview = segments(plain(line(AlwaysDepth, 1), PREVIEW_WIDTH, PREVIEW));
+        this.vertices = dots(new Vector3(1, 0.7, 0.28), { cut, ink, paper });
+        this.fieldLines = segments(plain(line(AlwaysDepth, 1), FIELD_WIDTH));
+        this.fieldVertices = dots(new Vector3(0.96, 0.97, 0.98), { cut, ink, paper });
+        this.preview = segments(plain(line(AlwaysDepth, 1), PREVIEW_WIDTH));
         this.preview.visible = false;
+    }
+
+    // Sets the colours of the marks, see colors.js.
+    setColors(colors) {
+        this.#colors = colors;
+        this.boundary.material.color.set(colors.boundary);
+        this.preview.material.color.set(colors.preview);
+        this.fieldLines.material.color.set(colors.field);
+        this.fieldVertices.material.uniforms.tint.value.setFromColor(
+            new Color().setHex(colors.field, NoColorSpace),
+        );
+        this.#setArrows(this.#halfedges);
+    }
+
+    // Hides the marks above a plane, a Plane of three.js, or none (null). Those of the fields of a
+    // form and previews stay.
+    setCut(plane) {
+        for (const { material } of [this.lines, this.hiddenLines, this.boundary]) {
+            material.clippingPlanes = plane === null ? null : [plane];
+        }
     }
 
     // Removes all marks; `geometry` is the mesh that will be marked from now on, or null.
@@ -191,10 +206,11 @@ export class Marks {
     }
 
     #setArrows(halfedges) {
+        this.#halfedges = halfedges;
         const [position, spread, size, color] = [[], [], [], []];
         for (const halfedge of halfedges) {
             const arrow = arrowOf(this.#geometry, halfedge);
-            const tint = new Color().setHex(ARROWS[halfedge.role], NoColorSpace).toArray();
+            const tint = new Color().setHex(this.#colors.arrows[halfedge.role], NoColorSpace).toArray();
             for (let i = 0; i < (arrow?.places.length ?? 0); i++) {
                 position.push(...arrow.places[i]);
                 spread.push(...arrow.spreads[i]);
@@ -242,14 +258,19 @@ function replace(object, geometry, visible) {
     object.visible = visible;
 }
 
-function dots(tint) {
+function dots(tint, uniforms) {
     return new Points(
         new BufferGeometry(),
         new RawShaderMaterial({
             glslVersion: GLSL3,
             vertexShader: MARK_VERTEX,
             fragmentShader: DOT_FRAGMENT,
-            uniforms: { size: { value: MARK_SIZE }, tint: { value: tint } },
+            uniforms: {
+                ...uniforms,
+                size: { value: MARK_SIZE },
+                tint: { value: tint },
+                isAlone: { value: false },
+            },
             blending: NoBlending,
         }),
     );
@@ -270,12 +291,10 @@ function line(depthFunc, opacity) {
     });
 }
 
-// Sets the width of a material for lines, and one colour for all its lines, instead of a colour for
-// each vertex.
-function plain(material, width, color) {
+// Sets the width of a material for lines, which have one colour instead of a colour for each vertex.
+function plain(material, width) {
     material.linewidth = width;
     material.vertexColors = false;
-    material.color.set(color);
     return material;
 }
 

@@ -2,6 +2,8 @@
 // three.
 //
 //   surface.js   the mesh, from the arrays of geometry.js
+//   cut.js       the face that a section plane cuts
+//   guides.js    grid, axes and bounding box
 //   marks.js     the marks on it: selection, arrows, boundary loops, previews
 //   camera.js    the position of the camera
 //
@@ -10,9 +12,11 @@
 
 import {
     NearestFilter,
+    Plane,
     RGBAIntegerFormat,
     Scene,
     UnsignedIntType,
+    Vector3,
     WebGLRenderTarget,
     WebGLRenderer,
 } from 'three';
@@ -21,10 +25,12 @@ import { ballOf } from '../geometry/geometry.js';
 import { readSquare } from '../geometry/pick.js';
 import { DIRECTION } from '../geometry/view.js';
 import { Camera } from './camera.js';
+import { COLORS } from './colors.js';
+import { Cut } from './cut.js';
+import { Guides } from './guides.js';
 import { Marks } from './marks.js';
+import { Motion } from './motion.js';
 import { Surface } from './surface.js';
-
-const BACKGROUND = 0x0e1116;
 
 export class NoWebGL extends Error {}
 
@@ -34,6 +40,12 @@ export class Renderer {
     #camera;
     #surface;
     #marks;
+    #chosen; // materials of selected faces
+    #cut = new Cut();
+    #guides = new Guides();
+    #motion = new Motion(() => this.#draw());
+    #hurry = 'auto';
+    #colors = COLORS.dark;
     #scene = new Scene();
     #pickScene = new Scene();
     #geometry = null;
@@ -41,32 +53,49 @@ export class Renderer {
     #size = '';
     #scheduled = false;
     #onFrame;
+    #onSlow;
+    #onBroken;
 
     // Throws NoWebGL if the browser cannot draw. `onFrame(label)` is called after each frame with
     // the label of the last change, `onLost(lost)` when the graphics context is lost or restored,
-    // `onMove(isHeld)` when the camera moves, see Camera.
-    constructor(canvas, { onFrame, onLost, onMove }) {
-        const context = canvas.getContext('webgl2', { antialias: true, alpha: false });
+    // `onMove(isHeld)` when the camera moves, see Camera, `onSlow()` when frames are slow while it
+    // moves and there is no proxy, and `onBroken()` when the browser cannot draw the look, so that the
+    // mesh is drawn plainly.
+    constructor(canvas, { onFrame, onLost, onMove, onSlow, onBroken }) {
+        const context = canvas.getContext('webgl2', {
+            antialias: true,
+            alpha: false,
+            stencil: true,
+        });
         if (context === null) {
             throw new NoWebGL();
         }
         this.#canvas = canvas;
-        this.#onFrame = onFrame;
+        [this.#onFrame, this.#onSlow, this.#onBroken] = [onFrame, onSlow, onBroken];
         this.#renderer = new WebGLRenderer({ canvas, context });
-        this.#renderer.setClearColor(BACKGROUND);
+        this.#renderer.localClippingEnabled = true;
+        this.#renderer.debug.onShaderError = (...which) => this.#giveUpLook(...which);
         this.#camera = new Camera(canvas, (isHeld) => {
+            this.#motion.moved();
             this.#draw();
             onMove(isHeld);
         });
         this.#surface = new Surface(this.#renderer.capabilities.maxTextureSize);
-        this.#marks = new Marks(this.#surface.material(true));
-        const { fill, dots, pickFill, pickDots } = this.#surface;
+        this.#chosen = this.#surface.chosenMaterials();
+        this.#marks = new Marks(Object.values(this.#chosen), this.#surface.look.uniforms);
+        const { fill, proxy, dots, pickFill, pickDots } = this.#surface;
+        const { mask, face, outline } = this.#cut;
         const { chosen, boundary, arrows, hiddenLines, lines, vertices } = this.#marks;
         const { fieldLines, fieldVertices, preview } = this.#marks;
         add(this.#pickScene, [pickFill, pickDots]);
         add(this.#scene, [
+            ...[this.#guides.grid, this.#guides.axes, this.#guides.box],
             fill,
+            proxy,
             chosen,
+            mask,
+            face,
+            outline,
             boundary,
             dots,
             arrows,
@@ -77,6 +106,7 @@ export class Renderer {
             fieldVertices,
             preview,
         ]);
+        this.setColors('dark');
         this.show(null, null);
         this.fit();
         canvas.addEventListener('webglcontextlost', () => {
@@ -174,6 +204,80 @@ export class Renderer {
         this.#draw();
     }
 
+    // --- the look ---
+
+    // Sets how faces are drawn, see PLAIN in surface_look.js.
+    setLook(look) {
+        this.#surface.setLook(look);
+        this.#setChosen();
+        this.#draw();
+    }
+
+    // Sets the normals for smooth shading, see SurfaceLook.setNormals().
+    setNormals(normals) {
+        this.#surface.look.setNormals(normals);
+        this.#draw();
+    }
+
+    // Cuts away what is above a plane {normal, at}, or nothing (null); `outline` is the result of
+    // cutOutline() for this plane, or null.
+    setCut(plane, outline) {
+        this.#surface.setCut(plane);
+        // three.js hides what has a negative distance from the plane.
+        const shown =
+            plane && new Plane(new Vector3(...plane.normal).multiplyScalar(-1), plane.at);
+        this.#marks.setCut(shown);
+        this.#cut.show(outline);
+        this.#setChosen();
+        this.#draw();
+    }
+
+    // Draws guides, see Guides.show().
+    setGuides(lines) {
+        this.#guides.show(lines);
+        this.#draw();
+    }
+
+    // Sets what is drawn while the camera moves: 'auto' is the proxy if frames are slow, 'always' the
+    // proxy, 'never' the mesh.
+    setHurry(hurry) {
+        this.#hurry = hurry;
+    }
+
+    // Sets the triangles to draw while the camera moves, see Surface.setProxy().
+    setProxy(proxy) {
+        this.#surface.setProxy(proxy);
+        this.#draw();
+    }
+
+    // Sets the colours of the ground and of the marks: 'dark' or 'light'.
+    setColors(theme) {
+        this.#colors = COLORS[theme];
+        this.#renderer.setClearColor(this.#colors.paper, 1);
+        this.#surface.look.setColors(this.#colors);
+        this.#marks.setColors(this.#colors);
+        this.#guides.setColors(this.#colors);
+        this.#draw();
+    }
+
+    #setChosen() {
+        const { plain, looked } = this.#chosen;
+        this.#marks.chosen.material = this.#surface.look.isPlain ? plain : looked;
+    }
+
+    // Called when a program does not compile. If it is one for looks, the mesh is drawn plainly.
+    #giveUpLook(gl, program, ...shaders) {
+        const isLook = shaders.some((one) => gl.getShaderSource(one).includes('#define LOOKED'));
+        if (isLook && !this.#surface.giveUpLook()) {
+            return; // said before
+        }
+        if (isLook) {
+            this.setCut(null, null);
+        }
+        const texts = shaders.map((one) => gl.getShaderInfoLog(one));
+        this.#onBroken(texts.find((text) => text) || gl.getProgramInfoLog(program) || '');
+    }
+
     // --- the camera ---
 
     // Shows the whole mesh from the default direction.
@@ -224,6 +328,7 @@ export class Renderer {
 
     // Returns the screen as a Blob of image/png.
     capture() {
+        this.#surface.hurry(false);
         this.#render();
         return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
     }
@@ -245,7 +350,7 @@ export class Renderer {
         const left = Math.floor(x * ratio) - radius;
         const top = Math.floor(y * ratio) - radius;
         const camera = this.#camera.three;
-        this.#camera.setDepthRange();
+        this.#camera.setDepthRange(0);
         camera.setViewOffset(width, height, left, top, size, size);
         this.#renderer.setRenderTarget(target);
         this.#renderer.setClearColor(0x000000, 0);
@@ -253,7 +358,7 @@ export class Renderer {
         const ids = new Uint32Array(4 * size * size);
         this.#renderer.readRenderTargetPixels(target, 0, 0, size, size, ids);
         this.#renderer.setRenderTarget(null);
-        this.#renderer.setClearColor(BACKGROUND, 1);
+        this.#renderer.setClearColor(this.#colors.paper, 1);
         camera.clearViewOffset();
         target.dispose();
         return readSquare(ids, size);
@@ -273,6 +378,7 @@ export class Renderer {
         this.#camera.setAspect(width / height);
         this.#surface.setPixelRatio(ratio);
         this.#marks.setScreen(ratio, height);
+        this.#cut.setPixelRatio(ratio);
         this.#draw();
     }
 
@@ -281,16 +387,30 @@ export class Renderer {
             return;
         }
         this.#scheduled = true;
+        this.#motion.ask();
         requestAnimationFrame(() => {
             this.#scheduled = false;
+            this.#setHurry();
             this.#render();
             this.#onFrame(this.#label);
         });
     }
 
+    // Decides whether the next frame shows the proxy. Once frames were slow, the proxy is used each
+    // time the camera moves.
+    #setHurry() {
+        const isSlow = this.#motion.isSlow();
+        const isHurried = this.#motion.isMoving && this.#hurry !== 'never';
+        if (!this.#surface.hurry(isHurried) && isHurried && isSlow) {
+            this.#onSlow();
+        }
+        this.#canvas.dataset.drawn = this.#surface.isHurried ? 'proxy' : 'mesh';
+    }
+
     #render() {
-        this.#camera.setDepthRange();
+        this.#camera.setDepthRange(this.#guides.reach);
         this.#marks.raise(this.#camera.three.position);
+        this.#cut.raise(this.#camera.three.position);
         this.#renderer.render(this.#scene, this.#camera.three);
     }
 }

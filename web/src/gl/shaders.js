@@ -1,6 +1,8 @@
 // shaders.js - the GLSL programs. They read the arrays of geometry.js from two textures at indices
 // made from gl_VertexID, so the arrays need not be repeated in vertex buffers.
 
+import { CUT_FRAGMENT, CUT_VERTEX, LOOK_FRAGMENT, LOOK_VERTEX } from './look_shaders.js';
+
 const TEXTURES = `
 precision highp float;
 precision highp int;
@@ -35,6 +37,9 @@ flat out vec4 base;
 flat out vec4 glow;
 out vec3 bary;
 out vec3 eye;
+#ifdef LOOKED
+${LOOK_VERTEX}
+#endif
 
 // Finds the material of a face, see materials.js.
 void find(int face) {
@@ -55,8 +60,12 @@ void main() {
     int index = gl_VertexID / 3;
     int corner = gl_VertexID - 3 * index;
     uvec4 words = triangleAt(index);
-    vec4 seen = modelViewMatrix * vec4(vertexAt(int(words[corner])).xyz, 1.0);
+    vec3 place = vertexAt(int(words[corner])).xyz;
+    vec4 seen = modelViewMatrix * vec4(place, 1.0);
     find(int(words.w & 0x1fffffffu));
+#ifdef LOOKED
+    lookAtCorner(index, corner, place);
+#endif
     triangle = uint(index);
     sides = words.w >> 29;
     bary = vec3(corner == 0, corner == 1, corner == 2);
@@ -79,7 +88,11 @@ in vec3 bary;
 in vec3 eye;
 uniform bool chosen;
 uniform float edgeWidth;
+uniform float edgeStrength;
 out vec4 color;
+#ifdef LOOKED
+${LOOK_FRAGMENT}
+#endif
 
 const vec3 FRONT = vec3(0.62, 0.68, 0.77);
 const vec3 BACK = vec3(0.55, 0.42, 0.40);
@@ -94,12 +107,23 @@ const vec3 KEY = normalize(vec3(-0.45, 0.75, 0.60));
 void main() {
     // The normal is turned to the camera, whichever side of the face is visible.
     vec3 n = normalize(cross(dFdx(-eye), dFdy(-eye)));
+#ifdef LOOKED
+    n = smoothNormal(n, eye);
+#endif
     float light = 0.34 + 0.46 * max(dot(n, KEY), 0.0)
                 + 0.24 * max(dot(n, normalize(eye)), 0.0);
     bool isPainted = glow.w > (gl_FrontFacing ? 0.0 : 1.0);
     vec3 fill = isPainted ? base.rgb : gl_FrontFacing ? FRONT : BACK;
     fill *= light;
     fill = isPainted ? min(fill + glow.rgb, 1.0) : fill;
+#ifdef LOOKED
+    if (matcap > 0) {
+        fill = matcapColor(n, eye) * (isPainted ? 0.25 + 0.95 * base.rgb : vec3(1.0));
+    }
+    if (marksBacks && !gl_FrontFacing) {
+        fill = markedBack(light);
+    }
+#endif
     float bright = max(max(fill.r, fill.g), fill.b);
     // The colour of selected faces stays recognizable where the shading is dark.
     float chosenness = chosen ? (isPainted ? 0.92 : 0.8) : 0.0;
@@ -114,7 +138,20 @@ void main() {
     line *= vec3(float(sides & 1u), float((sides >> 1) & 1u), float((sides >> 2) & 1u));
     // Without this, the lines of the edges would cover a triangle that is only a few pixels large.
     line *= smoothstep(1.0, 9.0, 1.0 / rate);
-    float drawn = 0.88 * max(max(line.x, line.y), line.z);
+    float nearest = max(max(line.x, line.y), line.z);
+#ifdef LOOKED
+    cutHere();
+    if (!chosen && way == WIRE) {
+        vec3 size = 1.0 / rate;
+        color = wire(eye, nearest, 1.0 - smoothstep(1.0, 9.0, min(min(size.x, size.y), size.z)));
+        return;
+    }
+    if (!chosen && way == XRAY) {
+        color = xray(n, eye, edgeStrength * nearest);
+        return;
+    }
+#endif
+    float drawn = edgeStrength * nearest;
     ivec2 place = ivec2(gl_FragCoord.xy) & 3;
     float opacity = isPainted && !chosen ? max(base.a, LEAST_OPACITY) : 1.0;
     if (max(opacity, drawn) < THRESHOLDS[place.x][place.y]) {
@@ -125,12 +162,19 @@ void main() {
 }
 `;
 
+// The fragment shader of faces that draws ids instead of colours.
 export const SURFACE_PICK = `
 precision highp float;
 precision highp int;
 flat in uint triangle;
 out uvec4 id;
+#ifdef LOOKED
+${CUT_FRAGMENT}
+#endif
 void main() {
+#ifdef LOOKED
+    cutHere();
+#endif
     id = uvec4(1u, triangle, 0u, 0u);
 }
 `;
@@ -138,13 +182,16 @@ void main() {
 // The vertex shader of dots, which runs for each vertex of the mesh. Vertices that are not to be
 // shown are moved out of the clip volume.
 export const DOT_VERTEX = `${TEXTURES}
+${CUT_VERTEX}
 uniform float size;
 uniform bool isolatedOnly;
 flat out uint vertex;
+out float farness; // 0 on the near side of the unit ball, 1 on its far side
 void main() {
     vec4 place = vertexAt(gl_VertexID);
-    bool wanted = isolatedOnly ? place.w == 2.0 : place.w > 0.0;
+    bool wanted = (isolatedOnly ? place.w == 2.0 : place.w > 0.0) && !isCutAway(place.xyz);
     vec4 seen = modelViewMatrix * vec4(place.xyz, 1.0);
+    farness = clamp(0.5 + 0.5 * (modelViewMatrix[3].z - seen.z), 0.0, 1.0);
     // A dot faces the camera, so it is moved a little nearer to the camera; otherwise the surface
     // would hide parts of it.
     seen.xyz *= 0.996;
@@ -158,12 +205,20 @@ export const DOT_FRAGMENT = `
 precision highp float;
 precision highp int;
 flat in uint vertex;
+in float farness;
 uniform vec3 tint;
+uniform bool isAlone; // the mesh is drawn as points, without faces
+uniform vec3 ink;
+uniform vec3 paper;
 out vec4 color;
 void main() {
     float r = 2.0 * length(gl_PointCoord - 0.5);
     if (r > 1.0) {
         discard;
+    }
+    if (isAlone) {
+        color = vec4(mix(ink, paper, 0.82 * farness), 1.0);
+        return;
     }
     color = vec4(mix(tint, vec3(0.055, 0.070, 0.095), smoothstep(0.55, 0.75, r)), 1.0);
 }
@@ -185,14 +240,17 @@ precision highp float;
 in vec3 position;
 uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
+${CUT_VERTEX}
 uniform float size;
 flat out uint vertex;
+out float farness;
 void main() {
+    farness = 0.0;
     vec4 seen = modelViewMatrix * vec4(position, 1.0);
     seen.xyz *= 0.985;
     vertex = uint(gl_VertexID);
     gl_PointSize = size;
-    gl_Position = projectionMatrix * seen;
+    gl_Position = isCutAway(position) ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * seen;
 }
 `;
 
@@ -206,6 +264,7 @@ in float size;
 in vec3 color;
 uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
+${CUT_VERTEX}
 uniform float pixel;
 uniform float mostPixels;
 out vec3 tint;
@@ -215,7 +274,7 @@ void main() {
     vec4 seen = modelViewMatrix * vec4(position + scale * spread, 1.0);
     seen.xyz *= 0.994;
     tint = color;
-    gl_Position = projectionMatrix * seen;
+    gl_Position = isCutAway(position) ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * seen;
 }
 `;
 

@@ -10,6 +10,7 @@ import {
     GLSL3,
     Mesh,
     NoBlending,
+    NormalBlending,
     Points,
     RGBAFormat,
     RGBAIntegerFormat,
@@ -20,6 +21,7 @@ import {
 
 import { ROW } from '../geometry/geometry.js';
 import { Rows } from './rows.js';
+import { SurfaceLook } from './surface_look.js';
 import {
     DOT_FRAGMENT,
     DOT_PICK,
@@ -32,11 +34,27 @@ import {
 const DOT_SIZE = 7; // in CSS pixels, as all sizes here
 const EDGE_WIDTH = 0.75; // on each side of an edge
 
+// The size of a vertex if the mesh is drawn as points, which decreases with the number of vertices.
+const pointSize = (count) => Math.min(Math.max(9 - 1.6 * Math.log10(count + 1), 1.75), 6);
+
 export class Surface {
     fill; // faces with their edges; `dots` are the vertices
     dots;
     pickFill; // draws ids of triangles instead of colours; `pickDots` draws ids of vertices
     pickDots;
+    isHurried = false; // the proxy is drawn
+    proxy; // few triangles that are drawn instead of `fill` while the camera moves, see proxy.js
+    look = new SurfaceLook();
+    #ways; // the materials of `fill` and `proxy` by way of drawing, see #waysOf()
+    #proxyWays;
+    #proxyLook = {
+        triangles: { value: null },
+        normals: { value: null },
+        isSmooth: { value: true },
+        edgeStrength: { value: 0 },
+    };
+    #proxyCount = 0;
+    #ratio = 1;
     #mostRows;
     #textures = { vertices: { value: null }, triangles: { value: null } };
     #looks = { labels: { value: null }, palette: { value: null } };
@@ -60,30 +78,56 @@ export class Surface {
             size: { value: DOT_SIZE },
             isolatedOnly: { value: true },
             tint: { value: new Vector3(0.93, 0.95, 0.98) },
+            isAlone: { value: false },
+            ink: this.look.uniforms.ink,
+            paper: this.look.uniforms.paper,
+            cut: this.look.uniforms.cut,
         };
         this.showMaterials(null);
-        this.fill = new Mesh(new BufferGeometry(), this.material(false));
+        this.#ways = this.#waysOf({});
+        this.#proxyWays = this.#waysOf(this.#proxyLook);
+        this.fill = new Mesh(new BufferGeometry(), this.#ways.plain);
+        this.proxy = new Mesh(new BufferGeometry(), this.#proxyWays.solid);
+        this.proxy.visible = false;
         this.dots = new Points(new BufferGeometry(), dots(DOT_FRAGMENT, dotUniforms));
-        this.pickFill = new Mesh(this.fill.geometry, this.#material(SURFACE_PICK, {}));
-        this.pickDots = new Points(this.dots.geometry, dots(DOT_PICK, dotUniforms));
+        this.pickFill = new Mesh(this.fill.geometry, this.#material(SURFACE_PICK, {}, true));
+        this.pickDots = new Points(
+            this.dots.geometry,
+            dots(DOT_PICK, { ...dotUniforms, isolatedOnly: { value: true } }),
+        );
     }
 
-    // Returns a material for drawing triangles; if `isChosen` is true, it has the colour of
-    // selected faces.
-    material(isChosen) {
-        const uniforms = { chosen: { value: isChosen }, edgeWidth: this.#edgeWidth };
-        return this.#material(SURFACE_FRAGMENT, uniforms);
+    // Returns the materials for drawing triangles in the colour of selected faces, {plain, looked}.
+    chosenMaterials() {
+        const uniforms = { chosen: { value: true } };
+        return {
+            plain: this.#material(SURFACE_FRAGMENT, uniforms, false),
+            looked: this.#material(SURFACE_FRAGMENT, uniforms, true),
+        };
     }
 
-    #material(fragment, uniforms) {
+    // Returns the materials of faces: `plain`, and by way of drawing those that look in any other way.
+    #waysOf(uniforms) {
+        const values = { chosen: { value: false }, ...uniforms };
+        const make = (isLooked) => this.#material(SURFACE_FRAGMENT, values, isLooked);
+        const [xray, wire] = [make(true), make(true)];
+        Object.assign(xray, { transparent: true, blending: NormalBlending, depthWrite: false });
+        Object.assign(wire, { transparent: true, blending: NormalBlending, depthWrite: false });
+        return { plain: make(false), solid: make(true), points: make(true), xray, wire };
+    }
+
+    #material(fragment, uniforms, isLooked) {
         return new RawShaderMaterial({
             glslVersion: GLSL3,
             vertexShader: SURFACE_VERTEX,
             fragmentShader: fragment,
+            defines: isLooked ? { LOOKED: '' } : {},
             uniforms: {
                 ...this.#textures,
                 ...this.#looks,
+                ...this.look.uniforms,
                 isColored: this.#isColored,
+                edgeWidth: this.#edgeWidth,
                 ...uniforms,
             },
             side: DoubleSide,
@@ -96,12 +140,74 @@ export class Surface {
         });
     }
 
+    // --- the look ---
+
+    // Sets how faces are drawn, see SurfaceLook.
+    setLook(look) {
+        this.look.set(look);
+        this.#setWay();
+    }
+
+    // Draws the mesh plainly from now on, because the programs for other looks do not work. Returns
+    // false if this was known before.
+    giveUpLook() {
+        const isNew = this.look.giveUp();
+        this.pickFill.material = this.#material(SURFACE_PICK, {}, false);
+        this.#setWay();
+        return isNew;
+    }
+
+    // Cuts away a part of the mesh, see SurfaceLook.setCut().
+    setCut(plane) {
+        this.look.setCut(plane);
+        this.#setWay();
+    }
+
+    // Sets the triangles to draw while the camera moves, {triangles, triangleCount, normals}, or none
+    // (null). `normals` are those of normals.js.
+    setProxy(proxy) {
+        if (proxy === null && this.#proxyCount === 0) {
+            return;
+        }
+        for (const name of ['triangles', 'normals']) {
+            const texture = this.#proxyLook[name];
+            texture.value?.dispose();
+            texture.value =
+                proxy === null ? null : new Rows(proxy[name], RGBAIntegerFormat, UnsignedIntType);
+        }
+        this.#proxyCount = proxy?.triangleCount ?? 0;
+        this.proxy.geometry.setDrawRange(0, 3 * this.#proxyCount);
+        this.hurry(false);
+    }
+
+    // Draws the proxy instead of the mesh, if there is one. Returns whether it does.
+    hurry(isHurried) {
+        const before = this.isHurried;
+        this.isHurried = isHurried && this.#proxyCount > 0 && !this.look.isBroken;
+        if (this.isHurried !== before) {
+            this.#setWay();
+        }
+        return this.isHurried;
+    }
+
+    // Chooses what is drawn, and how.
+    #setWay() {
+        const { way, isPlain } = this.look;
+        this.fill.material = isPlain ? this.#ways.plain : this.#ways[way];
+        this.proxy.material = this.#proxyWays[way];
+        this.fill.visible = way !== 'points' && !this.isHurried;
+        this.proxy.visible = way !== 'points' && this.isHurried;
+        this.#setDots();
+    }
+
     // Shows a mesh, or nothing (null). Throws a RangeError if the mesh is too large for a texture;
     // then the mesh that was shown before stays visible.
     show(geometry) {
         const arrays = this.#arraysOf(geometry);
         const { vertices, triangles } = this.#textures;
         this.#geometry = geometry;
+        this.look.setNormals(null);
+        this.setProxy(null);
         vertices.value?.dispose();
         triangles.value?.dispose();
         vertices.value = new Rows(arrays.vertices, RGBAFormat, FloatType);
@@ -116,6 +222,8 @@ export class Surface {
         for (const [name, texture] of Object.entries(this.#textures)) {
             texture.value = texture.value.update(arrays[name], places[name]);
         }
+        this.look.update(places.triangles, arrays.triangles.length);
+        this.setProxy(null);
         this.#setRanges();
     }
 
@@ -166,6 +274,9 @@ export class Surface {
         [this.#textures, this.#looks]
             .flatMap((textures) => Object.values(textures))
             .forEach(({ value }) => value.forget());
+        this.look.forget();
+        this.#proxyLook.triangles.value?.forget();
+        this.#proxyLook.normals.value?.forget();
     }
 
     // Returns the arrays of a mesh, or arrays of zeros if there is no mesh. Throws a RangeError if
@@ -193,15 +304,24 @@ export class Surface {
     }
 
     #setDots() {
-        const visible = this.#allVertices || (this.#geometry?.hasIsolated ?? false);
-        this.dots.material.uniforms.isolatedOnly.value = !this.#allVertices;
-        this.dots.visible = visible;
-        this.pickDots.visible = visible;
+        const isAlone = this.look.way === 'points';
+        const isPicked = this.#allVertices || (this.#geometry?.hasIsolated ?? false);
+        const { uniforms } = this.dots.material;
+        uniforms.isolatedOnly.value = !this.#allVertices && !isAlone;
+        uniforms.isAlone.value = isAlone && !this.#allVertices;
+        const size = uniforms.isAlone.value
+            ? pointSize(this.#geometry?.vertexCount ?? 0)
+            : DOT_SIZE;
+        uniforms.size.value = size * this.#ratio;
+        this.dots.visible = isAlone || (isPicked && !this.isHurried);
+        this.pickDots.material.uniforms.isolatedOnly.value = !this.#allVertices;
+        this.pickDots.visible = isPicked;
     }
 
     // Sets the number of screen pixels per CSS pixel.
     setPixelRatio(ratio) {
-        this.dots.material.uniforms.size.value = DOT_SIZE * ratio;
+        this.#ratio = ratio;
         this.#edgeWidth.value = EDGE_WIDTH * ratio;
+        this.#setDots();
     }
 }

@@ -3,7 +3,8 @@
 // in order.
 //
 //   rings      [{name, kind, ids}]   the neighbours, in the server's order
-//   measures   [{name, value}]       such as a length or an angle, as text
+//   measures   [{name, value, power}]   such as a length or an angle, as text without a unit; `power`
+//                                    is 1 for lengths, see units.js, and missing for angles
 //   halfedges  [{id, origin, target, face, across, role}]: half-edges to draw as arrows; `across`
 //              is the face of the twin, `role` says what the half-edge is to a selected one:
 //              'self', 'next', 'prev', 'twin', or 'near' for all others
@@ -107,7 +108,7 @@ const readers = {
         ]);
         const measures = [];
         if (lives(whole)) {
-            measures.push({ name: 'length', value: formatMeasure(whole.length) });
+            measures.push({ name: 'length', value: formatMeasure(whole.length), power: 1 });
         }
         if ([from, to, before].every(lives)) {
             const [behind] = await ask([{ get: { vertex: before.origin } }]);

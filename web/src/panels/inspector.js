@@ -2,6 +2,7 @@
 // elements.
 
 import { formatMeasure, make } from '../kit/dom.js';
+import { unitText } from '../kit/units.js';
 import { TITLES, linkTo, shortened } from '../kit/element_links.js';
 import { explained } from '../kit/words.js';
 
@@ -79,8 +80,9 @@ export class Inspector {
     #showAround({ rings, measures }) {
         this.#around.parentElement.hidden = rings.length + measures.length === 0;
         this.#around.replaceChildren(
-            ...measures.flatMap(({ name, value }) => {
-                const description = make('dd', {}, value);
+            ...measures.flatMap(({ name, value, power }) => {
+                const unit = power === undefined ? '' : unitText(power);
+                const description = make('dd', {}, value + unit);
                 description.dataset.measure = name;
                 return [make('dt', {}, name), description];
             }),

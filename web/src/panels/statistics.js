@@ -1,6 +1,7 @@
 // statistics.js - shows the server's summary of the open mesh. Nothing is computed here.
 
-import { formatCount, formatMeasure, formatNumberOf, make } from '../kit/dom.js';
+import { formatCount, formatNumberOf, make } from '../kit/dom.js';
+import { formatSize } from '../kit/units.js';
 
 export class Statistics {
     #sizes;
@@ -37,8 +38,8 @@ function factsOf(summary) {
         ['closed', 'Closed', closed ? 'yes' : 'no'],
         ['manifold', 'Manifold', manifold ? 'yes' : 'no'],
         ['degrees', 'Face degrees', degreesOf(degrees)],
-        ['area', 'Area', formatMeasure(area)],
-        ['volume', 'Volume', closed ? formatMeasure(volume) : 'not closed'],
+        ['area', 'Area', formatSize(area, 2)],
+        ['volume', 'Volume', closed ? formatSize(volume, 3) : 'not closed'],
         ['revision', 'Revision', `${revision}`],
     ];
     return rows.map(([name, title, value]) => pair('div', name, title, value));

@@ -16,6 +16,8 @@ const KEYS = [
     ['F', 'f', 'Show the selection, or the whole mesh', 'frame'],
     ['+', '+', 'Zoom in', 'zoomIn'],
     ['-', '-', 'Zoom out', 'zoomOut'],
+    ['V', 'v', 'Open or close the panel of the view', 'view'],
+    ['Z', 'z', 'Draw the mesh solid, as X-ray, as wires or as points', 'nextWay'],
     ['G', 'g', 'Move the selection by dragging', 'move'],
     ['E', 'e', 'Extrude faces or boundary edges by dragging', 'extrude'],
     ['I', 'i', 'Inset faces by dragging', 'inset'],

@@ -24,12 +24,13 @@ export class Stage {
     // for the kind of element to pick. `content()` returns the Content that is shown, or null.
     // `onPick(chosen, also)` is called after a click with the result of choose(); `also` says that
     // the Shift key was held. `onMode(kind)` is called when clicks begin to pick elements of another
-    // kind. `onRest()` is called when the camera has come to rest.
-    constructor(canvas, { noWebGL, contextLost, modes }, { content, onPick, onMode, onRest, onError }) {
+    // kind. `onRest()` is called when the camera has come to rest, `onFrame()` after each frame;
+    // `onSlow()` and `onBroken()` are explained in Renderer.
+    constructor(canvas, { noWebGL, contextLost, modes }, { content, ...acts }) {
         this.#canvas = canvas;
         this.#modes = modes;
         this.#contentNow = content;
-        this.#acts = { onPick, onMode, onRest, onError };
+        this.#acts = acts;
         try {
             this.#renderer = new Renderer(canvas, {
                 onFrame: (label) => this.#markFrame(label),
@@ -37,11 +38,13 @@ export class Stage {
                     contextLost.hidden = !lost;
                 },
                 onMove: (isHeld) => this.#moved(isHeld),
+                onSlow: acts.onSlow,
+                onBroken: acts.onBroken,
             });
         } catch (error) {
             noWebGL.hidden = false;
             if (!(error instanceof NoWebGL)) {
-                onError(error);
+                acts.onError(error);
             }
         }
         modes.addEventListener('change', () => this.setPickMode(this.#pickMode));
@@ -100,6 +103,12 @@ export class Stage {
                 this.#canvas.dataset[name] = label[name];
             }
         }
+        this.#acts.onFrame();
+    }
+
+    // The renderer, whose functions set the look; null if the browser has no WebGL.
+    get renderer() {
+        return this.#renderer;
     }
 
     // The renderer if the mesh is drawn and marks can be drawn on it, or null. Renderer has the
@@ -185,6 +194,11 @@ export class Stage {
         return this.#renderer.matrix;
     }
 
+    // The size of the canvas in CSS pixels, {width, height}.
+    get size() {
+        return { width: this.#canvas.clientWidth, height: this.#canvas.clientHeight };
+    }
+
     // Position of the camera and of the point that it looks at, six numbers; undefined without a
     // renderer.
     get camera() {
@@ -199,9 +213,10 @@ export class Stage {
 
     // --- clicks ---
 
-    // Scrolls the page so that the view is visible.
-    bringIntoSight() {
-        this.#canvas.scrollIntoView({ block: 'nearest' });
+    // Scrolls the page so that the view is visible or, with 'start', so that it is at the top of the
+    // window.
+    bringIntoSight(block = 'nearest') {
+        this.#canvas.scrollIntoView({ block });
     }
 
     get #pickMode() {
