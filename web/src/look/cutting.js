@@ -15,6 +15,10 @@ export class Cutting {
         this.#acts = { onCut, onError };
     }
 
+    get isRunning() {
+        return this.#running !== null;
+    }
+
     // Computes the outline of a plane; `isChanged` says that the geometry has changed since the last
     // call, so that what is being computed is worthless.
     want(geometry, plane, isChanged) {

@@ -80,6 +80,11 @@ export class Look {
         this.#set(toState(value));
     }
 
+    // Whether something that the look needs is being computed.
+    get isBusy() {
+        return this.#normals.isRunning || this.#proxy.isRunning || this.#cutting.isRunning;
+    }
+
     // Goes on to the next way of drawing faces.
     nextWay() {
         if (!this.#needs.disabled) {
