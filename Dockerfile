@@ -24,15 +24,15 @@ ARG REVISION=
 RUN make build/hedged COMMIT="$REVISION" && strip build/hedged
 
 # --- its page ---
-FROM ${DEBIAN} AS page
-WORKDIR /src
-COPY .ci/deps .ci/
+# The manual shows answers of this very program, so the page is made where the program can run.
+FROM build AS page
 RUN sh .ci/deps web
 COPY web/package.json web/package-lock.json web/
 RUN cd web && npm ci --omit=dev --no-audit --no-fund
 COPY LICENSE ./
 COPY web web
-RUN cd web && WEB_OUT=/src/build/web npm run build
+RUN node web/manual/record.mjs /src/build/hedged /src/build/manual.json && \
+    cd web && WEB_OUT=/src/build/web MANUAL=/src/build/manual.json npm run build
 
 # --- what runs ---
 FROM ${DEBIAN}

@@ -142,7 +142,7 @@ WITH_DAEMON = $(filter e2e transport web install soak hostile durable tests/e2e/
 
 NEEDS.all          := build
 NEEDS.run          := build web
-NEEDS.page         := web
+NEEDS.page         := build web
 NEEDS.programs     := build test
 NEEDS.built         = $(NEEDS.test)
 NEEDS.ready         = $(NEEDS.test) lint crosscheck clients fuzz
@@ -292,14 +292,25 @@ $(FUZZERS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) \
 
 # --- the page ------------------------------------------------------------------------------
 
-page: $(STAMPS)/page ## the browser's page, build/web
+page: $(STAMPS)/page ## the browser's page, build/web, with the manual
 
 $(STAMPS)/modules: web/package.json web/package-lock.json | $(INSTALLED)
 	cd web && npm ci --no-audit --no-fund
 	@touch $@
 
-$(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
-	cd web && WEB_OUT=$(abspath $(PAGE)) npm run build
+# The manual is made from the daemon's tables and from its answers to the manual's requests. The file
+# with both changes only if one of them has changed, so that a new daemon does not always cost a new
+# page.
+MANUAL := build/manual.json
+$(STAMPS)/recorded: $(HEDGED) $(filter web/manual/% web/src/manual/%,$(PAGE_FILES)) | $(INSTALLED)
+	@mkdir -p $(@D)
+	node web/manual/record.mjs $(abspath $(HEDGED)) $(MANUAL)
+	@touch $@
+
+$(MANUAL): $(STAMPS)/recorded ;
+
+$(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules $(MANUAL)
+	cd web && WEB_OUT=$(abspath $(PAGE)) MANUAL=$(abspath $(MANUAL)) npm run build
 	@touch $@
 
 # --- tests ---------------------------------------------------------------------------------

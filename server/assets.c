@@ -8,6 +8,7 @@
 #include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -73,8 +74,21 @@ static bool carries_hash(const char *name)
            strspn(dash + 1, "abcdef0123456789") >= length;
 }
 
-/* Adds a file of the page: its bytes are served under `path`, its media type follows from `name`.
- * Returns false when memory is out. */
+/* Removes the suffix .html from a path, and the name "index" that may be left. */
+static void shorten(char *path)
+{
+    static const char suffix[] = ".html", index[] = "/index";
+    size_t length = strlen(path), tail = sizeof suffix - 1;
+    if (length > tail && strcmp(path + length - tail, suffix) == 0) {
+        path[length - tail] = '\0';
+        if (strcmp(path, index) == 0) {
+            path[1] = '\0';
+        }
+    }
+}
+
+/* Adds a file of the page: its bytes are served under `path`, but an HTML file without the suffix
+ * .html. The media type follows from `name`. Returns false when memory is out. */
 static bool add(srv_assets *assets, const char *path, const char *name, const char *bytes,
                 size_t length)
 {
@@ -86,6 +100,7 @@ static bool add(srv_assets *assets, const char *path, const char *name, const ch
         return false;
     }
     snprintf(item->path, sizeof item->path, "%s", path);
+    shorten(item->path);
     assets->count++;
     assets->bytes += length;
     return true;
@@ -148,17 +163,45 @@ static bool add_file(srv_assets *assets, const file *from, char *message, size_t
     return ok;
 }
 
-/* Adds an HTML file, which is served under its name without the suffix .html, or as "/" if it is
- * index.html. */
-static bool add_page(srv_assets *assets, int folder, const char *name, char *message, size_t size)
+/* Adds the files of a folder, if it exists, and those of the folders in it down to `depth` levels.
+ * Their paths begin with from->prefix. Hidden files are skipped. Returns false, with a sentence in
+ * `message`, if a file cannot be added. */
+static bool add_folder(srv_assets *assets, const file *from, int depth, char *message, size_t size)
 {
-    size_t before = assets->count;
-    bool ok = add_file(assets, &(file){folder, name, "/"}, message, size);
-    if (assets->count > before) {
-        char *path = assets->items[before].path;
-        path[strcmp(name, "index.html") == 0 ? 1 : strcspn(path, ".")] = '\0';
+    int fd = openat(from->folder, from->name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    DIR *listing = fd < 0 ? NULL : fdopendir(fd);
+    if (listing == NULL) {
+        if (fd >= 0) {
+            close(fd);
+        }
+        return true;
     }
+    bool ok = true;
+    const struct dirent *entry;
+    while (ok && (entry = readdir(listing)) != NULL) {
+        char prefix[PATH_SIZE];
+        if (entry->d_name[0] == '.') {
+            continue;
+        }
+        ok = add_file(assets, &(file){fd, entry->d_name, from->prefix}, message, size);
+        if (ok && depth > 0 &&
+            snprintf(prefix, sizeof prefix, "%s%s/", from->prefix, entry->d_name) <
+                (int)sizeof prefix) {
+            ok = add_folder(assets, &(file){fd, entry->d_name, prefix}, depth - 1, message, size);
+        }
+    }
+    closedir(listing);
     return ok;
+}
+
+static int compare_paths(const void *a, const void *b)
+{
+    return strcmp(((const asset *)a)->path, ((const asset *)b)->path);
+}
+
+static int compare_path(const void *path, const void *item)
+{
+    return strcmp(path, ((const asset *)item)->path);
 }
 
 static bool load(srv_assets *assets, const char *folder, char *message, size_t size)
@@ -168,27 +211,16 @@ static bool load(srv_assets *assets, const char *folder, char *message, size_t s
         snprintf(message, size, "%.200s is not a folder with the web page", folder);
         return false;
     }
-    bool ok = add_page(assets, root, "index.html", message, size);
+    bool ok = add_file(assets, &(file){root, "index.html", "/"}, message, size);
     if (ok && assets->count == 0) {
         snprintf(message, size, "%.200s has no index.html", folder);
         ok = false;
     }
-    ok = ok && add_page(assets, root, "docs.html", message, size);
-    int inner = ok ? openat(root, "assets", O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
-    DIR *listing = inner < 0 ? NULL : fdopendir(inner);
-    if (listing != NULL) {
-        const struct dirent *entry;
-        while (ok && (entry = readdir(listing)) != NULL) {
-            if (entry->d_name[0] != '.') {
-                const file from = {inner, entry->d_name, "/assets/"};
-                ok = add_file(assets, &from, message, size);
-            }
-        }
-        closedir(listing);
-    } else if (inner >= 0) {
-        close(inner);
-    }
+    ok = ok && add_file(assets, &(file){root, "docs.html", "/"}, message, size) &&
+         add_folder(assets, &(file){root, "docs", "/docs/"}, 1, message, size) &&
+         add_folder(assets, &(file){root, "assets", "/assets/"}, 0, message, size);
     close(root);
+    qsort(assets->items, assets->count, sizeof *assets->items, compare_paths);
     return ok;
 }
 
@@ -230,12 +262,9 @@ void srv_assets_free(srv_assets *assets)
 const api_asset *srv_assets_find(void *context, const char *path)
 {
     const srv_assets *assets = context;
-    for (size_t i = 0; i < assets->count; i++) {
-        if (strcmp(assets->items[i].path, path) == 0) {
-            return &assets->items[i].served;
-        }
-    }
-    return NULL;
+    const asset *found =
+        bsearch(path, assets->items, assets->count, sizeof *assets->items, compare_path);
+    return found == NULL ? NULL : &found->served;
 }
 
 static bool is_folder(const char *path)

@@ -1,7 +1,8 @@
 /* assets.h - the files of the web page, read into memory once at the start.
  *
- * The files are in a folder that `make page` has made. index.html is served as "/", docs.html (if
- * it exists) as "/docs", and the regular files of assets/ as "/assets/NAME". Symbolic links are not
+ * The files are in a folder that `make page` has made. index.html is served as "/", the manual
+ * docs.html (if it exists) as "/docs", docs/NAME.html as "/docs/NAME", docs/PART/NAME.html as
+ * "/docs/PART/NAME", and the regular files of assets/ as "/assets/NAME". Symbolic links are not
  * followed and other files are not read. Requests are answered from memory and never reach the file
  * system. If there is no such folder, "/" is a plain notice. */
 #ifndef HE_SERVER_ASSETS_H
@@ -14,7 +15,7 @@
 
 typedef struct srv_assets srv_assets;
 
-enum { SRV_ASSET_COUNT = 512, SRV_ASSET_BYTES = 64 << 20 };
+enum { SRV_ASSET_COUNT = 1024, SRV_ASSET_BYTES = 64 << 20 };
 
 /* Reads the files of the page from `folder`; NULL if there is no such folder. Returns NULL when
  * memory is out. If the folder cannot be used, `message` says why; otherwise `message` is "". */

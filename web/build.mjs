@@ -1,16 +1,21 @@
 // build.mjs - bundles the page: `npm run build` writes these files to the folder that the variable
 // WEB_OUT names, or to ../build/web if it is not set.
 //
-//   index.html, docs.html  the pages, with the names of the files below
+//   index.html             the page, with the names of the files below
+//   docs.html, docs/       the pages of the manual, if the variable MANUAL names the file that
+//                          manual/record.mjs has written
 //   assets/NAME-HASH.js    scripts, and in the same way .css and .svg; HASH is computed from the
 //                          contents, so browsers may keep the files for ever
 //   assets/LICENSES.txt    the licences of everything that is in the bundle
 
+import { createHash } from 'node:crypto';
 import { mkdir, readFile, rm, writeFile } from 'node:fs/promises';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 import { build } from 'esbuild';
+
+import { filesOf, indexOf, pagesOf } from './manual/pages.mjs';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 const out = path.resolve(here, process.env.WEB_OUT ?? '../build/web');
@@ -46,13 +51,32 @@ const made = new Map(
         .map(([file, { entryPoint }]) => [entryPoint, `assets/${path.basename(file)}`]),
 );
 const unused = new Set(made.keys());
-for (const name of ['index.html', 'docs.html']) {
-    await writeFile(path.join(out, name), await page(name));
-}
-if (unused.size > 0) {
-    throw new Error(`no page uses ${[...unused].join(', ')}`);
+await writeFile(path.join(out, 'index.html'), await page('index.html'));
+await rm(path.join(out, 'docs'), { recursive: true, force: true });
+if (process.env.MANUAL) {
+    await makeManual(JSON.parse(await readFile(process.env.MANUAL, 'utf8')));
+    if (unused.size > 0) {
+        throw new Error(`no page uses ${[...unused].join(', ')}`);
+    }
 }
 await writeFile(path.join(out, 'assets/LICENSES.txt'), await licenses(metafile.inputs));
+
+// Writes the pages of the manual, and the list in which their search looks.
+async function makeManual(recorded) {
+    const pages = pagesOf(recorded);
+    const index = JSON.stringify(indexOf(pages));
+    const hash = createHash('sha256').update(index).digest('hex').slice(0, 8).toUpperCase();
+    const assets = { index: `assets/docs-${hash}.json` };
+    for (const [name, source] of [['style', 'src/docs.css'], ['script', 'src/docs.js'], ['icon', 'src/icon.svg']]) {
+        assets[name] = made.get(source);
+        unused.delete(source);
+    }
+    await writeFile(path.join(out, assets.index), index);
+    for (const [name, text] of filesOf(pages, recorded, assets)) {
+        await mkdir(path.dirname(path.join(out, name)), { recursive: true });
+        await writeFile(path.join(out, name), text);
+    }
+}
 
 // Returns the HTML of a page in which the name of each source file is replaced by the name of the
 // bundled file.

@@ -193,8 +193,8 @@ typedef struct body {
 static void write_example(api_out *out, const body *b, const char *type, bool json)
 {
     api_text text = {0};
-    uint32_t found = b->route == NULL ? api_example_problem(b->examples)
-                                      : api_example_find(b->examples, b->part, b->route, type);
+    uint32_t found = b->route != NULL ? api_example_find(b->examples, b->part, b->route, type)
+                                      : (json ? api_example_problem(b->examples) : HE_NONE);
     if (found != HE_NONE && api_example_body(b->examples, found, b->part, &text)) {
         api_text_add_char(&text, '\0');
         out->text->failed = out->text->failed || text.failed;
@@ -318,6 +318,9 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     if (status == 201) {
         write_header(out, "Location", "The path of the new mesh.", true);
     }
+    if (status == 303) {
+        write_header(out, "Location", "The path of the page, relative to this path.", true);
+    }
     if (route->flags & (API_IDEMPOTENCY_KEY | API_IDEMPOTENCY_KEY_NEW)) {
         write_header(
             out, "Idempotency-Replayed",
@@ -348,6 +351,7 @@ static void write_success(api_out *out, const api_examples *examples, const api_
         : status == 202
             ? "The request is not finished yet: the answer is the job that will finish it."
         : status == 204 ? "Done. The answer has no body."
+        : status == 303 ? "The page is in the manual: Location has its path."
         : status == 304 ? "The client's copy is up to date, so the answer has no body."
                         : "Success.";
     api_out_object_begin(out);
@@ -405,6 +409,31 @@ static void write_refusal(api_out *out, int status)
     api_schema_ref(out, "responses", name);
 }
 
+/* Writes the response `row->name` that describes a refusal; `types` are its media types. */
+static void write_problem(api_out *out, const api_examples *examples, const refusal *row,
+                          const char *const *types)
+{
+    api_out_key(out, row->name);
+    api_out_object_begin(out);
+    api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
+    api_out_key(out, "headers");
+    api_out_object_begin(out);
+    if (row->header != NULL) {
+        write_header(out, row->header, row->doc, row->required);
+    }
+    refer_to_headers(out, coding_headers);
+    refer_to_headers(out, rate_headers);
+    api_out_object_end(out);
+    write_content(out, &(body){.types = types,
+                               .schema = "problem",
+                               .examples = examples,
+                               .part = API_EXAMPLE_RESPONSE});
+    api_out_object_end(out);
+}
+
+static const char *const problem_media[] = {"application/problem+json", NULL};
+static const char *const missing_media[] = {"application/problem+json", "text/html", NULL};
+
 static void write_responses(api_out *out, const api_examples *examples, const api_route *route)
 {
     char code[8];
@@ -425,6 +454,10 @@ static void write_responses(api_out *out, const api_examples *examples, const ap
     }
     for (const int *status = api_route_common(); *status != 0; status++) {
         snprintf(code, sizeof code, "%d", *status);
+        if (*status == 404 && (route->flags & API_MISSING_PAGE)) {
+            write_problem(out, examples, &(refusal){.name = code}, missing_media);
+            continue;
+        }
         api_out_key(out, code);
         write_refusal(out, *status);
     }
@@ -635,27 +668,6 @@ static void write_security_schemes(api_out *out)
     api_out_object_end(out);
 }
 
-static void write_problem(api_out *out, const api_examples *examples, const refusal *row)
-{
-    static const char *const problem[] = {"application/problem+json", NULL};
-    api_out_key(out, row->name);
-    api_out_object_begin(out);
-    api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
-    api_out_key(out, "headers");
-    api_out_object_begin(out);
-    if (row->header != NULL) {
-        write_header(out, row->header, row->doc, row->required);
-    }
-    refer_to_headers(out, coding_headers);
-    refer_to_headers(out, rate_headers);
-    api_out_object_end(out);
-    write_content(out, &(body){.types = problem,
-                               .schema = "problem",
-                               .examples = examples,
-                               .part = API_EXAMPLE_RESPONSE});
-    api_out_object_end(out);
-}
-
 static void write_shared_headers(api_out *out)
 {
     static const char *const codings[] = {"gzip", "zstd", NULL};
@@ -697,9 +709,9 @@ static void write_components(api_out *out, const api_examples *examples)
     write_security_schemes(out);
     api_out_key(out, "responses");
     api_out_object_begin(out);
-    write_problem(out, examples, &(refusal){.name = "problem"});
+    write_problem(out, examples, &(refusal){.name = "problem"}, problem_media);
     for (size_t i = 0; i < HEADED_PROBLEMS; i++) {
-        write_problem(out, examples, &headed_problems[i]);
+        write_problem(out, examples, &headed_problems[i], problem_media);
     }
     api_out_object_end(out);
     api_out_object_end(out);

@@ -230,6 +230,13 @@ static void write_change(api_out *out, const void *value)
     api_out_array_end(out);
 }
 
+static void write_page(api_out *out, const void *value)
+{
+    char path[64];
+    snprintf(path, sizeof path, "/docs/operations/%s", ((const he_op *)value)->name);
+    api_out_string(out, path);
+}
+
 static const api_field op_fields[] = {
     API_FIELD("name", "text", he_op, name, .required = true),
     API_FIELD("doc", "text", he_op, doc, .required = true),
@@ -241,6 +248,8 @@ static const api_field op_fields[] = {
     API_FIELD_MADE("refusals", "*text", write_refusals, .required = true),
     API_FIELD_MADE("change", "#triple?", write_change, .required = true,
                    .doc = "Change in the numbers of vertices, edges and faces; null if it varies."),
+    API_FIELD_MADE("docs", "text", write_page, .required = true,
+                   .doc = "The path of its page in the manual."),
 };
 const api_record api_operation_row_record = API_RECORD("operation_row", op_fields);
 

@@ -6,6 +6,6 @@
 #include "api/json/record.h"
 
 extern const api_record api_health_record, api_readiness_record, api_version_record,
-    api_index_record;
+    api_index_record, api_problem_row_record, api_problems_record;
 
 #endif

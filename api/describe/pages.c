@@ -4,6 +4,7 @@
 #include "api/request/handlers.h"
 
 #include <stdatomic.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The Content-Security-Policy of the viewer page, which may run its own scripts and connect to its
@@ -50,7 +51,7 @@ static const api_field version_fields[] = {
 const api_record api_version_record = API_RECORD("version", version_fields);
 
 typedef struct shown_index {
-    const char *name, *version, *meshes, *jobs, *operations, *openapi, *docs;
+    const char *name, *version, *meshes, *jobs, *operations, *problems, *openapi, *docs;
 } shown_index;
 
 static const api_field index_fields[] = {
@@ -62,12 +63,58 @@ static const api_field index_fields[] = {
               .doc = "The path of the list of jobs."),
     API_FIELD("operations", "text", shown_index, operations, .required = true,
               .doc = "The path of the table of operations."),
+    API_FIELD("problems", "text", shown_index, problems, .required = true,
+              .doc = "The path of the table of problems."),
     API_FIELD("openapi", "text", shown_index, openapi, .required = true,
               .doc = "The path of the OpenAPI document."),
     API_FIELD("docs", "text", shown_index, docs, .required = true,
               .doc = "The path of the manual."),
 };
 const api_record api_index_record = API_RECORD("index", index_fields);
+
+/* The values of the JSON members of one row of the table of problems. */
+typedef struct shown_code {
+    const char *code, *title, *doc;
+    int status;
+    char docs[64];
+} shown_code;
+
+static const api_field code_fields[] = {
+    API_FIELD("code", "text", shown_code, code, .required = true),
+    API_FIELD("status", "integer", shown_code, status, .required = true,
+              .doc = "The usual HTTP status; if an element of the path does not exist, it is 404 "
+                     "or 410 instead of 422."),
+    API_FIELD("title", "text", shown_code, title, .required = true),
+    API_FIELD("doc", "text", shown_code, doc, .required = true, .doc = "What the problem means."),
+    API_FIELD("docs", "text", shown_code, docs, .required = true,
+              .doc = "The path of its page in the manual."),
+};
+const api_record api_problem_row_record = API_RECORD("problem_row", code_fields);
+
+/* The table of problems, from which the JSON members of the answer are written. */
+typedef struct code_table {
+    int count;
+} code_table;
+
+static void write_codes(api_out *out, const void *value)
+{
+    const code_table *table = value;
+    api_out_array_begin(out);
+    for (int code = HE_OK + 1; code < table->count; code++) {
+        shown_code shown = {.code = api_code_slug(code),
+                            .status = api_code_http(code),
+                            .title = api_code_title(code),
+                            .doc = api_code_explanation(code)};
+        snprintf(shown.docs, sizeof shown.docs, "/docs/problems/%s", shown.code);
+        api_record_write(out, &api_problem_row_record, &shown);
+    }
+    api_out_array_end(out);
+}
+
+static const api_field problems_fields[] = {
+    API_FIELD_MADE("problems", "*#problem_row", write_codes, .required = true),
+};
+const api_record api_problems_record = API_RECORD("problems", problems_fields);
 
 static void answer(api_exchange *x, const api_record *record, const void *value)
 {
@@ -114,26 +161,56 @@ void api_index_get(api_exchange *x)
                           .meshes = "/v1/meshes",
                           .jobs = "/v1/jobs",
                           .operations = "/v1/operations",
+                          .problems = "/v1/problems",
                           .openapi = "/v1/openapi.json",
                           .docs = "/docs"});
 }
 
-void api_page_get(api_exchange *x)
+/* Returns the file of the pages that is served under a path, or NULL. */
+static const api_asset *find_asset(const api_exchange *x, const char *path)
 {
     const api_options *options = &x->service->options;
+    return options->asset == NULL ? NULL : options->asset(options->asset_context, path);
+}
+
+static void put_page_headers(api_exchange *x)
+{
+    api_answer_header(x, "Content-Security-Policy", viewer_policy);
+    api_answer_header(x, "Referrer-Policy", "no-referrer");
+}
+
+/* Answers that nothing is at the path: with a page if the route has one for this and the client
+ * accepts HTML, otherwise with a problem. */
+static void answer_missing(api_exchange *x)
+{
+    const char *accept = x->request.headers[API_HEADER_ACCEPT];
+    const api_asset *page =
+        x->route->flags & API_MISSING_PAGE ? find_asset(x, "/docs/404") : NULL;
+    if (page == NULL || accept == NULL || strstr(accept, "text/html") == NULL) {
+        api_fail(x, API_NO_SUCH_ROUTE, "the server has no path \"%.150s\"", x->request.path);
+    } else {
+        const char *bytes;
+        size_t length;
+        api_kept_bytes(page->body, &bytes, &length);
+        put_page_headers(x);
+        api_answer_bytes(x, 404, page->type, bytes, length);
+        x->kept = page->body;
+    }
+}
+
+void api_page_get(api_exchange *x)
+{
     /* The path is looked up as it was received, without decoding, because paths of assets contain
      * no percent escapes. */
-    const api_asset *asset =
-        options->asset == NULL ? NULL : options->asset(options->asset_context, x->request.path);
+    const api_asset *asset = find_asset(x, x->request.path);
     if (asset == NULL) {
-        api_fail(x, API_NO_SUCH_ROUTE, "the server has no path \"%.150s\"", x->request.path);
+        answer_missing(x);
         return;
     }
     api_answer_header(x, "Cache-Control",
                       asset->immutable ? "public, max-age=31536000, immutable" : "no-cache");
     if (strncmp(asset->type, "text/html", 9) == 0) {
-        api_answer_header(x, "Content-Security-Policy", viewer_policy);
-        api_answer_header(x, "Referrer-Policy", "no-referrer");
+        put_page_headers(x);
     }
     api_answer_kept(x, asset->type, asset->body);
 }
@@ -143,6 +220,14 @@ void api_problem_get(api_exchange *x)
     int code = api_code_find(x->code);
     if (code < 0) {
         api_fail(x, API_NO_SUCH_ROUTE, "no problem has the code \"%.100s\"", x->code);
+        return;
+    }
+    char page[64];
+    snprintf(page, sizeof page, "/docs/problems/%s", api_code_slug(code));
+    if (find_asset(x, page) != NULL) {
+        /* The reference is relative, so that it is correct behind a proxy that adds a prefix. */
+        api_answer_header_format(x, "Location", "..%s", page);
+        api_answer_empty(x, 303);
         return;
     }
     api_problem_page(code, &x->text);
@@ -185,6 +270,17 @@ static void write_operations(api_out *out, const api_options *options)
 void api_operations_get(api_exchange *x)
 {
     answer_document(x, &x->service->operations, write_operations);
+}
+
+static void write_problems(api_out *out, const api_options *options)
+{
+    (void)options;
+    api_record_write(out, &api_problems_record, &(code_table){API_CODE_COUNT});
+}
+
+void api_problems_get(api_exchange *x)
+{
+    answer_document(x, &x->service->problems, write_problems);
 }
 
 static void write_openapi(api_out *out, const api_options *options)

@@ -628,6 +628,18 @@ static const api_route routes[] = {
      .doc = "Every operation with its parameters, its results, the errors it can give, and how it "
             "changes the numbers of vertices, edges and faces."},
     {.method = "GET",
+     .path = "/v1/problems",
+     .name = "list_problems",
+     .run = api_problems_get,
+     .role = API_ROLE_OPEN,
+     .flags = API_STORELESS,
+     .produces = json,
+     .statuses = {200, 304},
+     .response = "problems",
+     .summary = "List the problems",
+     .doc = "Every code that the member `code` of a problem can have, with its usual status, its "
+            "title and an explanation."},
+    {.method = "GET",
      .path = "/v1/openapi.json",
      .name = "get_openapi",
      .run = api_openapi_get,
@@ -700,8 +712,8 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "index",
      .summary = "Where to begin",
-     .doc = "The paths of the list of meshes, the list of jobs, the list of operations, the "
-            "OpenAPI document and the manual."},
+     .doc = "The paths of the list of meshes, the list of jobs, the list of operations, the list "
+            "of problems, the OpenAPI document and the manual."},
     {.method = "GET",
      .path = "/problems/{code}",
      .name = "get_problem",
@@ -709,10 +721,11 @@ static const api_route routes[] = {
      .role = API_ROLE_OPEN,
      .flags = API_FIXED,
      .produces = html,
-     .statuses = {200},
+     .statuses = {200, 303},
      .summary = "What a problem means",
      .doc = "A page that explains the code of a problem. The member `type` of a problem links to "
-            "this page."},
+            "this page. If the server has its manual, the answer is 303 and leads to the page of "
+            "the manual."},
     {.method = "GET",
      .path = "/",
      .name = "get_viewer",
@@ -731,8 +744,21 @@ static const api_route routes[] = {
      .flags = API_FIXED,
      .produces = html,
      .statuses = {200, 304},
-     .summary = "The manual of the API",
-     .doc = "The OpenAPI document as a page for readers."},
+     .summary = "The manual",
+     .doc = "The first page of the manual."},
+    {.method = "GET",
+     .path = "/docs/{asset}",
+     .name = "get_docs_page",
+     .run = api_page_get,
+     .role = API_ROLE_OPEN,
+     .flags = API_FIXED | API_MISSING_PAGE,
+     .produces = html,
+     .statuses = {200, 304},
+     .summary = "A page of the manual",
+     .doc = "Guides, and a page for each operation (`/docs/operations/edge_split`), each route "
+            "(`/docs/routes/create_mesh`), each type (`/docs/types/edited`) and each problem "
+            "(`/docs/problems/boundary_edge`). If there is no such page, a client that accepts "
+            "HTML gets a page with the status 404."},
     {.method = "GET",
      .path = "/assets/{asset}",
      .name = "get_asset",

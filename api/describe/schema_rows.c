@@ -34,6 +34,8 @@ static const api_record *const records[] = {
     &api_readiness_record,
     &api_version_record,
     &api_index_record,
+    &api_problem_row_record,
+    &api_problems_record,
     &api_token_record,
     &api_ticket_record,
     &api_reloaded_record,

@@ -41,9 +41,9 @@
 
 struct api_service {
     st_store *store;
-    /* The documents GET /v1/operations and GET /v1/openapi.json. They depend on the options only
-     * and are made when first requested; NULL: not yet. */
-    _Atomic(api_kept *) operations, openapi;
+    /* The documents GET /v1/operations, GET /v1/problems and GET /v1/openapi.json. They depend on
+     * the options only and are made when first requested; NULL: not yet. */
+    _Atomic(api_kept *) operations, problems, openapi;
     api_route_table table;
     api_route_tree *routes; /* `table` as a tree of path segments */
     api_options options;

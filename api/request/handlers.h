@@ -12,7 +12,8 @@ void api_ready_get(api_exchange *x);
 void api_version_get(api_exchange *x);
 void api_index_get(api_exchange *x);
 void api_metrics_get(api_exchange *x);
-void api_page_get(api_exchange *x); /* serves "/" and "/assets/..." */
+void api_page_get(api_exchange *x); /* serves "/", "/docs/..." and "/assets/..." */
+void api_problems_get(api_exchange *x);
 void api_problem_get(api_exchange *x);
 void api_operations_get(api_exchange *x);
 void api_openapi_get(api_exchange *x);

@@ -106,6 +106,9 @@ enum {
     API_REHEARSED = 512,
     /* The limits of clients do not apply to the route: monitoring must always get an answer. */
     API_UNLIMITED = 8192,
+    /* If nothing is at the path, a client that accepts HTML gets the page /docs/404 with the status
+     * 404, and other clients a problem. */
+    API_MISSING_PAGE = 16384,
     /* The answer is the result of another request (a job), whose answer may have had no ETag. */
     API_TAG_OF_OTHERS = 4096,
     /* Answers of the route show nothing from the store, so they are sent without waiting for the

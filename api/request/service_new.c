@@ -50,6 +50,7 @@ void api_service_free(api_service *service)
 {
     if (service != NULL) {
         api_kept_free(service->operations);
+        api_kept_free(service->problems);
         api_kept_free(service->openapi);
         api_route_tree_free(service->routes);
         api_tickets_free(service->tickets);

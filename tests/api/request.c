@@ -38,8 +38,15 @@ struct api_bench {
     bool is_beyond;
     const char *kept; /* contents of the backup file that POST /v1/admin/backup answers with */
     bool is_lent;     /* an answer with the backup file exists and is not freed yet */
+    api_asset page;   /* the only page of the manual, that of the problem boundary_edge */
     api_service *service;
 };
+
+static const api_asset *find_asset(void *context, const char *path)
+{
+    const api_bench *b = context;
+    return strcmp(path, "/docs/problems/boundary_edge") == 0 ? &b->page : NULL;
+}
 
 /* Puts a job into the bench's own queue. The bench has no threads: the job runs when the test calls
  * bench_run_jobs. */
@@ -139,8 +146,12 @@ static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget
             fail_msg("%s", message);
         }
     }
+    b->page = (api_asset){.type = "text/html; charset=utf-8", .body = api_kept_new("<p>", 3)};
+    assert_non_null(b->page.body);
     b->service = api_service_new(b->store, api_routes(),
                                  &(api_options){.version = "0.0.0-test",
+                                                .asset = find_asset,
+                                                .asset_context = b,
                                                 .max_upload = upload == 0 ? 8 << 20 : upload,
                                                 .tokens = b->tokens,
                                                 .address_limits = limits->addresses,
@@ -219,6 +230,7 @@ void bench_free(api_bench *b)
     api_service_free(b->service);
     st_store_free(b->store);
     api_tokens_free(b->tokens);
+    api_kept_free(b->page.body);
     free(b);
 }
 

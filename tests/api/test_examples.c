@@ -165,7 +165,8 @@ static void the_description_shows_them(void **state)
  * the API. */
 static bool is_too_long(const char *route)
 {
-    return strcmp(route, "list_operations") == 0 || strcmp(route, "get_openapi") == 0;
+    return strcmp(route, "list_operations") == 0 || strcmp(route, "list_problems") == 0 ||
+           strcmp(route, "get_openapi") == 0;
 }
 
 static void no_route_is_without_one(void **state)

@@ -86,12 +86,25 @@ static bool find(srv_assets *assets, const char *path, found *f)
 static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/srv-assets-XXXXXX", inner[64], path[128], message[320];
+    char folder[] = "/tmp/srv-assets-XXXXXX", inner[64], docs[64], part[96], deep[128], path[128];
+    char message[320];
     assert_non_null(mkdtemp(folder));
     snprintf(inner, sizeof inner, "%s/assets", folder);
     assert_int_equal(mkdir(inner, 0700), 0);
     write_file(folder, "index.html", "<p>hello");
     write_file(folder, "docs.html", "<p>docs");
+    snprintf(docs, sizeof docs, "%s/docs", folder);
+    snprintf(part, sizeof part, "%s/operations", docs);
+    snprintf(deep, sizeof deep, "%s/deep", part);
+    assert_int_equal(mkdir(docs, 0700), 0);
+    assert_int_equal(mkdir(part, 0700), 0);
+    assert_int_equal(mkdir(deep, 0700), 0);
+    write_file(docs, "operations.html", "<p>list");
+    write_file(docs, "index.html", "<p>index");
+    write_file(part, "edge_split.html", "<p>split");
+    write_file(deep, "page.html", "<p>deep");
+    snprintf(path, sizeof path, "%s/secrets", docs);
+    assert_int_equal(symlink("..", path), 0);
     write_file(folder, "secret.txt", "no");
     write_file(inner, "app-ABCD1234.js", "1");
     write_file(inner, "style.css", "");
@@ -112,6 +125,13 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
     assert_false(f.immutable);
     assert_true(find(assets, "/docs", &f));
     assert_memory_equal(f.bytes, "<p>docs", 7);
+    assert_true(find(assets, "/docs/operations", &f));
+    assert_memory_equal(f.bytes, "<p>list", 7);
+    assert_string_equal(f.type, "text/html; charset=utf-8");
+    assert_true(find(assets, "/docs/operations/edge_split", &f));
+    assert_memory_equal(f.bytes, "<p>split", 8);
+    assert_false(f.immutable);
+    assert_true(find(assets, "/docs/index", &f));
     assert_true(find(assets, "/assets/app-ABCD1234.js", &g));
     assert_true(g.immutable);
     assert_string_equal(g.type, "text/javascript; charset=utf-8");
@@ -122,6 +142,12 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
     assert_false(g.immutable);
     static const char *const absent[] = {"/index.html",
                                          "/docs.html",
+                                         "/docs/operations.html",
+                                         "/docs/operations/deep/page",
+                                         "/docs/operations/deep",
+                                         "/docs/secrets/index",
+                                         "/docs/secrets/secret.txt",
+                                         "/index",
                                          "/secret.txt",
                                          "/assets/link.txt",
                                          "/assets/.hidden",
@@ -139,6 +165,9 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
         "app-ABCD1234.js", "style.css", "sub-component.js", ".hidden", "link.txt", "fifo", NULL};
     static const char *const outside[] = {"index.html", "docs.html", "secret.txt", NULL};
     remove_files(inner, inside);
+    remove_files(deep, (const char *const[]){"page.html", NULL});
+    remove_files(part, (const char *const[]){"edge_split.html", NULL});
+    remove_files(docs, (const char *const[]){"operations.html", "index.html", "secrets", NULL});
     remove_files(folder, outside);
 
     /* The folder of the web page does not exist any more. The server must show a notice instead of

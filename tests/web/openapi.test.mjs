@@ -78,7 +78,7 @@ test('the first paths that one tries lead somewhere', async (t) => {
     const { url } = await startDaemon(t);
     const index = await (await fetch(`${url}/v1`)).json();
     assert.equal(index.name, 'hedged');
-    for (const name of ['meshes', 'jobs', 'operations', 'openapi', 'docs']) {
+    for (const name of ['meshes', 'jobs', 'operations', 'problems', 'openapi', 'docs']) {
         assert.equal((await fetch(url + index[name])).status, 200, name);
     }
     const manual = await fetch(`${url}/docs/`);

@@ -100,6 +100,17 @@ async function request(path, options = {}) {
     return answer;
 }
 
+// Sends any request, such as an example of the manual, and returns the answer whatever its status is.
+export async function sendAny(path, options = {}) {
+    const bearer = token();
+    const headers = { ...(bearer !== null && { Authorization: `Bearer ${bearer}` }), ...options.headers };
+    try {
+        return await fetch(path, { cache: 'no-store', ...options, headers });
+    } catch (error) {
+        throw error.name === 'AbortError' ? error : unreachable();
+    }
+}
+
 async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
@@ -153,6 +164,11 @@ export async function getToken() {
         }
         throw error;
     }
+}
+
+// Returns the list of the manual's pages in which its search looks.
+export function readIndex(address) {
+    return getJson(address);
 }
 
 let description = null;
