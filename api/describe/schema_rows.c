@@ -501,6 +501,10 @@ const api_member api_answer_members[] = {
 
     {"operations", NULL, NULL, REQUIRED, NULL},
 
+    {"problem_row", NULL, NULL, REQUIRED, NULL},
+
+    {"problems", NULL, NULL, REQUIRED, NULL},
+
     {"token", NULL, NULL, REQUIRED, NULL},
 
     {"ticket", NULL, NULL, REQUIRED, NULL},

@@ -19,7 +19,12 @@ export const SECTIONS = [
 function linker(from, schemas) {
     const up = from === 'docs/404' ? '/' : '../'.repeat(from.split('/').length - 1);
     const link = (target) => (target.startsWith('/') ? up + target.slice(1) || './' : target);
-    link.schema = (name) => link(schemas.get(name));
+    link.schema = (name) => {
+        if (!schemas.has(name)) {
+            throw new Error(`the OpenAPI document has no schema ${name}`);
+        }
+        return link(schemas.get(name));
+    };
     return link;
 }
 

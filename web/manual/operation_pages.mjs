@@ -69,7 +69,7 @@ function countsTable(before, after) {
         return '';
     }
     const row = (label, old, now) => [label, String(old), String(now), now - old === 0 ? '0' : (now > old ? '+' : '−') + Math.abs(now - old)];
-    return table(['', 'Before', 'After', 'Change'], [
+    return table(['Number of', 'Before', 'After', 'Change'], [
         row('Vertices', before.counts.vertices, after.counts.vertices),
         row('Edges', before.counts.edges, after.counts.edges),
         row('Faces', before.counts.faces, after.counts.faces),

@@ -36,6 +36,15 @@ const TAKEN = {
     halfedge: { kinds: ['halfedge', 'edge'], names: ['half-edge', 'half-edges'] },
 };
 
+// Returns a link to the page of an operation in the manual, which opens beside the mesh.
+function pageOf(operation) {
+    if (operation === undefined) {
+        return [];
+    }
+    const page = { href: operation.docs.slice(1), target: '_blank', rel: 'noopener' };
+    return [make('a', page, 'Drawing and example', make('span', { className: 'unseen' }, ' (in a new tab)'))];
+}
+
 export class Tools {
     #chooser;
     #form;
@@ -350,7 +359,7 @@ export class Tools {
             this.#rows(param, isOtherOf(params.slice(0, i), param)),
         );
         this.#form.replaceChildren(
-            make('p', { className: 'small' }, ...prose(operation?.doc ?? '')),
+            make('p', { className: 'small' }, ...prose(operation?.doc ?? ''), ' ', ...pageOf(operation)),
             ...rows,
             this.#verdict,
             make(

@@ -24,7 +24,9 @@ function scoreOf([title, , kind, label, words], asked) {
         }
         score += here;
     }
-    const isExact = name === whole || plain(label).trim() === whole;
+    // The label of a route is its method and path; readers give the path alone, too.
+    const told = plain(label).trim();
+    const isExact = name === whole || told === whole || (kind === 'route' && told.replace(/^\w+ +/, '') === whole);
     const bonus = isExact && kind !== 'type' ? 20 : name.startsWith(whole) ? 4 : 0;
     return score + bonus + (kind === 'guide' ? 1 : 0) - (kind === 'type' ? 1 : 0) + 1 / (1 + name.length);
 }
