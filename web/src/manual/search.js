@@ -105,7 +105,8 @@ export class Search {
     press(event) {
         const links = [...this.list.querySelectorAll('a')];
         const at = links.indexOf(document.activeElement);
-        if (event.key === 'Escape') {
+        if (event.key === 'Escape' && !this.panel.hidden) {
+            event.preventDefault(); // browsers would also empty the field
             this.panel.hidden = true;
             this.field.focus();
         } else if (event.key === 'ArrowDown' && links.length > 0) {
