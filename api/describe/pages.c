@@ -184,8 +184,7 @@ static void put_page_headers(api_exchange *x)
 static void answer_missing(api_exchange *x)
 {
     const char *accept = x->request.headers[API_HEADER_ACCEPT];
-    const api_asset *page =
-        x->route->flags & API_MISSING_PAGE ? find_asset(x, "/docs/404") : NULL;
+    const api_asset *page = x->route->flags & API_MISSING_PAGE ? find_asset(x, "/docs/404") : NULL;
     if (page == NULL || accept == NULL || strstr(accept, "text/html") == NULL) {
         api_fail(x, API_NO_SUCH_ROUTE, "the server has no path \"%.150s\"", x->request.path);
     } else {

@@ -11,24 +11,15 @@
 
 #include <cjson/cJSON.h>
 
-static api_kept *page_file, *script_file, *missing_file;
+static api_kept *page_file, *script_file;
 
 static const api_asset *find_asset(void *context, const char *path)
 {
-    static api_asset page, script, missing;
+    static api_asset page, script;
     (void)context;
     page = (api_asset){"text/html; charset=utf-8", false, page_file};
     script = (api_asset){"text/javascript", true, script_file};
-    missing = (api_asset){"text/html; charset=utf-8", false, missing_file};
-    static const char *const pages[] = {"/", "/docs/start", "/docs/problems/boundary_edge"};
-    for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
-        if (strcmp(path, pages[i]) == 0) {
-            return &page;
-        }
-    }
-    return strcmp(path, "/assets/a.js") == 0 ? &script
-           : strcmp(path, "/docs/404") == 0  ? &missing
-                                             : NULL;
+    return strcmp(path, "/") == 0 ? &page : strcmp(path, "/assets/a.js") == 0 ? &script : NULL;
 }
 
 static bool not_ready(void *context)
@@ -63,8 +54,7 @@ static int set_up(void **state)
     assert_int_equal(st_create(store, "m", "", fixture_mesh("012"), NULL, &only), ST_OK);
     page_file = api_kept_new("<p>", 3);
     script_file = api_kept_new("x()", 3);
-    missing_file = api_kept_new("<p>missing", 10);
-    assert_true(page_file != NULL && script_file != NULL && missing_file != NULL);
+    assert_true(page_file != NULL && script_file != NULL);
     service = api_service_new(store, api_routes(), &options);
     return service == NULL;
 }
@@ -77,7 +67,6 @@ static int tear_down(void **state)
     st_store_free(store);
     api_kept_free(page_file);
     api_kept_free(script_file);
-    api_kept_free(missing_file);
     return 0;
 }
 
@@ -431,66 +420,6 @@ static void allow_lists_the_methods_of_a_path(void **state)
     }
 }
 
-static void a_problem_leads_to_its_page_in_the_manual_if_there_is_one(void **state)
-{
-    (void)state;
-    header_list headers;
-    api_exchange *x = send_line(&(sent){"GET /problems/boundary_edge", NULL, NULL}, &headers);
-    assert_int_equal(api_answer_of(x)->status, 303);
-    assert_string_equal(answer_header(api_answer_of(x), "Location"),
-                        "../docs/problems/boundary_edge");
-    api_free(x);
-    x = send_line(&(sent){"GET /problems/closed_fan", NULL, NULL}, &headers);
-    assert_int_equal(api_answer_of(x)->status, 200);
-    assert_non_null(strstr(api_answer_of(x)->bytes, "closed_fan"));
-    api_free(x);
-}
-
-static void a_page_that_is_missing_is_a_page_for_browsers_and_a_problem_for_programs(void **state)
-{
-    (void)state;
-    static const struct {
-        sent request;
-        const char *type, *text;
-    } cases[] = {
-        {{"GET /docs/nowhere", "Accept: text/html,*/*;q=0.8", NULL}, "text/html", "<p>missing"},
-        {{"GET /docs/no/where", "Accept: text/html,*/*;q=0.8", NULL}, "text/html", "<p>missing"},
-        {{"GET /docs/nowhere", "Accept: */*", NULL}, "application/problem+json", "no_such_route"},
-        {{"GET /docs/nowhere", NULL, NULL}, "application/problem+json", "no_such_route"},
-        {{"GET /assets/nowhere", "Accept: text/html,*/*", NULL},
-         "application/problem+json",
-         "no_such_route"},
-    };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        header_list headers;
-        api_exchange *x = send_line(&cases[i].request, &headers);
-        const api_answer *answer = api_answer_of(x);
-        assert_int_equal(answer->status, 404);
-        const char *type = answer_header(answer, "Content-Type");
-        assert_ptr_equal(strstr(type, cases[i].type), type);
-        char body[512];
-        snprintf(body, sizeof body, "%.*s", (int)answer->length, answer->bytes);
-        assert_non_null(strstr(body, cases[i].text));
-        api_free(x);
-    }
-}
-
-static void pages_carry_a_strict_policy(void **state)
-{
-    (void)state;
-    static const char *const pages[] = {"GET /", "GET /docs/start", "GET /problems/syntax"};
-    for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
-        header_list headers;
-        sent r = {pages[i], NULL, NULL};
-        api_exchange *x = send_line(&r, &headers);
-        const char *policy = answer_header(api_answer_of(x), "Content-Security-Policy");
-        assert_non_null(policy);
-        assert_ptr_equal(strstr(policy, "default-src 'none'"), policy);
-        assert_null(strstr(policy, "unsafe"));
-        api_free(x);
-    }
-}
-
 static void readiness_is_the_servers_to_say(void **state)
 {
     (void)state;
@@ -720,8 +649,8 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
         {"POST /v1/meshes/m/edges/0/edges", "\"edges\" is not one of vertices, halfedges, faces"},
         {"GET /v1/meshes/m/attributes/corners/a",
          "\"corners\" is not one of vertices, halfedges, edges, faces, mesh"},
-        {"GET /v1/mesh",
-         "\"mesh\" is not one of meshes, jobs, token, tickets, admin, operations, problems, openapi.json"},
+        {"GET /v1/mesh", "\"mesh\" is not one of meshes, jobs, token, tickets, admin, operations, "
+                         "problems, openapi.json"},
         {"GET /v1/admin", "the path must continue with one of reload, backup"},
         {"GET /v1/meshes/m/vertices/0/edges/1",
          "the server has no path \"/v1/meshes/m/vertices/0/edges/1\""},
@@ -802,9 +731,6 @@ int main(void)
         cmocka_unit_test(a_slash_too_many_at_the_end_leads_to_the_path_without_it),
         cmocka_unit_test(a_range_of_a_file_is_answered_whole_and_said_not_to_be_taken),
         cmocka_unit_test(allow_lists_the_methods_of_a_path),
-        cmocka_unit_test(a_problem_leads_to_its_page_in_the_manual_if_there_is_one),
-        cmocka_unit_test(a_page_that_is_missing_is_a_page_for_browsers_and_a_problem_for_programs),
-        cmocka_unit_test(pages_carry_a_strict_policy),
         cmocka_unit_test(readiness_is_the_servers_to_say),
         cmocka_unit_test(too_long_a_target_is_414),
         cmocka_unit_test(a_body_without_a_length_meets_the_cap_as_it_comes),
