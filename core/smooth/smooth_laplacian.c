@@ -2,7 +2,7 @@
 #include "smooth/smoothing.h"
 
 #include "geometry/vec3.h"
-#include "solve/factor.h"
+#include "solve/conjugate.h"
 #include "solve/laplacian.h"
 
 #include <string.h>
@@ -127,20 +127,12 @@ static void steady(const he_smoothing *s, he_laplacian *l)
     }
 }
 
-static he_status solve(he_smoothing *s, const patch *p, const he_laplacian *l, he_error *err)
+/* Solves by a factor. */
+static he_status factor(const he_smoothing *s, const he_sparse *part, he_right_sides sides,
+                        he_error *err)
 {
-    he_sparse whole = {0}, part = {0};
-    he_factor *factor = NULL;
-    double *right = he_mem_array(NULL, 3 * (size_t)s->count + 1, sizeof *right);
-    he_status status = right == NULL ? he_fail_plain(err, HE_NO_MEMORY,
-                                                     "no memory to smooth %u vertices", s->count)
-                                     : he_laplacian_step(l, s->amount, &whole, err);
-    if (status == HE_OK) {
-        status = take_part(s, p, &whole, &part, err);
-    }
-    if (status == HE_OK) {
-        status = he_factor_make(&part, s->mesh->progress, &factor, err);
-    }
+    he_factor *of = NULL;
+    he_status status = he_factor_make(part, s->mesh->progress, &of, err);
     if (status == HE_BAD_VALUE) {
         /* the time times a weight is not finite */
         status = he_fail_plain(err, HE_BAD_VALUE,
@@ -149,14 +141,35 @@ static he_status solve(he_smoothing *s, const patch *p, const he_laplacian *l, h
                                s->amount * s->scale * s->scale);
     }
     if (status == HE_OK) {
+        status = he_factor_solve(of, part, sides, NULL, err);
+    }
+    he_factor_free(of);
+    return status;
+}
+
+static he_status solve(he_smoothing *s, const patch *p, const he_laplacian *l, he_error *err)
+{
+    he_sparse whole = {0}, part = {0};
+    double *right = he_mem_array(NULL, 3 * (size_t)s->count + 1, sizeof *right);
+    const he_right_sides sides = {right, right, 3};
+    bool solved = false;
+    he_status status = right == NULL ? he_fail_plain(err, HE_NO_MEMORY,
+                                                     "no memory to smooth %u vertices", s->count)
+                                     : he_laplacian_step(l, s->amount, &whole, err);
+    if (status == HE_OK) {
+        status = take_part(s, p, &whole, &part, err);
+    }
+    if (status == HE_OK) {
         fill_right(s, p, l, &whole, right);
-        status = he_factor_solve(factor, &part, (he_right_sides){right, right, 3}, NULL, err);
+        status = he_conjugate_solve(&part, sides, s->mesh->progress, &solved, err);
+    }
+    if (status == HE_OK && !solved) {
+        status = factor(s, &part, sides, err);
     }
     for (uint32_t i = 0; i < s->count && status == HE_OK; i++) {
         s->at[s->free[i]] =
             (he_vec3){right[i], right[s->count + (size_t)i], right[2 * (size_t)s->count + i]};
     }
-    he_factor_free(factor);
     he_sparse_clear(&whole);
     he_sparse_clear(&part);
     he_mem_free(right);

@@ -5,9 +5,11 @@
 #include "tests/seed.h"
 #include "unit/fixture.h"
 
+#include "solve/conjugate.h"
 #include "solve/factor.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MOST = 48 };
 
@@ -125,6 +127,88 @@ static void solutions_equal_those_of_elimination(void **state)
     }
     print_message("note: solutions differ by at most %g\n", worst);
     assert_true(worst < 1e-12);
+}
+
+/* --- conjugate gradients --- */
+
+enum { WIDE = 40 };
+
+/* Makes the matrix of a step of the heat equation on a square of WIDE by WIDE vertices, with random
+ * weights: each diagonal entry is the sum of the others of its row and of `mass`. */
+static void make_step(md_random *r, double mass, he_sparse *out)
+{
+    static he_entry entries[7 * WIDE * WIDE];
+    size_t count = 0;
+    for (uint32_t i = 0; i < WIDE * WIDE; i++) {
+        const uint32_t beside[2] = {i % WIDE + 1 < WIDE ? i + 1 : i, i + WIDE};
+        entries[count++] = (he_entry){i, i, mass};
+        for (int k = 0; k < 2; k++) {
+            if (beside[k] != i && beside[k] < WIDE * WIDE) {
+                const double weight = 1.5 + uniform(r);
+                entries[count++] = (he_entry){i, beside[k], -weight};
+                entries[count++] = (he_entry){i, i, weight};
+                entries[count++] = (he_entry){beside[k], beside[k], weight};
+            }
+        }
+    }
+    assert_true(count <= sizeof entries / sizeof *entries);
+    assert_int_equal(he_sparse_make(WIDE * WIDE, entries, count, out, NULL), HE_OK);
+}
+
+static void conjugate_gradients_solve_what_a_factor_solves(void **state)
+{
+    (void)state;
+    enum { N = WIDE * WIDE };
+    static double b[3 * N], x[3 * N], alone[N], exact[3 * N];
+    md_random r = {seed_of_run()};
+    for (int round = 0; round < 20; round++) {
+        he_sparse a;
+        he_factor *f = NULL;
+        bool solved = false;
+        make_step(&r, 1 + uniform(&r) / 2, &a);
+        for (uint32_t i = 0; i < 3 * N; i++) {
+            b[i] = i < 2 * N ? uniform(&r) : 0;
+        }
+        assert_int_equal(he_conjugate_solve(&a, (he_right_sides){b, x, 3}, NULL, &solved, NULL),
+                         HE_OK);
+        assert_true(solved);
+        assert_int_equal(he_factor_make(&a, NULL, &f, NULL), HE_OK);
+        assert_int_equal(he_factor_solve(f, &a, (he_right_sides){b, exact, 3}, NULL, NULL), HE_OK);
+        for (uint32_t i = 0; i < 3 * N; i++) {
+            assert_true(fabs(x[i] - exact[i]) <= 1e-13);
+        }
+        /* A side has the same bits alone, and the solution may take its place. */
+        memcpy(alone, b + N, sizeof alone);
+        assert_int_equal(
+            he_conjugate_solve(&a, (he_right_sides){alone, alone, 1}, NULL, &solved, NULL), HE_OK);
+        assert_true(solved);
+        assert_memory_equal(alone, x + N, sizeof alone);
+        he_factor_free(f);
+        he_sparse_clear(&a);
+    }
+}
+
+static void systems_with_a_light_diagonal_are_left_to_a_factor(void **state)
+{
+    (void)state;
+    enum { N = WIDE * WIDE };
+    static double b[N], x[N], before[N];
+    md_random r = {seed_of_run()};
+    static const double masses[] = {0, 1e-6, 1e-3, -3};
+    for (uint32_t i = 0; i < N; i++) {
+        b[i] = uniform(&r);
+        before[i] = x[i] = uniform(&r);
+    }
+    for (size_t i = 0; i < sizeof masses / sizeof *masses; i++) {
+        he_sparse a;
+        bool solved = true;
+        make_step(&r, masses[i], &a);
+        assert_int_equal(he_conjugate_solve(&a, (he_right_sides){b, x, 1}, NULL, &solved, NULL),
+                         HE_OK);
+        assert_false(solved);
+        assert_memory_equal(x, before, sizeof x);
+        he_sparse_clear(&a);
+    }
 }
 
 static void products_and_parts_equal_dense_ones(void **state)
@@ -346,6 +430,11 @@ static he_status all(const he_entry *entries, size_t count)
     if (status == HE_OK) {
         status = he_factor_solve(f, &b, (he_right_sides){x, x, 1}, NULL, NULL);
     }
+    bool solved = true;
+    if (status == HE_OK) {
+        status = he_conjugate_solve(&a, (he_right_sides){x, x, 1}, NULL, &solved, NULL);
+    }
+    assert_true(solved);
     he_factor_free(f);
     he_sparse_clear(&a);
     he_sparse_clear(&b);
@@ -369,6 +458,29 @@ static bool tell_until(void *context, const char *phase, double done)
     (void)done;
     int *left = context;
     return --*left > 0;
+}
+
+static void conjugate_gradients_can_be_cancelled(void **state)
+{
+    (void)state;
+    static double b[WIDE * WIDE], x[WIDE * WIDE];
+    md_random r = {seed_of_run()};
+    he_sparse a;
+    int steps = 1;
+    make_step(&r, 1, &a);
+    for (uint32_t i = 0; i < WIDE * WIDE; i++) {
+        b[i] = uniform(&r);
+    }
+    for (he_status status = HE_CANCELLED; status != HE_OK; steps++) {
+        int left = steps;
+        bool solved;
+        he_progress progress;
+        he_progress_init(&progress, tell_until, &left);
+        status = he_conjugate_solve(&a, (he_right_sides){b, x, 1}, &progress, &solved, NULL);
+        assert_true(status == HE_OK || (status == HE_CANCELLED && x[0] == 0));
+    }
+    he_sparse_clear(&a);
+    assert_in_range(steps, 5, 70);
 }
 
 static void work_can_be_cancelled_at_any_step(void **state)
@@ -397,6 +509,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solutions_equal_those_of_elimination),
+        cmocka_unit_test(conjugate_gradients_solve_what_a_factor_solves),
+        cmocka_unit_test(systems_with_a_light_diagonal_are_left_to_a_factor),
+        cmocka_unit_test(conjugate_gradients_can_be_cancelled),
         cmocka_unit_test(products_and_parts_equal_dense_ones),
         cmocka_unit_test(a_large_system_leaves_nothing_over),
         cmocka_unit_test(a_solution_does_not_depend_on_the_other_sides),
