@@ -108,9 +108,31 @@ static double distance(he_vec3 a, he_vec3 b)
     return he_vec3_length(he_vec3_sub(a, b));
 }
 
-/* The wanted length at a corner is the mean of those of its two edges in the loop, but not less
- * than this part of the mean of all, or two corners at one place would make triangles without end.
- */
+/* Returns the mean length of the mesh's edges at corner i: those of the loop, and those between
+ * them around the faces beyond. */
+static double mean_length(const he_patch *p, uint32_t i)
+{
+    enum { EDGES = 64 };
+    const he_mesh *m = p->mesh;
+    const he_halfedge first = {p->loop[i]};
+    he_halfedge h = first;
+    double sum = 0;
+    uint32_t count = 0;
+    do {
+        sum += distance(p->at[i], he_patch_inside(p, he_position(m, he_target(m, h))));
+        count++;
+        h = he_next(m, he_twin(h));
+    } while (count < EDGES && h.i != first.i && !he_is_boundary_halfedge(m, h));
+    return sum / count;
+}
+
+/* The wanted length at a corner is the mean of those of the mesh's edges there (Liepa 2003), so
+ * that the patch is as dense as the mesh around it. But it is not more than this many times the
+ * mean of the two edges in the loop: a pipe of long thin triangles gets a cap of even ones. */
+static const double MOST_OF_LOOP = 2;
+
+/* It is not less than this part of the mean of all, or two corners at one place would make
+ * triangles without end. */
 static const double LEAST_SIZE = 1e-3;
 
 static void read_corners(he_patch *p)
@@ -124,7 +146,9 @@ static void read_corners(he_patch *p)
     }
     for (uint32_t i = 0; i < p->rim; i++) {
         const uint32_t before = i == 0 ? p->rim - 1 : i - 1, after = i + 1 == p->rim ? 0 : i + 1;
-        p->size[i] = distance(p->at[before], p->at[i]) / 2 + distance(p->at[i], p->at[after]) / 2;
+        const double loop =
+            distance(p->at[before], p->at[i]) / 2 + distance(p->at[i], p->at[after]) / 2;
+        p->size[i] = fmin(mean_length(p, i), MOST_OF_LOOP * loop);
         mean += p->size[i] / p->rim;
     }
     for (uint32_t i = 0; i < p->rim; i++) {

@@ -254,7 +254,7 @@ static he_status finish_angles(he_remeshing *r, he_error *err)
             status = he_remesh_round(r, err);
         }
     }
-    return status;
+    return status == HE_OK && r->project ? he_remesh_fit(r, err) : status;
 }
 
 /* The reported progress (0 to 1) after the preparations, and after all steps. */

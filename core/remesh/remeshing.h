@@ -42,6 +42,9 @@ HE_NODISCARD he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, unsigned
 HE_NODISCARD he_status he_remesh_relax(he_remeshing *r, he_error *err);
 /* Moves the corners of the triangles that are least round, so that they become rounder. */
 HE_NODISCARD he_status he_remesh_round(he_remeshing *r, he_error *err);
+/* Moves vertices that are not on lines a little off the ground, so that the faces are as near to it
+ * as they can be. */
+HE_NODISCARD he_status he_remesh_fit(he_remeshing *r, he_error *err);
 
 /* --- shapes of triangles --- */
 
