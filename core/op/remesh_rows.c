@@ -25,7 +25,8 @@ enum {
     REMESH_OUT_LONGEST,
     REMESH_OUT_SMALLEST_ANGLE,
     REMESH_OUT_LARGEST_ANGLE,
-    REMESH_OUT_REGULAR
+    REMESH_OUT_REGULAR,
+    REMESH_OUT_DISTANCE
 };
 
 static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
@@ -57,6 +58,7 @@ static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_
         he_results_set_number(out, REMESH_OUT_SMALLEST_ANGLE, done.smallest_angle);
         he_results_set_number(out, REMESH_OUT_LARGEST_ANGLE, done.largest_angle);
         he_results_set_number(out, REMESH_OUT_REGULAR, done.regular);
+        he_results_set_number(out, REMESH_OUT_DISTANCE, done.distance);
     }
     return status;
 }
@@ -131,7 +133,9 @@ const he_op he_remesh_rows[] = {
              [REMESH_PROJECT] = {.name = "project",
                                  .type = HE_PARAM_FLAG,
                                  .fallback = 1,
-                                 .doc = "Put moved vertices back onto the surface."},
+                                 .doc = "Put moved vertices back onto the surface, and at last so "
+                                        "far off it that the faces are as near to it as they can "
+                                        "be."},
              [REMESH_FACES] = {.name = "face",
                                .plural = "faces",
                                .type = HE_PARAM_ELEMENTS,
@@ -163,7 +167,11 @@ const he_op he_remesh_rows[] = {
              [REMESH_OUT_REGULAR] =
                  {"regular", HE_RESULT_NUMBER, HE_VERTEX,
                   "The fraction of the vertices that have six edges, among those "
-                  "that are not on lines and may move."}},
+                  "that are not on lines and may move."},
+             [REMESH_OUT_DISTANCE] =
+                 {"distance", HE_RESULT_NUMBER, HE_FACE,
+                  "No point of the new faces is farther than this from the faces that were "
+                  "replaced. Mostly the farthest point is nearly as far."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_TRIANGLE,
                      HE_BAD_VALUE, HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},

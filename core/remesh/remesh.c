@@ -380,7 +380,7 @@ static double regular_share(const he_net *n)
     return all > 0 ? (double)regular / (double)all : 1;
 }
 
-static void report(const he_remeshing *r, he_remesh_stop stop, he_remeshed *out)
+static void report(const he_remeshing *r, double distance, he_remesh_stop stop, he_remeshed *out)
 {
     const he_net *n = &r->net;
     double sum = 0;
@@ -402,21 +402,26 @@ static void report(const he_remeshing *r, he_remesh_stop stop, he_remeshed *out)
     out->longest = he_saturated(ldexp(out->longest, n->exponent));
     out->mean = count > 0 ? he_saturated(ldexp(sum / (double)count, n->exponent)) : 0;
     out->regular = regular_share(n);
+    out->distance = he_saturated(ldexp(distance, n->exponent));
 }
 
 he_status he_remesh(he_mesh *m, const he_remesh_options *options, he_remeshed *out, he_error *err)
 {
     he_remeshing r = {.progress = m->progress, .project = options->project};
     he_remesh_stop stop = HE_REMESH_SETTLED;
+    double distance = 0;
     he_status status = check(m, options, err);
     if (status == HE_OK) {
         status = compute(m, options, &r, &stop, err);
+    }
+    if (status == HE_OK && out != NULL) {
+        status = he_remesh_bound(&r, &distance, err);
     }
     if (status == HE_OK && r.ground.triangle_count > 0) {
         status = write(m, &r, err);
     }
     if (status == HE_OK && out != NULL) {
-        report(&r, stop, out);
+        report(&r, distance, stop, out);
     }
     he_net_clear(&r.net);
     he_ground_clear(&r.ground);

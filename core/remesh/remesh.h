@@ -9,7 +9,8 @@
  *     surface that was given.
  *
  * At last edges are flipped, and the corners of the worst triangles moved, so that angles become
- * even. An edge is too long or too short if its
+ * even; and vertices are moved a little off the surface, so that the faces come as near to it as
+ * they can (remesh_fit.c). An edge is too long or too short if its
  * length is above 1.19 or below 0.75 times the wanted length.
  *
  * WHAT STAYS. Vertices never leave these LINES, along which they may move:
@@ -73,7 +74,7 @@ typedef struct he_remesh_options {
      * HE_REMESH_MOST_LENGTH. */
     double error, min_length, max_length;
     unsigned steps;        /* 1 to HE_REMESH_STEPS */
-    bool project;          /* vertices are moved back onto the old surface */
+    bool project;          /* vertices are moved back onto the old surface, and fitted at last */
     bool fixed_boundary;   /* boundary edges are not changed at all */
     double crease;         /* an angle in radians, from 0 to pi; see the head of this file */
     const uint32_t *faces; /* the ids of the faces to replace; NULL stands for all faces */
@@ -97,6 +98,10 @@ typedef struct he_remeshed {
     /* Fraction of the vertices that have 6 edges, among those that are neither on lines nor fixed;
      * 1 if there are none. */
     double regular;
+    /* No point of the new faces is farther than this from the faces that were replaced, up to
+     * rounding. Mostly it is a little more than the distance of the farthest point; where a surface
+     * is folded within one new face, it may be as large as that face. */
+    double distance;
     he_remesh_stop stop;
 } he_remeshed;
 

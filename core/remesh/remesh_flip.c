@@ -154,24 +154,66 @@ static bool is_restless(const he_net *n, uint32_t t)
             HE_NET_RESTLESS) != 0;
 }
 
+/* What a sweep over the triangles does. `changed` has the triangles that were flipped since they
+ * were looked at. */
+typedef struct sweep {
+    he_flip_aim aim;
+    bool first;
+    uint64_t *changed;
+    uint64_t flips;
+} sweep;
+
+static void try_edge(he_net *n, uint32_t c, sweep *s)
+{
+    const uint32_t twin = he_net_twin(n, c);
+    if (!he_net_is_held(n, c) && try_flip(n, c, s->aim)) {
+        he_bits_set(s->changed, c >> 2);
+        he_bits_set(s->changed, twin >> 2);
+        s->flips++;
+    }
+}
+
+/* Returns true if edges of a triangle are to be tested. For even angles, only a flip of one of its
+ * edges changes what the test of the last sweep found. */
+static bool looks_at(const he_net *n, uint32_t t, sweep *s)
+{
+    if (he_net_is_gone(n, t)) {
+        return false;
+    }
+    if (s->aim == HE_FLIP_DEGREES) {
+        return is_restless(n, t);
+    }
+    const bool looks = s->first || he_bits_get(s->changed, t);
+    s->changed[t >> 6] &= ~((uint64_t)1 << (t & 63));
+    return looks;
+}
+
 he_status he_remesh_flip(he_remeshing *r, he_flip_aim aim, unsigned sweeps, he_error *err)
 {
     he_net *n = &r->net;
-    uint64_t flips = 1;
-    he_status status = HE_OK;
-    for (unsigned sweep = 0; sweep < sweeps && flips > 0 && status == HE_OK; sweep++) {
-        flips = 0;
+    sweep s = {.aim = aim, .changed = he_bits_new((size_t)n->triangle_count + 1), .flips = 1};
+    he_status status = s.changed == NULL
+                           ? he_fail_plain(err, HE_NO_MEMORY, "no memory to flip edges of %u faces",
+                                           n->triangle_count)
+                           : HE_OK;
+    for (unsigned i = 0; i < sweeps && s.flips > 0 && status == HE_OK; i++) {
+        s.flips = 0;
+        s.first = i == 0;
         for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
             status = he_progress_at(r->progress, t + 1, n->triangle_count, err);
-            bool looks = !he_net_is_gone(n, t) && (aim == HE_FLIP_ANGLES || is_restless(n, t));
-            for (uint32_t c = 4 * t; c < 4 * t + 3 && looks; c++) {
-                uint32_t twin = he_net_twin(n, c);
-                if (twin != HE_NONE && c < twin && !he_net_is_held(n, c)) {
-                    flips += try_flip(n, c, aim);
+            if (!looks_at(n, t, &s)) {
+                continue;
+            }
+            const bool once = s.first || aim == HE_FLIP_DEGREES;
+            for (uint32_t c = 4 * t; c < 4 * t + 3; c++) {
+                const uint32_t twin = he_net_twin(n, c);
+                if (twin != HE_NONE && (c < twin || !once)) {
+                    try_edge(n, c < twin ? c : twin, &s);
                 }
             }
         }
-        r->changes += flips;
+        r->changes += s.flips;
     }
+    he_mem_free(s.changed);
     return status;
 }

@@ -45,6 +45,9 @@ HE_NODISCARD he_status he_remesh_round(he_remeshing *r, he_error *err);
 /* Moves vertices that are not on lines a little off the ground, so that the faces are as near to it
  * as they can be. */
 HE_NODISCARD he_status he_remesh_fit(he_remeshing *r, he_error *err);
+/* Finds a bound of the distances of all points of the net from the ground, in coordinates of the
+ * net. */
+HE_NODISCARD he_status he_remesh_bound(const he_remeshing *r, double *out, he_error *err);
 
 /* --- shapes of triangles --- */
 

@@ -159,6 +159,14 @@ static he_remesh_options draw(const he_mesh *m, md_random *r, he_ids *faces, uin
     return options;
 }
 
+/* Returns the largest coordinate of the faces. */
+static double largest(const he_mesh *m)
+{
+    he_box box;
+    (void)he_surface_box(m, &box);
+    return fmax(he_vec3_extent(box.min), he_vec3_extent(box.max));
+}
+
 static void require_undo(he_delta *delta, he_mesh *m, const he_mesh *before)
 {
     he_mesh *after = dense_copy(m);
@@ -199,6 +207,11 @@ static void play(const random_family *of, md_random *r)
     require_locks(before, m, chosen);
     require_numbers(m);
     assert_int_equal(euler(m), euler(before));
+    /* the points of faces outside the set are at the distance 0 */
+    if (he_mesh_faces(m) > 0) {
+        const dense_apart apart = dense_measure(m, before);
+        assert_true(apart.farthest <= done.distance * (1 + 1e-9) + 1e-12 * largest(before));
+    }
     assert_true(isfinite(done.mean) && done.smallest_angle >= 0 && done.largest_angle < 3.2);
     assert_true(done.shortest <= done.mean * (1 + 1e-12) &&
                 done.mean <= done.longest * (1 + 1e-12));
