@@ -74,17 +74,20 @@ double he_compare_default_bound(const he_compared surfaces[2])
 static he_status reserve(he_comparing *c, he_error *err)
 {
     const size_t vertices = c->from.mesh->c.vertices.issued, triangles = c->from.tree->count;
+    c->first = he_mem_array(NULL, vertices, sizeof *c->first);
     c->nearest = he_mem_array(NULL, vertices, sizeof *c->nearest);
     c->distance = he_mem_array(NULL, vertices, sizeof *c->distance);
     c->upper = he_mem_array(NULL, triangles, sizeof *c->upper);
     c->equal = he_bits_new(triangles);
-    return c->nearest != NULL && c->distance != NULL && c->upper != NULL && c->equal != NULL
+    return c->first != NULL && c->nearest != NULL && c->distance != NULL && c->upper != NULL &&
+                   c->equal != NULL
                ? HE_OK
                : he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu triangles", triangles);
 }
 
 static void clear(he_comparing *c)
 {
+    he_mem_free(c->first);
     he_mem_free(c->nearest);
     he_mem_free(c->distance);
     he_mem_free(c->upper);
@@ -105,24 +108,31 @@ static he_status find_place(he_comparing *c, he_error *err)
     return he_comparing_ask(c, corner[0], 0, &nearest, &distance, err);
 }
 
-/* The fractions of the progress at which the samples and the cuts of each direction are done. */
-static const double DONE[2][2] = {{0.3, 0.5}, {0.8, 1}};
+/* The fractions of the progress at which the vertices, the samples and the cuts of each direction
+ * are done. */
+static const double DONE[2][3] = {{0.1, 0.3, 0.5}, {0.6, 0.8, 1}};
 
 static he_status go(he_comparing *c, int direction, he_error *err)
 {
     he_progress *progress = c->budget.progress;
     he_status status = reserve(c, err);
     if (status == HE_OK) {
-        status = he_progress_phase(progress, "sampling distances", DONE[direction][0], err);
+        status = he_progress_phase(progress, "measuring vertices", DONE[direction][0], err);
     }
     if (status == HE_OK) {
         status = he_find_equal_faces(&c->from, &c->to, &c->budget, c->equal, &c->equal_count, err);
     }
     if (status == HE_OK) {
+        status = he_compare_reach(c, err);
+    }
+    if (status == HE_OK) {
+        status = he_progress_phase(progress, "sampling distances", DONE[direction][1], err);
+    }
+    if (status == HE_OK) {
         status = he_compare_sample(c, err);
     }
     if (status == HE_OK) {
-        status = he_progress_phase(progress, "bounding distances", DONE[direction][1], err);
+        status = he_progress_phase(progress, "bounding distances", DONE[direction][2], err);
     }
     if (status == HE_OK) {
         status = he_compare_branch(c, err);

@@ -2,6 +2,7 @@
  * distance of a point of one surface from another one.
  *
  *     compare.c      both directions, one after the other
+ *     parts.c        loops over the triangles in parts, on several threads
  *     sample.c       samples of all triangles: a lower bound, means, upper bounds
  *     branch.c       triangles whose upper bound is too large are cut until it is not
  *     piece.c        convex polygons that are cut by planes
@@ -34,7 +35,9 @@ typedef struct he_comparing {
     double settled; /* no piece that needs no further cuts has a larger distance */
     double target;  /* a piece with this upper bound, `lower` + `bound`, needs no further cuts */
     /* The nearest triangle of each vertex of `from` that was reached, and its distance. Vertices
-     * that were not reached have HE_NONE. */
+     * that were not reached have HE_NONE. The first triangle that has a vertex, and is not in both
+     * surfaces, reaches it. */
+    uint32_t *first;
     uint32_t *nearest;
     double *distance;
     double *upper;   /* for each triangle of `from` an upper bound of the distances of its points */
@@ -42,6 +45,7 @@ typedef struct he_comparing {
     he_sample *samples;
     size_t sample_count, sample_capacity;
     double weight, sum, squares; /* sums over the samples */
+    double area;                 /* of `from`, in coordinates of its own tree */
     uint64_t pieces;
     uint32_t equal_count;
     bool complete;
@@ -59,7 +63,21 @@ void he_comparing_corners(const he_comparing *c, uint32_t triangle, he_vec3 out[
 double he_comparing_farthest(const he_comparing *c, const he_vec3 *points, uint32_t count,
                              uint32_t to_triangle, uint32_t *farthest);
 
-/* Samples all triangles. Fills the arrays of `c`, which must have room. */
+/* The work on the triangles `from` to `to` - 1 of a part of the loop. */
+typedef he_status (*he_compare_part)(he_comparing *part, uint32_t from, uint32_t to, he_error *err);
+
+/* Calls `work` for HE_COMPARE_PART triangles of `from` at a time, on several threads if some are
+ * lent. Each part has a copy of `c` of its own, without samples and sums, and parts may write only
+ * such entries of the arrays that no other part reads or writes. The copies are then joined in
+ * order, so the result does not depend on the number of threads.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns the error of `work` if it fails. */
+enum { HE_COMPARE_PART = 2048 };
+HE_NODISCARD he_status he_compare_in_parts(he_comparing *c, he_compare_part work, he_error *err);
+
+/* Finds the distances of all vertices. Fills the arrays of `c`, which must have room. */
+HE_NODISCARD he_status he_compare_reach(he_comparing *c, he_error *err);
+/* Samples all triangles, whose vertices were reached. */
 HE_NODISCARD he_status he_compare_sample(he_comparing *c, he_error *err);
 /* Cuts triangles until the largest upper bound is at most `bound` above the lower bound. */
 HE_NODISCARD he_status he_compare_branch(he_comparing *c, he_error *err);

@@ -7,8 +7,6 @@ static const double SAMPLES = 4096;
 
 enum { MOST_PARTS = 65 }; /* into so many parts a side is divided at most */
 
-static const double NOT_REACHED = -1;
-
 static he_status add_sample(he_comparing *c, double distance, double weight, he_error *err)
 {
     if (c->sample_count == c->sample_capacity) {
@@ -112,28 +110,6 @@ static double area_of(const he_comparing *c, uint32_t triangle)
     return he_vec3_length(he_vec3_cross(he_vec3_sub(p[1], p[0]), he_vec3_sub(p[2], p[0]))) / 2;
 }
 
-/* Finds the distances of the corners from `to`. Vertices that were reached before are not searched
- * again. */
-static he_status ask_corners(he_comparing *c, uint32_t triangle, const he_vec3 corner[3],
-                             uint32_t *hint, double out[3], he_error *err)
-{
-    const uint32_t *vertex = c->from.tree->triangles[triangle].vertex;
-    for (int k = 0; k < 3; k++) {
-        const uint32_t v = vertex[k];
-        if (c->distance[v] == NOT_REACHED) {
-            he_status status = he_comparing_ask(c, corner[k], triangle, hint, &c->distance[v], err);
-            if (status != HE_OK) {
-                c->distance[v] = NOT_REACHED;
-                return status;
-            }
-            c->nearest[v] = *hint;
-        }
-        out[k] = c->distance[v];
-        *hint = c->nearest[v];
-    }
-    return HE_OK;
-}
-
 /* Returns an upper bound of the distances of the points of a triangle, given the nearest triangle
  * and the distance of its middle. */
 static double bound_of(const he_comparing *c, uint32_t triangle, const he_vec3 corner[3],
@@ -161,62 +137,102 @@ static double bound_of(const he_comparing *c, uint32_t triangle, const he_vec3 c
 }
 
 static he_status sample_triangle(he_comparing *c, uint32_t triangle, double weight, double cell,
-                                 uint32_t *hint, he_error *err)
+                                 he_error *err)
 {
+    const uint32_t *vertex = c->from.tree->triangles[triangle].vertex;
     he_vec3 p[3];
+    uint32_t hint = c->nearest[vertex[2]];
     double corner[3], middle;
     he_comparing_corners(c, triangle, p);
-    he_status status = ask_corners(c, triangle, p, hint, corner, err);
-    if (status != HE_OK) {
-        return status;
+    for (int k = 0; k < 3; k++) {
+        corner[k] = c->distance[vertex[k]];
     }
     const he_vec3 center = he_vec3_scale(he_vec3_add(p[0], he_vec3_add(p[1], p[2])), 1 / 3.0);
-    status = he_comparing_ask(c, center, triangle, hint, &middle, err);
+    he_status status = he_comparing_ask(c, center, triangle, &hint, &middle, err);
     if (status != HE_OK) {
         return status;
     }
-    c->upper[triangle] = bound_of(c, triangle, p, *hint, middle);
+    c->upper[triangle] = bound_of(c, triangle, p, hint, middle);
     const double parts = ceil(sqrt(weight / cell));
     if (!(parts > 1)) {
         add_to_means(c, corner, middle, weight);
         return add_sample(c, middle, weight, err);
     }
-    lattice l = {.c = c, .triangle = triangle, .hint = *hint};
+    lattice l = {.c = c, .triangle = triangle, .hint = hint};
     memcpy(l.corner, p, sizeof p);
     l.parts = parts < MOST_PARTS ? (uint32_t)parts : MOST_PARTS;
     l.weight = weight / ((double)l.parts * l.parts);
     return sample_lattice(&l, err);
 }
 
-he_status he_compare_sample(he_comparing *c, he_error *err)
+/* --- parts --- */
+
+static he_status report(const he_comparing *c, uint32_t i, he_error *err)
 {
-    const uint32_t count = c->from.tree->count;
-    double area = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        area += area_of(c, i);
-    }
-    for (uint32_t v = 0; v < c->from.mesh->c.vertices.issued; v++) {
-        c->nearest[v] = HE_NONE;
-        c->distance[v] = NOT_REACHED;
-    }
-    /* Without any area every triangle counts as much as the others. */
-    const double cell = area > 0 ? area / SAMPLES : 1;
+    return i % 256 == 0 ? he_progress_step(c->budget.progress, i, c->from.tree->count, err) : HE_OK;
+}
+
+static he_status reach_part(he_comparing *c, uint32_t from, uint32_t to, he_error *err)
+{
     uint32_t hint = HE_NONE;
     he_status status = HE_OK;
     /* The order of the tree is one in which neighbours follow each other, so hints are good. */
-    for (uint32_t i = 0; status == HE_OK && i < count; i++) {
-        const double weight = area > 0 ? area_of(c, i) : 1;
-        if (he_bits_get(c->equal, i)) {
+    for (uint32_t i = from; status == HE_OK && i < to; i++) {
+        he_vec3 corner[3];
+        const uint32_t *vertex = c->from.tree->triangles[i].vertex;
+        status = report(c, i, err);
+        he_comparing_corners(c, i, corner);
+        for (int k = 0; k < 3 && status == HE_OK; k++) {
+            const uint32_t v = vertex[k];
+            if (c->first[v] == i) {
+                status = he_comparing_ask(c, corner[k], i, &hint, &c->distance[v], err);
+                c->nearest[v] = hint;
+            }
+        }
+    }
+    return status;
+}
+
+he_status he_compare_reach(he_comparing *c, he_error *err)
+{
+    for (uint32_t v = 0; v < c->from.mesh->c.vertices.issued; v++) {
+        c->first[v] = c->nearest[v] = HE_NONE;
+        c->distance[v] = 0;
+    }
+    for (uint32_t i = c->from.tree->count; i-- > 0;) {
+        const uint32_t *vertex = c->from.tree->triangles[i].vertex;
+        for (int k = 0; k < 3 && !he_bits_get(c->equal, i); k++) {
+            c->first[vertex[k]] = i;
+        }
+    }
+    return he_compare_in_parts(c, reach_part, err);
+}
+
+static he_status sample_part_of_surface(he_comparing *c, uint32_t from, uint32_t to, he_error *err)
+{
+    /* Without any area every triangle counts as much as the others. */
+    const double cell = c->area > 0 ? c->area / SAMPLES : 1;
+    he_status status = HE_OK;
+    for (uint32_t i = from; status == HE_OK && i < to; i++) {
+        const double weight = c->area > 0 ? area_of(c, i) : 1;
+        status = report(c, i, err);
+        if (status == HE_OK && he_bits_get(c->equal, i)) {
             static const double zero[3] = {0, 0, 0};
             c->upper[i] = 0;
             add_to_means(c, zero, 0, weight);
             status = add_sample(c, 0, weight, err);
-        } else {
-            status = sample_triangle(c, i, weight, cell, &hint, err);
-        }
-        if (status == HE_OK && i % 256 == 0) {
-            status = he_progress_step(c->budget.progress, i, count, err);
+        } else if (status == HE_OK) {
+            status = sample_triangle(c, i, weight, cell, err);
         }
     }
     return status;
+}
+
+he_status he_compare_sample(he_comparing *c, he_error *err)
+{
+    c->area = 0;
+    for (uint32_t i = 0; i < c->from.tree->count; i++) {
+        c->area += area_of(c, i);
+    }
+    return he_compare_in_parts(c, sample_part_of_surface, err);
 }

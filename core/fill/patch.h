@@ -102,11 +102,10 @@ enum { HE_COVER_LOOP = 64 };
 HE_NODISCARD he_status he_patch_cover(he_patch *p, he_error *err);
 
 /* Adds vertices until edges are about as long as wanted, or `coarseness` times as long. They should
- * have the length `edge_length`, in the coordinates of the patch, or, if it is 0, that of the edges
- * of the rim; then they grow towards the middle of a hole that would get too many faces otherwise.
- * Edges are flipped as he_patch_relax does (Liepa 2003).
- * Returns HE_LIMIT if `edge_length` asks for more than HE_FILL_FACES faces, HE_NO_MEMORY or
- * HE_CANCELLED. */
+ * have the length `edge_length`, in the coordinates of the patch, or, if it is 0, that of the
+ * mesh's edges at the rim; then they grow towards the middle of a hole that would get too many
+ * faces otherwise. Edges are flipped as he_patch_relax does (Liepa 2003). Returns HE_LIMIT if
+ * `edge_length` asks for more than HE_FILL_FACES faces, HE_NO_MEMORY or HE_CANCELLED. */
 HE_NODISCARD he_status he_patch_refine(he_patch *p, double edge_length, double coarseness,
                                        he_error *err);
 

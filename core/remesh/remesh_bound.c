@@ -121,64 +121,76 @@ static bool has_middle(const flat ground[3])
 /* The triangles of the ground that were found over a face. */
 typedef struct flood {
     uint32_t found[MOST_GROUND];
+    flat corner[MOST_GROUND][3];
     uint32_t count;
     bool has_middle; /* one of them is over the middle of the face */
+    double highest;  /* the largest height of one of their corners */
 } flood;
 
-/* Adds a triangle unless it was found before. Returns false if there are too many. */
-static bool add(flood *to, uint32_t t)
+static bool has(const flood *of, uint32_t t)
 {
-    for (uint32_t i = to->count; i-- > 0;) {
-        if (to->found[i] == t) {
+    for (uint32_t i = of->count; i-- > 0;) {
+        if (of->found[i] == t) {
             return true;
         }
     }
-    if (to->count == MOST_GROUND) {
-        return false;
-    }
-    to->found[to->count++] = t;
-    return true;
+    return false;
 }
 
 /* Looks at a triangle of the ground, and adds those beside it over the face. Returns false if the
  * face is not surely below the ground. */
-static bool look(const face *f, uint32_t t, flood *to, double *most)
+static bool look(const face *f, uint32_t i, flood *to)
 {
-    const he_ground_triangle *own = &f->g->triangles[t];
-    flat at[3];
-    for (unsigned i = 0; i < 3; i++) {
-        at[i] = flatten(f, f->g->place[own->v[i]]);
+    const he_ground_triangle *own = &f->g->triangles[to->found[i]];
+    flat *at = to->corner[i];
+    for (unsigned k = 0; k < 3; k++) {
+        at[k] = flatten(f, f->g->place[own->v[k]]);
+        to->highest = fmax(to->highest, fabs(at[k].z));
     }
     if (!(turn(at[0], at[1], at[2]) > 0)) {
         return false;
     }
     to->has_middle |= has_middle(at);
-    raise(f, at, most);
-    for (unsigned i = 0; i < 3; i++) {
-        if (crosses(f, at[i], at[(i + 1) % 3]) &&
-            (own->twin[i] == HE_NONE || !add(to, own->twin[i] >> 2))) {
+    for (unsigned k = 0; k < 3; k++) {
+        const uint32_t twin = own->twin[k];
+        if ((twin != HE_NONE && has(to, twin >> 2)) || !crosses(f, at[k], at[(k + 1) % 3])) {
+            continue;
+        }
+        if (twin == HE_NONE || to->count == MOST_GROUND) {
             return false;
         }
+        to->found[to->count++] = twin >> 2;
     }
     return true;
 }
 
-/* Returns the largest distance of a face from the ground over it, of which `t` is a triangle;
- * HUGE_VAL if the face is not surely below the ground. */
-static double height_of(const face *f, uint32_t t)
+/* Returns the largest distance of a face from the ground over it, of which `t` is a triangle; or a
+ * larger number up to `enough`. Returns HUGE_VAL if the face is not surely below the ground. */
+static double height_of(const face *f, uint32_t t, double enough)
 {
-    flood over = {.found = {t}, .count = 1};
+    flood over;
     double most = 0;
+    over.found[0] = t;
+    over.count = 1;
+    over.has_middle = false;
+    over.highest = 0;
     for (uint32_t i = 0; i < over.count; i++) {
-        if (!look(f, over.found[i], &over, &most)) {
+        if (!look(f, i, &over)) {
             return HUGE_VAL;
         }
     }
-    return over.has_middle ? most : HUGE_VAL;
+    if (!over.has_middle) {
+        return HUGE_VAL;
+    }
+    for (uint32_t i = 0; i < over.count && over.highest > enough; i++) {
+        raise(f, over.corner[i], &most);
+    }
+    return over.highest > enough ? most : over.highest;
 }
 
-/* Returns a bound of the distance of the points of a face from the ground. */
-static double bound_of(const he_net *n, const he_ground *g, uint32_t t)
+/* Returns a bound of the distance of the points of a face from the ground, which need not be the
+ * least one if it is below `enough`. */
+static double bound_of(const he_net *n, const he_ground *g, uint32_t t, double enough)
 {
     const uint32_t *v = n->triangles[t].v;
     he_vec3 p[3];
@@ -203,7 +215,7 @@ static double bound_of(const he_net *n, const he_ground *g, uint32_t t)
             flat at = flatten(&f, p[i]);
             f.corner[i] = between(at, (flat){0, 0, 0}, SMALLER[k]);
         }
-        double height = height_of(&f, near.triangle);
+        double height = height_of(&f, near.triangle, enough - SMALLER[k] * f.radius);
         if (height < HUGE_VAL) {
             return fmin(bound, height + SMALLER[k] * f.radius);
         }
@@ -223,7 +235,7 @@ static he_status bound_range(void *context, uint32_t which, size_t from, size_t 
     double most = 0;
     (void)err;
     for (uint32_t t = (uint32_t)from; t < to; t++) {
-        most = he_net_is_gone(b->n, t) ? most : fmax(most, bound_of(b->n, b->g, t));
+        most = he_net_is_gone(b->n, t) ? most : fmax(most, bound_of(b->n, b->g, t, most));
     }
     b->most[which] = most;
     return HE_OK;

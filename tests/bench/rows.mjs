@@ -481,6 +481,13 @@ export const parts = [
     scaling(
         'torus',
         'natural',
+        [['Hausdorff distance, bound 1e-4', 'compare', 'Mface/s']],
+        'one thread cuts the triangles that hold the farthest point, in the order of their bounds',
+        { side: 200 },
+    ),
+    scaling(
+        'torus',
+        'natural',
         [['Loop, one step', 'loop', 'M output faces/s']],
         'sums at vertices stay with one thread: their order is part of the result',
         { side: 400 },

@@ -20,8 +20,9 @@ export const compare = [
                 near: 0.05,
                 target: [['cgal', 5]],
                 why:
-                    'two thirds of the time are the nearest points of samples, four a face, of ' +
-                    'which the means and histograms are made, too; CGAL computes neither',
+                    'two thirds of the time are the nearest points of samples, three a face, of ' +
+                    'which the means and histograms are made, too; CGAL computes neither. ' +
+                    'Processor time is told: two threads take half as long (scaling)',
                 runs: 3,
                 slow: ['cgal'],
             },

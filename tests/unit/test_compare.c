@@ -9,6 +9,7 @@
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/write.h"
+#include "tests/backwards.h"
 #include "tests/failing.h"
 #include "tests/sanitized.h"
 #include "tests/seed.h"
@@ -480,6 +481,27 @@ static void no_sample_is_outside_the_bounds(void **state)
     pair_clear(&p);
 }
 
+static void the_order_of_the_parts_does_not_matter(void **state)
+{
+    (void)state;
+    he_mesh *bent = dense_torus(60);
+    for (uint32_t v = 0; v < he_mesh_vertices(bent); v++) {
+        const he_vec3 p = he_position(bent, (he_vertex){v});
+        he_set_position(bent, (he_vertex){v}, (he_vec3){p.x, p.y, p.z + 0.02 * sin(7 * p.x)});
+    }
+    pair p = pair_of(dense_torus(60), bent);
+    static he_comparison alone, parts; /* static, so that padding is equal */
+    const he_compare_options options = {.bound = 1e-3, .bins = 10};
+    he_progress progress;
+    uint32_t count;
+    backwards_lend(&progress, &count);
+    assert_int_equal(he_compare(p.surface, &options, NULL, &alone, NULL), HE_OK);
+    assert_int_equal(he_compare(p.surface, &options, &progress, &parts, NULL), HE_OK);
+    assert_true(count >= 16); /* four parts of each loop */
+    assert_memory_equal(&alone, &parts, sizeof alone);
+    pair_clear(&p);
+}
+
 static void too_few_pieces_leave_wider_bounds(void **state)
 {
     (void)state;
@@ -651,6 +673,7 @@ int main(void)
         cmocka_unit_test(refusals),
         cmocka_unit_test(random_meshes_have_sound_bounds),
         cmocka_unit_test(no_sample_is_outside_the_bounds),
+        cmocka_unit_test(the_order_of_the_parts_does_not_matter),
         cmocka_unit_test(too_few_pieces_leave_wider_bounds),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(points_have_the_signed_distance_from_a_cube),

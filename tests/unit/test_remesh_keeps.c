@@ -1,11 +1,12 @@
 /* Remeshing: feature lines and their corners, values on the two sides of a line, faces outside the
- * set, and the distance that is reported. */
+ * set, the distance that is reported, and the order of parallel parts. */
 #include "tests/unit/dense.h"
 
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 #include "mesh/write.h"
 #include "remesh/remesh.h"
+#include "tests/backwards.h"
 
 #include <math.h>
 
@@ -116,7 +117,7 @@ static line line_of(const he_mesh *m)
 static void a_feature_line_is_divided_anew_and_its_corners_stay(void **state)
 {
     (void)state;
-    static const double lengths[] = {0.45, 0.8, 1.3, 3};
+    static const double lengths[] = {0.45, 0.8, 1.7, 3};
     static const uint32_t corners[] = {10 * ACROSS + 4, 10 * ACROSS + 15, 16 * ACROSS + 15};
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         he_mesh *m = dense_grid(SIDE, dense_waves, 1);
@@ -302,6 +303,25 @@ static void a_closed_convex_surface_keeps_its_volume(void **state)
     }
 }
 
+static void the_order_of_the_parts_does_not_matter(void **state)
+{
+    (void)state;
+    he_mesh *m = dense_torus(120), *alone = dense_copy(m);
+    he_progress progress;
+    uint32_t count;
+    const he_remesh_options options = usual(0.06);
+    backwards_lend(&progress, &count);
+    he_mesh_set_progress(m, &progress);
+    const he_remeshed done = remesh(m, &options);
+    he_mesh_set_progress(m, NULL);
+    const he_remeshed alone_done = remesh(alone, &options);
+    assert_true(count >= 4);
+    assert_true(he_mesh_equal(m, alone));
+    assert_true(done.distance == alone_done.distance);
+    he_mesh_free(alone);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -310,6 +330,7 @@ int main(void)
         cmocka_unit_test(faces_outside_the_set_keep_every_bit),
         cmocka_unit_test(the_reported_distance_bounds_that_of_all_points),
         cmocka_unit_test(a_closed_convex_surface_keeps_its_volume),
+        cmocka_unit_test(the_order_of_the_parts_does_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,8 +4,7 @@
 #include "compare/compare.h"
 #include "mesh/write.h"
 
-/* Returns a copy of the input whose vertices bench_bend has moved. */
-static he_mesh *bent(bench_side *side)
+he_mesh *bench_bent(bench_side *side)
 {
     he_mesh *m;
     bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
@@ -21,7 +20,7 @@ static he_mesh *bent(bench_side *side)
 /* The trees of boxes are made within the time, as CGAL makes its own. */
 static void compare(bench_side *side, bench_result *out)
 {
-    he_mesh *meshes[2] = {bench_mesh(side), bent(side)};
+    he_mesh *meshes[2] = {bench_mesh(side), bench_bent(side)};
     he_bvh *trees[2];
     he_compared surfaces[2];
     he_comparison done;

@@ -48,6 +48,8 @@ void bench_write_positions(const bench_side *side, const char *name, const he_me
  * farthest distance, which estimates the Hausdorff distance; AMOUNT: points where a face is turned
  * over. */
 void bench_distance(bench_side *side, const char *name, bench_result *out);
+/* Returns a copy of the input whose vertices bench_bend has moved. */
+he_mesh *bench_bent(bench_side *side);
 /* Returns a hash of the vertices, edges, faces and the corners of every face. */
 uint64_t bench_mesh_hash(const he_mesh *m);
 

@@ -3,6 +3,7 @@
 #include "bench/ours/ours.h"
 
 #include "algo/subdivide.h"
+#include "compare/compare.h"
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 #include "system/parallel.h"
@@ -118,6 +119,30 @@ static void subdivide(bench_side *side, he_scheme scheme, bool helped, bench_res
     he_mesh_free(m);
 }
 
+/* Compares the input with a bent copy; the trees of boxes are made before. */
+static void compare(bench_side *side, bool helped, bench_result *out)
+{
+    he_progress progress;
+    he_mesh *bent = bench_bent(side);
+    he_compared surfaces[2] = {{bench_mesh(side), NULL}, {bent, NULL}};
+    he_bvh *trees[2];
+    he_comparison done;
+    const he_compare_options options = {.bound = BENCH_COMPARE_BOUND, .bins = 1};
+    for (int i = 0; i < 2; i++) {
+        bench_require(he_bvh_new(surfaces[i].mesh, NULL, &trees[i], NULL));
+        surfaces[i].tree = trees[i];
+    }
+    lend(&progress, helped);
+    double start = wall_seconds();
+    bench_require(he_compare(surfaces, &options, &progress, &done, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = side->input.faces;
+    bench_exact(out, bench_place_hash(done.lower, done.side[0].mean, done.side[1].rms));
+    he_bvh_free(trees[0]);
+    he_bvh_free(trees[1]);
+    he_mesh_free(bent);
+}
+
 static void loop(bench_side *side, bool helped, bench_result *out)
 {
     subdivide(side, HE_LOOP, helped, out);
@@ -170,6 +195,7 @@ BOTH(build)
 BOTH(face_normals)
 BOTH(corner_normals)
 BOTH(loop)
+BOTH(compare)
 BOTH(catmull_clark)
 BOTH(import_obj)
 BOTH(import_ply)
@@ -183,6 +209,8 @@ const bench_row bench_scaling_rows[] = {{"build_1", build_1},
                                         {"corner_normals_2", corner_normals_2},
                                         {"loop_1", loop_1},
                                         {"loop_2", loop_2},
+                                        {"compare_1", compare_1},
+                                        {"compare_2", compare_2},
                                         {"catmull_clark_1", catmull_clark_1},
                                         {"catmull_clark_2", catmull_clark_2},
                                         {"import_obj_1", import_obj_1},
