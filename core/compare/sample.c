@@ -120,7 +120,8 @@ static double bound_of(const he_comparing *c, uint32_t triangle, const he_vec3 c
         he_vec3_scale(he_vec3_add(corner[0], he_vec3_add(corner[1], corner[2])), 1 / 3.0);
     double radius = 0;
     for (int k = 0; k < 3; k++) {
-        radius = fmax(radius, he_vec3_length(he_vec3_sub(corner[k], center)));
+        const double far = he_vec3_length(he_vec3_sub(corner[k], center));
+        radius = far > radius ? far : radius;
     }
     double upper = middle + radius;
     uint32_t farthest;

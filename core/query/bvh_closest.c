@@ -2,6 +2,8 @@
 #include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
 
+#include <string.h>
+
 static double square(he_vec3 a)
 {
     return he_vec3_dot(a, a);
@@ -24,6 +26,7 @@ static bool over(he_vec3 p, const he_vec3 c[3], double weight[3], bool *thin)
     he_vec3 u = he_vec3_sub(c[1], c[0]), v = he_vec3_sub(c[2], c[0]), w = he_vec3_sub(p, c[0]);
     he_vec3 normal = he_vec3_cross(u, v);
     double area = square(normal);
+    weight[0] = weight[1] = weight[2] = 0;
     const double widest = square(u) * square(v);
     *thin = !(area > 1e-8 * widest);
     if (!(area > 1e-24 * widest)) {
@@ -50,12 +53,19 @@ static he_vec3 from_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
     return he_vec3_sub(p, q);
 }
 
+/* If p is not over the triangle, the nearest point is on a side that separates p from it: the
+ * weight of the corner opposite to that side is negative. Sides whose weight is larger than this,
+ * which is far more than the rounding errors of triangles that are not thin, are not tried. */
+static const double INSIDE = 1e-4;
+
 he_vec3 he_bvh_to_triangle(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     he_vec3 back = p;
-    double best = HUGE_VAL;
+    double best = HUGE_VAL, before[3];
     bool thin;
-    if (over(p, c, weight, &thin)) {
+    const bool is_over = over(p, c, before, &thin);
+    memcpy(weight, before, sizeof before);
+    if (is_over) {
         back = from_point(p, c, weight);
         if (!thin) {
             return back;
@@ -64,6 +74,9 @@ he_vec3 he_bvh_to_triangle(he_vec3 p, const he_vec3 c[3], double weight[3])
     }
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
+        if (!thin && before[(i + 2) % 3] > INSIDE) {
+            continue;
+        }
         double t = along(p, c[i], c[j]), own[3] = {0, 0, 0};
         own[i] = 1 - t;
         own[j] += t;

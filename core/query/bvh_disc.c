@@ -7,14 +7,6 @@
  * each level of the tree. */
 enum { PATCH = 256 };
 
-/* Twice the rounding error of a disc's normal, which is stored in floats. */
-static const double ROUNDING = 4e-7;
-
-static he_vec3 of_floats(const float v[3])
-{
-    return (he_vec3){v[0], v[1], v[2]};
-}
-
 static void to_floats(he_vec3 v, float out[3])
 {
     out[0] = (float)v.x;
@@ -27,16 +19,6 @@ static void to_floats(he_vec3 v, float out[3])
 static float upward(double x)
 {
     return nextafterf((float)(x * (1 + 1e-6)), HUGE_VALF);
-}
-
-/* Finds the distance of a point from the centre of a disc: `high` is its part along the disc's
- * normal, `wide` its part perpendicular to the normal. `from` is the vector from the centre to the
- * point. */
-static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
-{
-    double along = he_vec3_dot(from, normal);
-    *high = fabs(along);
-    *wide = he_vec3_length(he_vec3_sub(from, he_vec3_scale(normal, along)));
 }
 
 static void set(he_bvh_disc *disc, const he_box_node *node, he_vec3 normal, double thick,
@@ -90,7 +72,7 @@ static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node,
         he_bvh_corners(tree, m, i, c);
         for (int k = 0; k < 3; k++) {
             double high, wide;
-            reach(he_vec3_sub(c[k], of_floats(disc->center)), normal, &high, &wide);
+            he_bvh_reach(he_vec3_sub(c[k], he_bvh_of_floats(disc->center)), normal, &high, &wide);
             thick = high > thick ? high : thick;
             radius = wide > radius ? wide : radius;
         }
@@ -121,10 +103,10 @@ static he_vec3 mean_normal(const he_bvh_disc children[2])
     he_vec3 sum = {0, 0, 0}, normal;
     for (int i = 0; i < 2; i++) {
         double area = (double)children[i].radius * children[i].radius;
-        sum = he_vec3_add(sum, he_vec3_scale(of_floats(children[i].normal), area));
+        sum = he_vec3_add(sum, he_vec3_scale(he_bvh_of_floats(children[i].normal), area));
     }
     if (!he_vec3_normalise(sum, &normal)) {
-        he_vec3_normalise(of_floats(children[0].normal), &normal);
+        he_vec3_normalise(he_bvh_of_floats(children[0].normal), &normal);
     }
     return normal;
 }
@@ -137,12 +119,13 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
     center(disc, node);
     for (int i = 0; i < 2; i++) {
         double high, wide;
-        he_vec3 from = he_vec3_sub(of_floats(children[i].center), of_floats(disc->center));
-        double same = fmin(fabs(he_vec3_dot(of_floats(children[i].normal), normal)), 1);
-        /* ROUNDING is added because a small angle between the two discs may have been lost by
-         * rounding. */
+        he_vec3 from =
+            he_vec3_sub(he_bvh_of_floats(children[i].center), he_bvh_of_floats(disc->center));
+        double same = fmin(fabs(he_vec3_dot(he_bvh_of_floats(children[i].normal), normal)), 1);
+        /* HE_BVH_ROUNDING is added because a small angle between the two discs may have been lost
+         * by rounding. */
         double askew = sqrt(1 - same * same) + 1e-3;
-        reach(from, normal, &high, &wide);
+        he_bvh_reach(from, normal, &high, &wide);
         thick = fmax(thick, high + children[i].thick + children[i].radius * askew);
         radius = fmax(radius, wide + children[i].radius + children[i].thick * askew);
     }
@@ -171,15 +154,4 @@ he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, h
         }
     }
     return status;
-}
-
-double he_bvh_to_disc(const he_bvh_disc *disc, he_vec3 p)
-{
-    double high, wide;
-    he_vec3 from = he_vec3_sub(p, of_floats(disc->center));
-    reach(from, of_floats(disc->normal), &high, &wide);
-    double rounding = ROUNDING * (fabs(from.x) + fabs(from.y) + fabs(from.z));
-    high = fmax(high - disc->thick - rounding, 0);
-    wide = fmax(wide - disc->radius - rounding, 0);
-    return high * high + wide * wide;
 }
