@@ -9,7 +9,7 @@
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/write.h"
-#include "tests/backwards.h"
+#include "tests/unit/backwards.h"
 #include "tests/failing.h"
 #include "tests/sanitized.h"
 #include "tests/seed.h"

@@ -6,7 +6,7 @@
 #include "mesh/walk.h"
 #include "mesh/write.h"
 #include "remesh/remesh.h"
-#include "tests/backwards.h"
+#include "tests/unit/backwards.h"
 
 #include <math.h>
 

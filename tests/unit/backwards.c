@@ -1,4 +1,4 @@
-#include "tests/backwards.h"
+#include "tests/unit/backwards.h"
 
 static he_status run(void *self, uint32_t parts, he_part part, void *context, he_progress *progress,
                      he_error *err)

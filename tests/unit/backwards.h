@@ -1,7 +1,7 @@
 /* backwards.h - a host of parallel loops (base/parallel.h) that runs the parts one after another,
  * the last one first: no part may need what an earlier one has found. */
-#ifndef TESTS_BACKWARDS_H
-#define TESTS_BACKWARDS_H
+#ifndef TESTS_UNIT_BACKWARDS_H
+#define TESTS_UNIT_BACKWARDS_H
 
 #include "base/parallel.h"
 
