@@ -111,7 +111,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
-        hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space report container fresh \
+        hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space bench-reshape report container fresh \
         screenshot examples \
         install uninstall clean ALWAYS
 
@@ -170,6 +170,7 @@ NEEDS.bench-slow   := build bench-http bench-slow
 NEEDS.bench-flood  := build bench-slow
 NEEDS.bench-large  := build bench-http
 NEEDS.bench-space  := build
+NEEDS.bench-reshape := build node bench
 NEEDS.report        = node $(foreach name,$(REPORTS),$(NEEDS.$(name)))
 NEEDS.screenshot   := build web browser
 NEEDS.container    := container
@@ -481,6 +482,9 @@ bench: $(SIDES) | $(INSTALLED) ## the kernel beside OpenMesh, CGAL and Eigen; BE
 	    --runs $(RUNS) --scale $(SCALE) --flags="$(filter -O% -f% -m%,$(CFLAGS))" \
 	    --peer-flags="$(PEER_FLAGS)"
 
+bench-reshape: $(SIDES) | $(INSTALLED) ## remeshing, smoothing, filling, deforming, comparing and solving, beside CGAL and Eigen
+	@$(MAKE) --no-print-directory bench BENCH=reshape
+
 bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangulation: our figures alone
 	@for program in $(SPACE); do $$program; done
 
@@ -515,7 +519,7 @@ bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: tim
 
 # Runs each benchmark in REPORTS by itself, and writes what it printed into tests/bench/README.md.
 # RUNS, BENCH, SCALE, MINUTES and LOAD are passed on to the benchmarks.
-REPORTS  ?= bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space soak
+REPORTS  ?= bench bench-reshape bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space soak
 REPORTED  = $(strip make $(1) $(foreach v,BENCH RUNS SCALE MINUTES LOAD,$(if $(filter command%,$(origin $(v))),$(v)=$($(v)))))
 report: | $(INSTALLED) ## runs REPORTS="bench soak" and writes what they print into tests/bench/README.md
 	@mkdir -p build

@@ -180,6 +180,9 @@ function verdict(row, part, medians) {
             near: ours > EDGE * row.limit,
         };
     }
+    if (row.target === undefined) {
+        return { ratio: '', target: '', says: '' };
+    }
     const [[peer, times]] = row.target;
     const ratios = (row.sides ?? part.sides)
         .filter((name) => name in medians)
@@ -187,7 +190,7 @@ function verdict(row, part, medians) {
     const best = ratios.reduce((a, b) => (b[1] < a[1] ? b : a));
     const [name, reached] = peer === 'best' ? best : ratios.find(([one]) => one === peer);
     return {
-        ratio: `${reached.toFixed(2)} x ${names[name]}`,
+        ratio: `${reached > 1000 ? '> 1000' : reached.toFixed(2)} x ${names[name]}`,
         target: `>= ${times}`,
         says: reached >= times ? 'ok' : 'falls short',
         near: EDGE * reached < times,

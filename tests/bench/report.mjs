@@ -24,6 +24,12 @@ const sections = {
             'turn, with results that must agree. A row that falls short of its target says why.',
         picture: ['growth.svg', 'Nanoseconds an element on meshes of 10 thousand to 10 million faces'],
     },
+    'bench-reshape': {
+        about:
+            'Remeshing, smoothing, filling, deforming, comparing, segments and linear systems beside CGAL ' +
+            'and Eigen: the same inputs, in turn, and the same measures of the results. A row that falls ' +
+            'short of its target says why.',
+    },
     'bench-http': {
         about: 'Requests beside a bare libmicrohttpd program that sends the same bytes in the same run.',
     },

@@ -61,6 +61,9 @@ export const remesh = ['natural', 'shuffled'].map((order) => ({
             sides: [],
             limit: 6,
             runs: 1,
+            why:
+                'an eighth is the system clearing fresh pages; where ids are shuffled, the nearest ' +
+                'points of the given faces are waited for; the report is a tenth',
         },
     ],
 }));
