@@ -54,6 +54,23 @@ he_mesh *giant_rows(void)
     return finish(&soup, status);
 }
 
+he_mesh *giant_hub(void)
+{
+    enum { NEIGHBOURS = 5000 };
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    he_status status = he_soup_add_vertex(&soup, (he_vec3){0, 0, 0}, NULL);
+    for (uint32_t i = 0; i < NEIGHBOURS && status == HE_OK; i++) {
+        const double angle = 6.283185307179586 * i / NEIGHBOURS;
+        status = he_soup_add_vertex(&soup, (he_vec3){cos(angle), sin(angle), 0}, NULL);
+    }
+    for (uint32_t i = 0; i < NEIGHBOURS && status == HE_OK; i++) {
+        const uint32_t corners[3] = {0, 1 + i, 1 + (i + 1) % NEIGHBOURS};
+        status = he_soup_add_face(&soup, corners, 3, NULL);
+    }
+    return finish(&soup, status);
+}
+
 he_mesh *giant_palette(const char *prefix, size_t count)
 {
     static const uint32_t triangle[3] = {0, 1, 2};

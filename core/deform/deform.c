@@ -1,6 +1,7 @@
 #include "deform/deform.h"
 
 #include "edit/whole/positions.h"
+#include "geometry/scale.h"
 #include "geometry/vec3.h"
 #include "mesh/marks.h"
 #include "mesh/walk.h"
@@ -44,6 +45,8 @@ he_status he_deform_goals(const he_mesh *m, const he_deform_sets *sets, const he
         }
         if (he_vec3_extent(he_vec3_sub(out[i], p)) > 0) {
             status = he_require_unlocked(&marks, HE_VERTEX, v, err);
+        } else {
+            out[i] = p; /* which may be -0 where the goal is 0 */
         }
     }
     return status;
@@ -72,7 +75,7 @@ static he_status write_all(he_mesh *m, const he_deform_sets *sets, const he_defo
     *out = (he_deformed){.energy = motion->energy};
     for (uint32_t v = 0; v < issued; v++) {
         const he_vec3 way = he_vec3_sub(points[v], he_position(m, (he_vertex){v}));
-        const double length = hypot(hypot(way.x, way.y), way.z);
+        const double length = he_saturated(hypot(hypot(way.x, way.y), way.z));
         if (length > 0) {
             out->moved++;
             out->largest = fmax(out->largest, length);

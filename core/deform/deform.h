@@ -36,6 +36,10 @@
 
 enum { HE_DEFORM_STEPS = 1000, HE_DEFORM_STEPS_USUAL = 10 };
 
+/* The most neighbours of a vertex with biharmonic: its equations join each of them with each other
+ * one, so the time grows with the third power of their number. */
+enum { HE_DEFORM_NEIGHBOURS = 4096 };
+
 typedef enum he_deform_method {
     HE_DEFORM_ARAP,
     HE_DEFORM_BIHARMONIC,
@@ -61,8 +65,9 @@ typedef struct he_deform_goal {
 
 typedef struct he_deformed {
     uint32_t moved;       /* vertices with another position */
-    double largest, mean; /* how far these vertices moved */
-    double energy;        /* that of arap, in square units of the mesh; 0 with biharmonic */
+    double largest, mean; /* how far these vertices moved, at most DBL_MAX */
+    double energy;        /* that of arap, in square units of the mesh, at most DBL_MAX; 0 with
+                             biharmonic */
 } he_deformed;
 
 /* deform: V, E and F stay. No attribute changes, not even normals. `steps` is the number of steps
@@ -76,6 +81,8 @@ typedef struct he_deformed {
  * another number of points than there are handles, if the last row of the matrix is not 0 0 0 1, or
  * if the triangles are so thin that the system of equations has no solution.
  * Returns HE_NOT_FINITE if a vertex would have a position that is not finite.
+ * Returns HE_LIMIT if a vertex has more than HE_DEFORM_NEIGHBOURS neighbours, with biharmonic, or if
+ * the patch of free vertices is too large for one system of equations.
  * Returns HE_CANCELLED if the mesh's progress is cancelled, and HE_NO_MEMORY. */
 HE_NODISCARD he_status he_deform(he_mesh *m, const he_deform_sets *sets, const he_deform_goal *goal,
                                  unsigned steps, he_deformed *out, he_error *err);
@@ -90,7 +97,7 @@ typedef struct he_deformer he_deformer;
  * HE_REPEATED_ELEMENT or HE_NO_MEMORY as he_deform does. */
 HE_NODISCARD he_status he_deform_check(const he_mesh *m, const he_deform_sets *sets, he_error *err);
 
-/* Makes the system, for lists that were checked. Returns HE_BAD_VALUE, HE_CANCELLED or
+/* Makes the system, for lists that were checked. Returns HE_BAD_VALUE, HE_LIMIT, HE_CANCELLED or
  * HE_NO_MEMORY as he_deform does. */
 HE_NODISCARD he_status he_deformer_make(const he_mesh *m, const he_deform_sets *sets,
                                         he_progress *progress, he_deformer **out, he_error *err);

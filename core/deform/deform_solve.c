@@ -5,6 +5,7 @@
 #include "deform/deformer.h"
 
 #include "deform/rotation.h"
+#include "geometry/scale.h"
 
 #include <string.h>
 
@@ -217,7 +218,7 @@ static double energy_of(const solving *s)
             energy -= a->values[i] * he_vec3_dot(bent, bent);
         }
     }
-    return energy * d->scale * d->scale;
+    return he_saturated(energy * d->scale * d->scale);
 }
 
 /* --- the whole --- */

@@ -77,6 +77,21 @@ he_status he_deform_check(const he_mesh *m, const he_deform_sets *sets, he_error
 
 /* --- the system --- */
 
+/* Refuses a vertex of so many neighbours that the product would be too large. */
+static he_status require_few_neighbours(const he_deformer *d, const he_sparse *l, he_error *err)
+{
+    for (uint32_t v = 0; v < d->vertices; v++) {
+        const size_t neighbours = l->starts[v + 1] - l->starts[v] - 1;
+        if (neighbours > HE_DEFORM_NEIGHBOURS) {
+            return he_fail(err, HE_LIMIT, HE_VERTEX, d->ids[v],
+                           "vertex %u has %zu neighbours; biharmonic takes at most %d, arap any "
+                           "number",
+                           d->ids[v], neighbours, (int)HE_DEFORM_NEIGHBOURS);
+        }
+    }
+    return HE_OK;
+}
+
 /* Makes L (1/m) L. Masses far below the mean one, of thin triangles, are raised, so that no entry
  * is far above all others. */
 static he_status square(he_deformer *d, he_laplacian *l, he_progress *progress, he_error *err)
@@ -137,14 +152,28 @@ static he_status factor(he_deformer *d, he_progress *progress, he_error *err)
     return status;
 }
 
+/* Replaces the sentence of a refusal, which is about matrices, by one about the mesh. */
+static he_status named(const he_deformer *d, he_status status, he_error *err)
+{
+    return status != HE_LIMIT
+               ? status
+               : he_fail(err, HE_LIMIT, HE_VERTEX, d->ids[0],
+                         "the surface that would follow, %u vertices around vertex %u, is too "
+                         "large for one system of equations; fix vertices around a smaller part",
+                         d->free, d->ids[0]);
+}
+
 static he_status make_system(he_deformer *d, const he_deform_triangles *t, he_progress *progress,
                              he_error *err)
 {
     const he_surface surface = {d->vertices, t->count, t->corners, d->points};
     he_laplacian l = {0};
-    he_status status = he_laplacian_make(&surface, progress, &l, err);
+    he_status status = named(d, he_laplacian_make(&surface, progress, &l, err), err);
     if (status == HE_OK && d->method == HE_DEFORM_BIHARMONIC) {
-        status = square(d, &l, progress, err);
+        status = require_few_neighbours(d, &l.matrix, err);
+    }
+    if (status == HE_OK && d->method == HE_DEFORM_BIHARMONIC) {
+        status = named(d, square(d, &l, progress, err), err);
     }
     if (status == HE_OK && d->method == HE_DEFORM_ARAP) {
         d->matrix = l.matrix;
@@ -154,7 +183,7 @@ static he_status make_system(he_deformer *d, const he_deform_triangles *t, he_pr
     if (status == HE_OK) {
         status = take_free(d, err);
     }
-    return status == HE_OK ? factor(d, progress, err) : status;
+    return status == HE_OK ? named(d, factor(d, progress, err), err) : status;
 }
 
 he_status he_deformer_make(const he_mesh *m, const he_deform_sets *sets, he_progress *progress,
@@ -173,10 +202,7 @@ he_status he_deformer_make(const he_mesh *m, const he_deform_sets *sets, he_prog
     he_mem_free(triangles.corners);
     if (status != HE_OK) {
         he_deformer_free(d);
-        return status == HE_LIMIT ? he_fail_plain(err, HE_NO_MEMORY,
-                                                  "the mesh is too large for one system of "
-                                                  "equations")
-                                  : status;
+        return status;
     }
     *out = d;
     return HE_OK;

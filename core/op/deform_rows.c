@@ -66,7 +66,7 @@ const he_op he_deform_rows[] = {
                                 .choices = methods,
                                 .doc = "arap: as rigid as possible, so parts turn and details keep "
                                        "their shape. biharmonic: smooth and quick; details do not "
-                                       "turn."},
+                                       "turn, and a vertex may have at most 4096 neighbours."},
              [DEFORM_STEPS] = {.name = "steps",
                                .type = HE_PARAM_NUMBER,
                                .flags = HE_RANGE | HE_WHOLE,
@@ -117,7 +117,7 @@ const he_op he_deform_rows[] = {
                                            "With arap: how much the surface is bent and stretched, "
                                            "in square units of the mesh."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
-                     HE_NOT_FINITE, HE_LOCKED_ELEMENT},
+                     HE_NOT_FINITE, HE_LOCKED_ELEMENT, HE_LIMIT},
         .change = {0, 0, 0},
         .pace = 30,
         .run = run_deform,

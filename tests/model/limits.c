@@ -15,6 +15,7 @@ typedef struct limit {
     uint32_t id;
     const char *number; /* name of the edit's second argument, whose value is 0.1 */
     const char *name;   /* value of its argument `name` */
+    const char *vector; /* name of an argument whose value is the vector (0, 0, 1) */
     /* the names of its choices, each followed by the value; ends in NULL */
     const char *choices[6 + 1];
     he_mesh *(*mesh)(void); /* makes the mesh for the edit's argument `mesh`; NULL if the edit has
@@ -40,6 +41,11 @@ static const limit limits[] = {
     {.row = "select",
      .make = giant_star,
      .choices = {"by", "measure", "measure", "mean_curvature", "elements", "vertices"}},
+    {.row = "deform",
+     .make = giant_hub,
+     .element = "vertex",
+     .choices = {"method", "biharmonic"},
+     .vector = "by"},
 };
 
 static void make_call(const limit *l, const he_mesh *other, md_call *call)
@@ -56,6 +62,13 @@ static void make_call(const limit *l, const he_mesh *other, md_call *call)
     }
     if (l->number != NULL) {
         md_give_number(&draft, l->number, 0.1);
+    }
+    if (l->vector != NULL) {
+        static const he_vec3 up = {0, 0, 1};
+        he_arg *vector = &call->args[md_index(call, l->vector)];
+        vector->given = true;
+        vector->points = &up;
+        vector->count = 1;
     }
     if (l->name != NULL) {
         he_arg *name = &call->args[md_index(call, "name")];

@@ -17,10 +17,12 @@ static double wobble(md_random *r, double size)
     return (2 * md_unit(r) - 1) * size;
 }
 
-/* Moves each vertex by up to `size` in each direction. */
-static void shake(he_mesh *m, md_random *r, double size)
+void random_shake(he_mesh *m, md_random *r, double size)
 {
     for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        if (!he_mesh_is_live(m, HE_VERTEX, v)) {
+            continue;
+        }
         he_vec3 p = he_position(m, (he_vertex){v});
         p = he_vec3_add(p, (he_vec3){wobble(r, size), wobble(r, size), wobble(r, size)});
         he_set_position(m, (he_vertex){v}, p);
@@ -42,7 +44,7 @@ static void delete_faces(he_mesh *m, md_random *r, uint32_t percent)
 static he_mesh *make_scan(md_random *r)
 {
     he_mesh *m = dense_shape("icosphere", "subdivisions", md_from(r, 1, 4));
-    shake(m, r, md_unit(r) * 0.1);
+    random_shake(m, r, md_unit(r) * 0.1);
     delete_faces(m, r, md_chance(r, 50) ? 0 : md_below(r, 30));
     return m;
 }
@@ -63,7 +65,7 @@ static he_mesh *make_sheet(md_random *r)
 {
     he_mesh *m = dense_grid(md_from(r, 1, 20), md_chance(r, 50) ? dense_waves : NULL, 1);
     if (md_chance(r, 40)) {
-        shake(m, r, md_unit(r) * 0.3);
+        random_shake(m, r, md_unit(r) * 0.3);
     }
     delete_faces(m, r, md_chance(r, 30) ? 0 : md_below(r, 40));
     return m;
