@@ -218,7 +218,8 @@ static double energy_of(const solving *s)
             energy -= a->values[i] * he_vec3_dot(bent, bent);
         }
     }
-    return he_saturated(energy * d->scale * d->scale);
+    /* Rounding may make it less than 0. */
+    return he_saturated(fmax(energy, 0) * d->scale * d->scale);
 }
 
 /* --- the whole --- */

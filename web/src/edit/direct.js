@@ -32,6 +32,12 @@ export class Direct {
         this.#elements = { note, hint, amount, buttons };
         this.#acts = acts;
         giveUp.addEventListener('click', () => this.cancel());
+        note.addEventListener('keydown', ({ key }) => {
+            if (key === 'Escape') {
+                this.cancel();
+                canvas.focus();
+            }
+        });
         // Listens in the capture phase, so that other listeners do not see the events of a drag.
         const listen = (type, act) =>
             canvas.addEventListener(type, (event) => act(event), { capture: true });
@@ -113,6 +119,7 @@ export class Direct {
         if (this.#down === null) {
             this.#down = { x: event.clientX, y: event.clientY, pointer: event.pointerId };
             this.#canvas.setPointerCapture(event.pointerId);
+            this.#canvas.focus();
         }
     }
 
@@ -131,10 +138,10 @@ export class Direct {
         }
         event.stopImmediatePropagation();
         const { operation } = this.#acts.drag(this.#gesture, this.#movedTo(event));
-        this.cancel();
         if (operation !== null) {
             this.#acts.onRun(operation);
         }
+        this.cancel();
     }
 
     // Returns how far the pointer has moved since it was pressed; null if it has moved so little

@@ -2,6 +2,7 @@
 // tools of the view, and keys.
 
 import * as api from '../wire/api.js';
+import { Bend } from '../bend/bend.js';
 import { Direct } from './direct.js';
 import { byId, enable } from '../kit/dom.js';
 import { begin, drag } from './gesture.js';
@@ -58,6 +59,7 @@ export class Editing {
     #toasts;
     #tools;
     #direct;
+    #bend;
     #lasso;
     #trial;
     #work;
@@ -106,6 +108,21 @@ export class Editing {
                 onError,
             },
         );
+        this.#bend = new Bend(
+            {
+                box: byId('bend'),
+                toggle: byId('bend-on'),
+                row: byId('bend-row'),
+                radius: byId('bend-radius'),
+                reach: byId('bend-reach'),
+                said: byId('bend-said'),
+            },
+            {
+                geometry: () => session.shown.geometry,
+                ask: (operation, signal) => api.tryDeform(session.mesh, operation, signal),
+                show: (ids, places) => stage.bend(ids, places),
+            },
+        );
         const buttons = Object.keys(FORMS).map((tool) => [tool, byId(`direct-${tool}`)]);
         this.#direct = new Direct(
             canvas,
@@ -117,13 +134,25 @@ export class Editing {
                 buttons: Object.fromEntries(buttons),
             },
             {
-                begin: (tool) =>
-                    stage.isThere
+                begin: (tool) => {
+                    const gesture = stage.isThere
                         ? begin(tool, session.selection.chosen, session.shown.geometry)
-                        : null,
-                drag: (gesture, moved) => drag(gesture, stage.view, moved),
-                onShow: (lines) => stage.preview(lines),
-                onRun,
+                        : null;
+                    this.#bend.offer(gesture?.op === 'vertex_move');
+                    return gesture;
+                },
+                drag: (gesture, moved) => this.#bend.follow(drag(gesture, stage.view, moved)),
+                onShow: (lines) => {
+                    stage.preview(lines);
+                    if (lines === null) {
+                        this.#bend.cancel();
+                    }
+                },
+                onRun: async (operation) => {
+                    this.#bend.end();
+                    await onRun(operation);
+                    this.#bend.settle();
+                },
             },
         );
         this.#lasso = new Lasso(
@@ -166,6 +195,7 @@ export class Editing {
         if (what === 'mesh' || what === 'selection') {
             this.#direct.cancel();
         } else {
+            this.#bend.cancel();
             this.#direct.refresh();
         }
         if (what === 'mesh') {

@@ -48,6 +48,7 @@ export class Marks {
     fieldVertices;
     preview;
     #geometry = null;
+    #shown = { marks: [], halfedges: [], ends: [] }; // the arguments of select() and setBoundary()
     #pixel = { value: 1 };
     #colors = COLORS.dark;
     #halfedges = [];
@@ -112,12 +113,21 @@ export class Marks {
         this.select([], []);
     }
 
+    // Draws the marks of the selection and of boundary loops anew on the arrays `geometry`, which
+    // have the same vertices at other places.
+    move(geometry) {
+        this.#geometry = geometry;
+        this.select(this.#shown.marks, this.#shown.halfedges);
+        this.setBoundary(this.#shown.ends);
+    }
+
     // Marks the selected elements and draws half-edges as arrows; the arguments are as in
     // Renderer.select().
     select(marks, halfedges) {
         if (this.#geometry === null) {
             [marks, halfedges] = [[], []];
         }
+        Object.assign(this.#shown, { marks, halfedges });
         const geometry = this.#geometry;
         const triangles = idsOf(marks, 'face').flatMap((face) => trianglesOfFace(geometry, face));
         const edges = edgesOfTriangles(geometry?.triangles, triangles);
@@ -162,6 +172,7 @@ export class Marks {
     // ids may be from an earlier revision, so edges whose vertices were deleted are left out.
     setBoundary(ends) {
         const live = [];
+        this.#shown.ends = ends;
         for (let i = 0; this.#geometry !== null && i < ends.length; i += 2) {
             if (hasVertex(this.#geometry, ends[i]) && hasVertex(this.#geometry, ends[i + 1])) {
                 live.push(ends[i], ends[i + 1]);

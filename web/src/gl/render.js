@@ -136,6 +136,7 @@ export class Renderer {
     update(places, label) {
         if (this.#geometry !== null) {
             this.#surface.update(places);
+            this.#marks.move(this.#geometry);
         }
         this.#label = label;
         this.#draw();
@@ -189,6 +190,15 @@ export class Renderer {
     // points; null removes it.
     preview(coordinates) {
         this.#marks.setPreview(coordinates);
+        this.#draw();
+    }
+
+    // Shows vertices at other places, see Surface.bend(), with the marks of the selection.
+    bend(ids, places) {
+        const geometry = this.#surface.bend(ids, places);
+        if (geometry !== null) {
+            this.#marks.move(geometry);
+        }
         this.#draw();
     }
 

@@ -61,6 +61,7 @@ export class Surface {
     #isColored = { value: true };
     #edgeWidth = { value: EDGE_WIDTH };
     #geometry = null;
+    #still = null; // the texture of vertices where they are, while bend() shows others
     #allVertices = false;
 
     // `mostRows` is the maximum height of a texture in texels.
@@ -203,6 +204,7 @@ export class Surface {
     // Shows a mesh, or nothing (null). Throws a RangeError if the mesh is too large for a texture;
     // then the mesh that was shown before stays visible.
     show(geometry) {
+        this.bend(null);
         const arrays = this.#arraysOf(geometry);
         const { vertices, triangles } = this.#textures;
         this.#geometry = geometry;
@@ -218,6 +220,7 @@ export class Surface {
     // Called when the arrays of the mesh have changed at some places, see applyDelta(). Throws a
     // RangeError if the mesh is now too large for a texture.
     update(places) {
+        this.bend(null);
         const arrays = this.#arraysOf(this.#geometry);
         for (const [name, texture] of Object.entries(this.#textures)) {
             texture.value = texture.value.update(arrays[name], places[name]);
@@ -234,6 +237,26 @@ export class Surface {
             texture.value.updateWithin(ranges[name]);
         }
         this.#setRanges();
+    }
+
+    // Shows the vertices `ids` at other places (three view coordinates each), until the next call of
+    // this function, show() or update(); null shows them where they are. Returns the arrays that are
+    // shown.
+    bend(ids, places) {
+        const { vertices } = this.#textures;
+        if (this.#still !== null) {
+            vertices.value.dispose();
+            vertices.value = this.#still;
+            this.#still = null;
+        }
+        if (ids === null || this.#geometry === null) {
+            return this.#geometry;
+        }
+        const bent = this.#geometry.vertices.slice();
+        ids.forEach((id, i) => bent.set(places.subarray(3 * i, 3 * i + 3), 4 * id));
+        this.#still = vertices.value;
+        vertices.value = new Rows(bent, RGBAFormat, FloatType);
+        return { ...this.#geometry, vertices: bent };
     }
 
     // Sets the materials of faces: {labels, palette} of materials.js, or null.
@@ -277,6 +300,7 @@ export class Surface {
         this.look.forget();
         this.#proxyLook.triangles.value?.forget();
         this.#proxyLook.normals.value?.forget();
+        this.#still?.forget();
     }
 
     // Returns the arrays of a mesh, or arrays of zeros if there is no mesh. Throws a RangeError if

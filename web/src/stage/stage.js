@@ -133,6 +133,12 @@ export class Stage {
         this.#marked?.preview(lines);
     }
 
+    // Shows the vertices `ids` at other places (three view coordinates each) until the mesh changes or
+    // the next call; null shows them where they are.
+    bend(ids, places) {
+        this.#marked?.bend(ids, places);
+    }
+
     // Sets the materials of faces, see materials.js.
     showMaterials(materials, label) {
         this.#renderer?.showMaterials(materials, label);

@@ -498,6 +498,27 @@ export async function tryEdit(mesh, operations, signal) {
     return answer.status === 200 ? answer.json() : null;
 }
 
+// Returns where an operation `deform` would move vertices, without changing anything: {ids,
+// positions}, a Uint32Array and a Float64Array with three numbers for each.
+export async function tryDeform(mesh, operation, signal) {
+    const answer = await request(`${meshPath(mesh)}/deform`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json', Prefer: 'wait=10' },
+        body: JSON.stringify(operation),
+        signal,
+    });
+    const detail = 'The server takes too long to bend a mesh of this size while it is dragged.';
+    if (answer.status !== 200) {
+        throw new Problem({ status: answer.status, title: 'Too slow', detail });
+    }
+    const bytes = await answer.arrayBuffer();
+    const count = bytes.byteLength / 28;
+    return {
+        ids: new Uint32Array(bytes, 24 * count, count),
+        positions: new Float64Array(bytes, 0, 3 * count),
+    };
+}
+
 // Undoes the last step, or all steps since the revision `to`, on a mesh at `revision`.
 export function undo(mesh, revision, to = undefined) {
     const body = { expected_revision: revision, to_revision: to };

@@ -1,0 +1,168 @@
+// bend.js - bends what is around a moved part: while the part is dragged, the server computes where
+// all vertices would be, and the view shows the mesh there without an edit. The edit that is run at
+// the end is one `deform`.
+//
+//     begin(vertices)   the vertices that will move are chosen
+//     move(by)          they shall be moved by this vector from where they were; the newest wins
+//     end()             returns the edit; what is shown stays until settle()
+//     cancel()          shows the mesh as it is
+
+import { heldAround } from './ways.js';
+
+// Steps of the method, the same for a preview and for the edit, so that both lead to the same
+// positions.
+const STEPS = 2;
+
+// The position of the slider at which everything bends.
+const ALL = 100;
+
+export class Bend {
+    #elements;
+    #acts;
+    #drag = null; // {vertices, fixed, geometry, revision, wanted, by, isAsked, isEnding}
+    #asking = null; // AbortController of the request that runs
+
+    // `box` is shown while something can be bent; it has the checkbox `toggle` and, in `row`, the
+    // slider `radius` with the output `reach`; errors of a preview are shown in `said`. `acts`:
+    // geometry() returns the arrays of the mesh that is shown, or null; ask(operation, signal)
+    // returns {ids, positions} of the deformed vertices; show(ids, places) shows vertices at other
+    // places, in view coordinates, and show(null) where they are.
+    constructor({ box, toggle, row, radius, reach, said }, acts) {
+        this.#elements = { box, toggle, row, radius, reach, said };
+        this.#acts = acts;
+        toggle.addEventListener('change', () => {
+            row.hidden = !toggle.checked;
+            this.cancel();
+        });
+        radius.addEventListener('input', () => {
+            this.#tellReach();
+            this.cancel();
+        });
+        row.hidden = !toggle.checked;
+        this.#tellReach();
+    }
+
+    // Shows or hides the choice whether to bend.
+    offer(isOffered) {
+        this.#elements.box.hidden = !isOffered;
+        this.#say('');
+    }
+
+    get isOn() {
+        return !this.#elements.box.hidden && this.#elements.toggle.checked;
+    }
+
+    // Takes the result of a drag with the tool Move, see drag() in gesture.js. Returns it unchanged
+    // if nothing is to bend, else one whose operation bends, and moves the preview.
+    follow(result) {
+        const { operation } = result;
+        if (!this.isOn || operation?.op !== 'vertex_move') {
+            return result;
+        }
+        if (this.#drag === null) {
+            this.begin(operation.vertices);
+        }
+        this.move(operation.by);
+        return { ...result, lines: [], operation: this.#operation(operation.by) };
+    }
+
+    begin(vertices) {
+        this.cancel();
+        const geometry = this.#acts.geometry();
+        const fixed = heldAround(geometry, vertices, Number(this.#elements.radius.value) / ALL);
+        this.#drag = { vertices, fixed, geometry, wanted: null, by: [0, 0, 0], isEnding: false };
+    }
+
+    // Moves the vertices by a vector in coordinates of the mesh. While the answer to an earlier call
+    // is awaited, only the last vector is kept.
+    move(by) {
+        const drag = this.#drag;
+        drag.by = by;
+        drag.wanted = by;
+        if (this.#asking === null) {
+            this.#askOn(drag);
+        }
+    }
+
+    // Ends the drag. Returns its edit, or null if there was none. The last answer stays in the view
+    // until settle() is called, when the edit has been made or has failed.
+    end() {
+        const drag = this.#drag;
+        if (drag === null) {
+            return null;
+        }
+        drag.isEnding = true;
+        drag.wanted = null;
+        return this.#operation(drag.by);
+    }
+
+    settle() {
+        if (this.#drag?.isEnding) {
+            this.#forget();
+        }
+    }
+
+    // Called when a drag was given up, or the mesh has changed.
+    cancel() {
+        if (this.#drag !== null && !this.#drag.isEnding) {
+            this.#forget();
+        }
+    }
+
+    #forget() {
+        this.#drag = null;
+        this.#asking?.abort();
+        this.#asking = null;
+        this.#acts.show(null);
+    }
+
+    #operation(by) {
+        const { vertices, fixed } = this.#drag;
+        return { op: 'deform', method: 'arap', steps: STEPS, vertices, by, fixed };
+    }
+
+    // Asks for one position after the other, as long as newer ones are wanted.
+    async #askOn(drag) {
+        const asking = new AbortController();
+        this.#asking = asking;
+        try {
+            while (drag === this.#drag && drag.wanted !== null) {
+                const by = drag.wanted;
+                drag.wanted = null;
+                const answer = await this.#acts.ask(this.#operation(by), asking.signal);
+                if (drag === this.#drag) {
+                    this.#acts.show(answer.ids, placesOf(answer.positions, drag.geometry.frame));
+                    this.#say('');
+                }
+            }
+        } catch (error) {
+            if (drag === this.#drag) {
+                this.#say(error.message);
+            }
+        } finally {
+            if (this.#asking === asking) {
+                this.#asking = null;
+            }
+        }
+    }
+
+    #say(text) {
+        this.#elements.said.textContent = text;
+    }
+
+    #tellReach() {
+        const { radius, reach } = this.#elements;
+        const text = Number(radius.value) === ALL ? 'all but the farthest' : `${radius.value} %`;
+        reach.textContent = text;
+        radius.setAttribute('aria-valuetext', text);
+    }
+}
+
+// Returns positions of the mesh (three numbers each) in view coordinates.
+export function placesOf(positions, { origin, scale }) {
+    const places = new Float32Array(positions.length);
+    for (let i = 0; i < positions.length; i++) {
+        places[i] = (positions[i] - origin[i % 3]) * scale;
+    }
+    return places;
+}
