@@ -82,9 +82,10 @@ static he_status list_candidates(const search *s, candidate **out, size_t *count
         return he_fail_plain(err, HE_NO_MEMORY,
                              "no memory to find which of %u vertices share a position", vertices);
     }
+    const uint64_t seed = (uintptr_t)sums;
     for (uint32_t v = 0; v < vertices && status == HE_OK; v++) {
         if (s->corners[v] > 0) {
-            sums[he_point_hash(0, s->m->c.position[v]) & (slots - 1)] += s->corners[v];
+            sums[he_point_hash(seed, s->m->c.position[v]) & (slots - 1)] += s->corners[v];
         }
         status = he_budget_take(s->budget, 1, err);
     }
@@ -92,7 +93,7 @@ static he_status list_candidates(const search *s, candidate **out, size_t *count
         size_t found = 0;
         for (uint32_t v = 0; v < vertices; v++) {
             if (s->corners[v] == 0 ||
-                sums[he_point_hash(0, s->m->c.position[v]) & (slots - 1)] < HE_HUB_SPOKES) {
+                sums[he_point_hash(seed, s->m->c.position[v]) & (slots - 1)] < HE_HUB_SPOKES) {
                 continue;
             }
             if (pass == 1) {

@@ -1,5 +1,6 @@
-/* The keyed hash SipHash (base/siphash.h). */
+/* The keyed hash SipHash (base/siphash.h), and the hash of points (geometry/point_hash.h). */
 #include "base/siphash.h"
+#include "geometry/point_hash.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -80,12 +81,47 @@ static void length_key_and_each_byte_count(void **state)
     }
 }
 
+static double flip(double x, uint64_t which)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits ^= which;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* A client that does not know the seed must not find points that have one hash with every seed. The
+ * sign of a coordinate, together with some bits of the next one, is the pair of changes that
+ * multiplication alone passes on unchanged. */
+static void no_change_of_a_point_collides_for_every_seed(void **state)
+{
+    (void)state;
+    enum { SEEDS = 1000 };
+    const uint64_t sign = UINT64_C(1) << 63;
+    const he_vec3 p = {1.5, -2.25, 3.125};
+    for (unsigned bit = 0; bit < 64; bit++) {
+        const uint64_t other = sign ^ UINT64_C(1) << bit;
+        const he_vec3 q = {-p.x, flip(p.y, other), p.z};
+        const he_vec3 r = {p.x, -p.y, flip(p.z, other)};
+        int equal = 0;
+        for (uint64_t i = 1; i <= SEEDS; i++) {
+            const uint64_t seed = i * 4096; /* like an address */
+            const uint32_t h = he_point_hash(seed, p);
+            equal += (h == he_point_hash(seed, q)) + (h == he_point_hash(seed, r));
+        }
+        assert_true(equal < 3);
+    }
+    assert_int_equal(he_point_hash(7, (he_vec3){0, -0.0, 1}),
+                     he_point_hash(7, (he_vec3){-0.0, 0, 1}));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_are_those_of_its_authors),
         cmocka_unit_test(cuts_do_not_count),
         cmocka_unit_test(length_key_and_each_byte_count),
+        cmocka_unit_test(no_change_of_a_point_collides_for_every_seed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
