@@ -110,6 +110,10 @@ he_status he_hole_fill_smooth(he_mesh *m, he_halfedge h, const he_smooth_fill *o
     if (status == HE_OK) {
         status = he_fill_loop(m, &loop, options, &chords, out, err);
     }
+    if (status == HE_OK && out != NULL) {
+        out->loop = loop;
+        loop = (he_ids){0};
+    }
     he_edge_lookup_clear(&chords.lookup);
     he_ids_clear(&loop);
     return status;

@@ -31,19 +31,14 @@ static he_status fill_hole(he_mesh *m, const he_arg *args, he_filled *out, he_er
 static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_filled filled;
-    he_ids loop = {0};
-    he_status status = he_hole_loop(m, (he_halfedge){args[HOLE_FILL_HALFEDGE].id}, &loop, err);
-    if (status == HE_OK) {
-        status = fill_hole(m, args, &filled, err);
-    }
+    he_status status = fill_hole(m, args, &filled, err);
     if (status == HE_OK) {
         he_results_set(out, HOLE_FILL_OUT_VERTEX, filled.vertex.i);
         he_results_set_list(out, HOLE_FILL_OUT_EDGES, &filled.edges);
         he_results_set_list(out, HOLE_FILL_OUT_FACES, &filled.faces);
-        he_results_set_number(out, HOLE_FILL_OUT_BEND, he_fill_bend(m, &loop));
+        he_results_set_number(out, HOLE_FILL_OUT_BEND, he_fill_bend(m, &filled.loop));
         he_filled_clear(&filled);
     }
-    he_ids_clear(&loop);
     return status;
 }
 

@@ -9,6 +9,7 @@ void he_filled_clear(he_filled *filled)
 {
     he_ids_clear(&filled->edges);
     he_ids_clear(&filled->faces);
+    he_ids_clear(&filled->loop);
 }
 
 he_status he_hole_loop(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *err)
@@ -110,6 +111,8 @@ he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out
         he_ring_settle(m, he_origin(m, k), k);
     }
     if (out != NULL) {
+        made.loop = loop;
+        loop = (he_ids){0};
         *out = made;
         made = (he_filled){.vertex = {HE_NONE}};
     }

@@ -13,6 +13,7 @@ typedef enum he_fill {
 typedef struct he_filled {
     he_vertex vertex;    /* the new vertex if there is exactly one, else HE_NONE */
     he_ids edges, faces; /* the new edges and faces */
+    he_ids loop;         /* the half-edges of the hole, from the given one on */
 } he_filled;
 
 /* hole_fill: closes the hole to the left of the boundary half-edge h, a loop of n half-edges.
