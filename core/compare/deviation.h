@@ -10,7 +10,9 @@
  * or the sum of the normals of the triangles at an edge, or that sum weighted by angles at a vertex
  * (J. A. Baerentzen and H. Aanaes, "Signed distance computation using the angle weighted
  * pseudonormal", 2005). This is exact for closed surfaces without self-intersections. Beside the
- * boundary of an open surface the sign says on which side of the triangles there the vertex is. */
+ * boundary of an open surface the sign says on which side of the triangles there the vertex is. A
+ * seam of vertices that lie at one place but are not joined, as in files that store each triangle
+ * by itself, is such a boundary: there signs may be wrong until the surface is welded. */
 #ifndef HE_COMPARE_DEVIATION_H
 #define HE_COMPARE_DEVIATION_H
 

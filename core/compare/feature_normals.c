@@ -1,5 +1,10 @@
 #include "compare/feature_normals.h"
 
+#include <stdlib.h>
+
+/* A vertex with more triangles is a hub. */
+enum { HUB = 64 };
+
 static he_vec3 triangle_normal(const he_feature_normals *n, uint32_t triangle, he_vec3 corner[3])
 {
     he_vec3 unit;
@@ -43,6 +48,93 @@ static void list_triangles(he_feature_normals *n)
     }
 }
 
+/* --- edges between hubs --- */
+
+static bool is_hub(const he_feature_normals *n, uint32_t v)
+{
+    return n->first[v + 1] - n->first[v] > HUB;
+}
+
+static int compare_ends(const he_hub_edge *a, const he_hub_edge *b)
+{
+    return a->low != b->low     ? (a->low < b->low ? -1 : 1)
+           : a->high != b->high ? (a->high < b->high ? -1 : 1)
+                                : 0;
+}
+
+static int compare_sides(const void *left, const void *right)
+{
+    const he_hub_edge *a = left, *b = right;
+    const int ends = compare_ends(a, b);
+    return ends != 0 ? ends : a->triangle < b->triangle ? -1 : a->triangle > b->triangle;
+}
+
+/* Counts the sides of triangles between two hubs, and puts them into the list unless it is NULL. */
+static size_t list_sides(const he_feature_normals *n, he_hub_edge *list)
+{
+    size_t count = 0;
+    for (uint32_t i = 0; i < n->tree->count; i++) {
+        const uint32_t *v = n->tree->triangles[i].vertex;
+        const bool hub[3] = {is_hub(n, v[0]), is_hub(n, v[1]), is_hub(n, v[2])};
+        he_vec3 p[3];
+        for (int k = 0; k < 3 && hub[0] + hub[1] + hub[2] > 1; k++) {
+            const uint32_t a = v[k], b = v[(k + 1) % 3];
+            if (!hub[k] || !hub[(k + 1) % 3]) {
+                continue;
+            }
+            if (list != NULL) {
+                list[count] =
+                    (he_hub_edge){a < b ? a : b, a < b ? b : a, i, triangle_normal(n, i, p)};
+            }
+            count++;
+        }
+    }
+    return count;
+}
+
+/* Adds up the normals at each edge between hubs. */
+static he_status list_hub_edges(he_feature_normals *n, he_error *err)
+{
+    const size_t sides = list_sides(n, NULL);
+    if (sides == 0) {
+        return HE_OK;
+    }
+    n->hub_edges = he_mem_array(NULL, sides, sizeof *n->hub_edges);
+    if (n->hub_edges == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of %zu edges", sides);
+    }
+    he_hub_edge *list = n->hub_edges;
+    (void)list_sides(n, list);
+    qsort(list, sides, sizeof *list, compare_sides);
+    size_t count = 0;
+    for (size_t i = 0; i < sides; i++) {
+        if (count > 0 && compare_ends(&list[count - 1], &list[i]) == 0) {
+            list[count - 1].normal = he_vec3_add(list[count - 1].normal, list[i].normal);
+        } else {
+            list[count++] = list[i];
+        }
+    }
+    n->hub_edge_count = count;
+    return HE_OK;
+}
+
+static he_vec3 hub_edge_normal(const he_feature_normals *n, uint32_t a, uint32_t b)
+{
+    const he_hub_edge wanted = {.low = a < b ? a : b, .high = a < b ? b : a};
+    size_t low = 0, high = n->hub_edge_count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (compare_ends(&n->hub_edges[middle], &wanted) <= 0) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return n->hub_edges[low].normal;
+}
+
+/* --- the whole --- */
+
 he_status he_feature_normals_make(const he_mesh *m, const he_bvh *tree, he_budget *budget,
                                   he_feature_normals *out, he_error *err)
 {
@@ -53,6 +145,7 @@ he_status he_feature_normals_make(const he_mesh *m, const he_bvh *tree, he_budge
         return status;
     }
     list_triangles(out);
+    status = list_hub_edges(out, err);
     for (uint32_t i = 0; i < tree->count && status == HE_OK; i++) {
         he_vec3 p[3];
         const he_vec3 normal = triangle_normal(out, i, p);
@@ -72,6 +165,7 @@ void he_feature_normals_clear(he_feature_normals *normals)
     he_mem_free(normals->vertex);
     he_mem_free(normals->first);
     he_mem_free(normals->at);
+    he_mem_free(normals->hub_edges);
     *normals = (he_feature_normals){.vertex = NULL};
 }
 
@@ -84,6 +178,9 @@ static bool has_corner(const he_bvh_triangle *t, uint32_t v)
  * the one with fewer triangles. */
 static he_vec3 edge_normal(const he_feature_normals *n, uint32_t a, uint32_t b)
 {
+    if (is_hub(n, a) && is_hub(n, b)) {
+        return hub_edge_normal(n, a, b);
+    }
     if (n->first[a + 1] - n->first[a] > n->first[b + 1] - n->first[b]) {
         const uint32_t swap = a;
         a = b;

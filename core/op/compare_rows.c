@@ -30,8 +30,10 @@ static he_status run_deviation(he_mesh *m, const he_arg *args, he_results *out, 
 const he_op he_compare_rows[] = {
     {
         .name = "deviation",
-        .doc = "Write into an attribute how far each vertex is from the surface of another mesh; "
-               "the distance is below 0 on the inner side of that surface. Nothing moves.",
+        .doc =
+            "Write into an attribute how far each vertex is from the surface of another mesh; "
+            "the distance is below 0 on the inner side of that surface. Nothing moves. `weld` the "
+            "other mesh first if it has open seams: beside them signs may be wrong.",
         .size = HE_OP_WHOLE,
         .params =
             {[DEVIATION_WITH] = {.name = "with",

@@ -602,6 +602,40 @@ static void points_have_the_signed_distance_from_a_cube(void **state)
     he_mesh_free(cube);
 }
 
+/* An orange of which a slice was cut out: two poles with very many triangles are joined by the edge
+ * at the bottom of the cut. Points in the orange opposite the cut are nearest to this edge. */
+static void beside_an_edge_of_two_hubs_the_sign_is_right(void **state)
+{
+    (void)state;
+    enum { AROUND = 200, POINTS = 9 };
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    const uint32_t south = dense_add_vertex(&soup, 0, 0, -1);
+    const uint32_t north = dense_add_vertex(&soup, 0, 0, 1);
+    for (int i = 0; i <= AROUND; i++) {
+        const double angle = 0.5 + (2 * 3.14159265358979323846 - 1) * i / AROUND;
+        (void)dense_add_vertex(&soup, cos(angle), sin(angle), 0);
+    }
+    for (uint32_t i = 0; i < AROUND; i++) {
+        dense_add_triangle(&soup, north, 2 + i, 3 + i);
+        dense_add_triangle(&soup, south, 3 + i, 2 + i);
+    }
+    dense_add_triangle(&soup, south, 2, north);
+    dense_add_triangle(&soup, north, 2 + AROUND, south);
+    he_mesh *orange = dense_built(&soup);
+    he_soup_init(&soup, NULL);
+    for (int i = 0; i < POINTS; i++) {
+        (void)dense_add_vertex(&soup, -0.02 * (i + 1), 0, 0.05 * (i - POINTS / 2));
+    }
+    he_mesh *m = dense_built(&soup);
+    (void)deviate(m, orange);
+    for (uint32_t v = 0; v < POINTS; v++) {
+        require_near(value_of(m, "deviation", v), -0.02 * (v + 1), 1e-7);
+    }
+    he_mesh_free(m);
+    he_mesh_free(orange);
+}
+
 static void the_sides_of_an_open_surface_have_signs(void **state)
 {
     (void)state;
@@ -677,6 +711,7 @@ int main(void)
         cmocka_unit_test(too_few_pieces_leave_wider_bounds),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(points_have_the_signed_distance_from_a_cube),
+        cmocka_unit_test(beside_an_edge_of_two_hubs_the_sign_is_right),
         cmocka_unit_test(the_sides_of_an_open_surface_have_signs),
         cmocka_unit_test(a_deviation_is_one_step_of_undo),
         cmocka_unit_test(every_allocation_of_a_deviation_may_fail),
