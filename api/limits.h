@@ -69,7 +69,9 @@ enum {
 enum {
     API_DEFAULT_PAGE = 1000, /* items per page if the request does not say how many */
     API_MAX_PAGE = 10000,
-    /* How many meshes one request for a list looks at, to find those whose names contain a text. */
+    /* How many meshes one request for a list looks at, to find those whose names contain a text.
+     * For tokens with prefixes, a sorted list has no such limit: it looks at all meshes that the
+     * token can see, whatever it searches for. */
     API_MAX_SEARCHED = 20000,
     /* A page of elements ends with the item with which it becomes larger than this. */
     API_MAX_PAGE_BYTES = 1 << 26,

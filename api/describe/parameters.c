@@ -36,7 +36,9 @@ const api_parameter api_parameter_contains = {
     NULL,
     "Only meshes whose names contain this text; the letters A to Z are the same as a to z. One "
     "request looks at 20,000 meshes at most, so a page may be short or empty although there is a "
-    "next page: the list ends only when `next` is null."};
+    "next page: the list ends only when `next` is null. Only with `sort`, for a token that is "
+    "limited "
+    "to prefixes of ids, a request looks at all meshes that the token can see."};
 const api_parameter api_parameter_revision = {
     "revision", API_PARAM_U64, 1,
     0x1p53,     NULL,          "An earlier revision that the history still holds."};
