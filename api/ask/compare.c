@@ -61,7 +61,8 @@ static bool read_with(api_exchange *x, comparison *c)
 static void count_other(comparison *c)
 {
     st_mesh_info info;
-    c->with_elements = st_read_card(c->with.mesh, &info);
+    c->with_elements = c->with.revision == 0 ? st_read_card(c->with.mesh, &info)
+                                             : st_elements_at(c->with.mesh, c->with.revision);
 }
 
 static bool read_request(api_exchange *x, comparison *c)

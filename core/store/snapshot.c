@@ -156,6 +156,17 @@ static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool 
     return status;
 }
 
+uint64_t st_elements_at(st_mesh *mesh, uint64_t revision)
+{
+    st_point point;
+    st_lock_read(&mesh->lock);
+    const st_revision_log *log = &mesh->log;
+    const uint64_t head = st_log_head(log);
+    st_log_point(log, revision >= log->oldest && revision <= head ? revision : head, &point);
+    pthread_rwlock_unlock(&mesh->lock);
+    return (uint64_t)point.issued[HE_VERTEX] + point.issued[HE_HALFEDGE] + point.issued[HE_FACE];
+}
+
 /* Makes the copy of an earlier revision by the history in memory. The caller holds the past lock
  * (store.h). */
 static st_status copy_from_history(st_mesh *mesh, uint64_t revision)

@@ -324,6 +324,9 @@ void st_read_end(st_mesh *mesh);
 /* Copies the mesh's description to `info`; holds the shared lock only for that. Returns how many
  * ids of vertices, half-edges and faces the mesh has ever issued. */
 uint64_t st_read_card(st_mesh *mesh, st_mesh_info *info);
+/* Returns how many ids of vertices, half-edges and faces the mesh had issued at a revision; if the
+ * history in memory does not have this revision, how many it has issued now. */
+uint64_t st_elements_at(st_mesh *mesh, uint64_t revision);
 /* Makes an immutable copy of the present revision, shared by all callers that ask for this
  * revision. The function may copy the mesh, so a worker must not call it for large meshes.
  * Returns ST_NO_MEMORY or ST_BUDGET if there is no room for the copy. */

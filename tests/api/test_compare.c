@@ -14,6 +14,71 @@
 
 #define COMPARE "/v1/meshes/box/compare"
 
+/* --- locks ---
+ *
+ * The linker redirects the functions that take the shared lock of a mesh. A thread that holds the
+ * lock of one mesh and waits for that of another can wait for ever, if writers wait for both. */
+
+static _Thread_local unsigned held; /* how many locks this thread holds */
+static _Atomic unsigned nested, taken;
+
+static void note_lock(void)
+{
+    taken++;
+    nested += held > 0;
+}
+
+const he_mesh *__wrap_st_read_begin(st_mesh *mesh, st_mesh_info *info);
+const he_mesh *__real_st_read_begin(st_mesh *mesh, st_mesh_info *info);
+const he_mesh *__wrap_st_read_begin(st_mesh *mesh, st_mesh_info *info)
+{
+    note_lock();
+    held++;
+    return __real_st_read_begin(mesh, info);
+}
+
+void __wrap_st_read_end(st_mesh *mesh);
+void __real_st_read_end(st_mesh *mesh);
+void __wrap_st_read_end(st_mesh *mesh)
+{
+    held--;
+    __real_st_read_end(mesh);
+}
+
+uint64_t __wrap_st_read_card(st_mesh *mesh, st_mesh_info *info);
+uint64_t __real_st_read_card(st_mesh *mesh, st_mesh_info *info);
+uint64_t __wrap_st_read_card(st_mesh *mesh, st_mesh_info *info)
+{
+    note_lock();
+    return __real_st_read_card(mesh, info);
+}
+
+uint64_t __wrap_st_elements_at(st_mesh *mesh, uint64_t revision);
+uint64_t __real_st_elements_at(st_mesh *mesh, uint64_t revision);
+uint64_t __wrap_st_elements_at(st_mesh *mesh, uint64_t revision)
+{
+    note_lock();
+    return __real_st_elements_at(mesh, revision);
+}
+
+st_status __wrap_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
+st_status __real_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
+st_status __wrap_st_snapshot_take(st_mesh *mesh, st_snapshot **out)
+{
+    note_lock();
+    return __real_st_snapshot_take(mesh, out);
+}
+
+st_status __wrap_st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out);
+st_status __real_st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out);
+st_status __wrap_st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
+{
+    note_lock();
+    return __real_st_snapshot_at(mesh, revision, out);
+}
+
+/* --- comparing --- */
+
 static double number(const cJSON *object, const char *name)
 {
     const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, name);
@@ -121,6 +186,25 @@ static void the_default_bound_is_a_thousandth_of_the_diagonal(void **state)
     bench_free(b);
 }
 
+static void no_thread_waits_for_a_second_mesh(void **state)
+{
+    (void)state;
+    static const char *const bodies[] = {"{\"with\":\"first\"}", "{\"with\":\"box\"}",
+                                         "{\"with\":1}", "{\"with\":2}"};
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
+        const unsigned before = taken;
+        nested = 0;
+        bench_done(bench_expect(200, bench_post(b, COMPARE, bodies[i])));
+        bench_done(bench_expect(200, bench_post(b, COMPARE "?revision=1", bodies[i])));
+        if (nested != 0) {
+            fail_msg("%s: a lock is taken while another one is held", bodies[i]);
+        }
+        assert_true(taken >= before + 4);
+    }
+    bench_free(b);
+}
+
 static void what_cannot_be_compared_is_refused(void **state)
 {
     (void)state;
@@ -210,6 +294,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mesh_is_compared_with_another_one_and_with_its_past),
         cmocka_unit_test(the_default_bound_is_a_thousandth_of_the_diagonal),
+        cmocka_unit_test(no_thread_waits_for_a_second_mesh),
         cmocka_unit_test(what_cannot_be_compared_is_refused),
         cmocka_unit_test(an_operation_takes_an_earlier_revision_as_the_other_mesh),
         cmocka_unit_test(every_allocation_may_fail),

@@ -168,6 +168,11 @@ static void expect_snapshot(const album *a, st_mesh *mesh, uint64_t revision)
     const he_mesh *m = st_snapshot_content(snapshot, &info);
     assert_int_equal(info.revision, revision);
     expect_picture(a, revision, m);
+    if (a->at[revision] != NULL) {
+        assert_int_equal(st_elements_at(mesh, revision), he_mesh_issued(m, HE_VERTEX) +
+                                                             he_mesh_issued(m, HE_HALFEDGE) +
+                                                             he_mesh_issued(m, HE_FACE));
+    }
     st_snapshot_release(snapshot);
 }
 
