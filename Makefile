@@ -378,10 +378,10 @@ $(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(INSTALLED)
 
 # The long version of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another one.
 ROUNDS ?= 10
-proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; a copy and a page beside them; as many minutes of soak
-	+$(MAKE) $(HEDGED) page $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers \
-	    $(BUILD)/tests/e2e/test_events
-	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
+proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; of a thousand meshes through each operation on surfaces; 8 writers at once; a copy and a page beside them; as many minutes of soak
+	+$(MAKE) $(HEDGED) page $(BUILD)/tests/model/test_model $(BUILD)/tests/model/test_reshape \
+	    $(BUILD)/tests/e2e/test_writers $(BUILD)/tests/e2e/test_events
+	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model build/asan/tests/model/test_reshape
 	sh .ci/proof $(ROUNDS)
 
 # With LOAD below 1 the test pauses, and leaves the machine to other programs for that part of the
