@@ -115,12 +115,12 @@ static bool note(edits *e, const api_in *in, const api_call *call)
     he_error err = {0};
     if (he_op_is_whole(call->op, call->args)) {
         e->whole++;
-        e->passes += he_op_pace(call->op);
+        e->passes += he_op_pace(call->op, call->args);
     } else if (call->has_set) {
         e->whole++;
         e->passes++;
     }
-    e->growth *= he_op_growth(call->op, call->args);
+    e->growth *= he_op_growth(call->op, NULL, call->args);
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
            api_problem_set_core(in->problem, &err);
@@ -224,16 +224,17 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
         listed += call->args[i].list ? call->args[i].count : 0;
         elements += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
     }
-    double many = he_op_growth(call->op, call->args) * (double)elements;
+    double many = he_op_growth(call->op, mesh, call->args) * (double)elements;
     uint64_t grown = many < MANY ? (uint64_t)many : (uint64_t)MANY;
     uint64_t steps = e->is_list ? api_edit_cost_steps(call, mesh, UINT64_MAX / 2, &e->hubs) : 0;
     e->looked_at += elements + listed;
     e->steps += steps;
-    uint64_t work = (whole ? grown * he_op_pace(call->op) : elements) +
-                    listed * (whole ? 1 : he_op_pace(call->op)) + steps / API_STEPS_OF_WORK;
+    uint64_t work = (whole ? grown * he_op_pace(call->op, call->args) : elements) +
+                    listed * (whole ? 1 : he_op_pace(call->op, call->args)) +
+                    steps / API_STEPS_OF_WORK;
     e->work += work;
     e->paid = PHASES + 2 * (grown + listed) / HE_PROGRESS_STRIDE;
-    e->look = (uint64_t)HE_PROGRESS_STRIDE * he_op_pace(call->op);
+    e->look = (uint64_t)HE_PROGRESS_STRIDE * he_op_pace(call->op, call->args);
     e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
     e->crowded = delta->count > e->most_rows;
     return !e->exceeded && !e->crowded;

@@ -51,6 +51,12 @@ static he_status run_deform(he_mesh *m, const he_arg *args, he_results *out, he_
     return status;
 }
 
+/* `pace` is the time of making the system of equations with the usual number of steps. */
+static unsigned deform_times(const he_arg *args)
+{
+    return 1 + (unsigned)args[DEFORM_STEPS].number / (2 * HE_DEFORM_STEPS_USUAL);
+}
+
 const he_op he_deform_rows[] = {
     {
         .name = "deform",
@@ -120,6 +126,7 @@ const he_op he_deform_rows[] = {
                      HE_NOT_FINITE, HE_LOCKED_ELEMENT, HE_LIMIT},
         .change = {0, 0, 0},
         .pace = 30,
+        .times = deform_times,
         .run = run_deform,
     },
     {.name = NULL},

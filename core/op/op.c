@@ -92,14 +92,14 @@ bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS])
     return whole;
 }
 
-double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS])
+double he_op_growth(const he_op *op, const he_mesh *mesh, const he_arg args[HE_OP_PARAMS])
 {
-    return op->growth == NULL ? 1 : op->growth(args);
+    return op->growth == NULL ? 1 : op->growth(mesh, args);
 }
 
-unsigned he_op_pace(const he_op *op)
+unsigned he_op_pace(const he_op *op, const he_arg args[HE_OP_PARAMS])
 {
-    return op->pace > 0 ? op->pace : 1;
+    return (op->pace > 0 ? op->pace : 1) * (op->times == NULL ? 1 : op->times(args));
 }
 
 he_status he_op_foresee(const he_op *op, const he_mesh *mesh, const he_arg args[HE_OP_PARAMS],

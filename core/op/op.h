@@ -162,8 +162,12 @@ typedef struct he_op {
      * those of the mesh if the operation is HE_OP_WHOLE, else those in the lists of its arguments.
      * 0 means 1. */
     unsigned pace;
-    /* Returns the approximate factor by which the mesh grows; NULL if the mesh keeps its size. */
-    double (*growth)(const he_arg *args);
+    /* Returns how often the operation does with these arguments what `pace` is the time of; NULL:
+     * once. */
+    unsigned (*times)(const he_arg *args);
+    /* Returns the approximate factor by which the mesh grows, at least 1; NULL if the mesh keeps
+     * its size. `mesh` is NULL if it is not known yet. Takes no longer for a large mesh. */
+    double (*growth)(const he_mesh *mesh, const he_arg *args);
     /* Finds out, from the mesh's numbers of elements alone, whether the operation will be refused.
      * HE_OK does not mean that the operation will succeed. NULL if the operation has no such
      * check. */
@@ -189,10 +193,12 @@ bool he_op_needs(const he_op *op, const he_arg *args, size_t i);
 /* Returns true if the operation, with these arguments, takes time linear in the whole mesh. */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* Returns the approximate factor by which the operation makes the mesh grow; 1 if the mesh keeps
- * its size. */
-double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* Returns the operation's time for one element relative to that of `transform`, but at least 1. */
-unsigned he_op_pace(const he_op *op);
+ * its size. `mesh` may be NULL, if it is not known yet: then the factor is what the arguments alone
+ * tell. */
+double he_op_growth(const he_op *op, const he_mesh *mesh, const he_arg args[HE_OP_PARAMS]);
+/* Returns the operation's time for one element, with these arguments, relative to that of
+ * `transform`, but at least 1. */
+unsigned he_op_pace(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* Finds out, from the mesh's numbers of elements alone, whether the operation will be refused.
  * HE_OK does not mean that the operation will succeed. */
 HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,

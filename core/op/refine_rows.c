@@ -29,8 +29,9 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
 
 /* Returns the factor by which the number of faces grows: each step divides a face into three if the
  * scheme is sqrt3, else into four. */
-static double subdivide_growth(const he_arg *args)
+static double subdivide_growth(const he_mesh *mesh, const he_arg *args)
 {
+    (void)mesh;
     return pow(args[SUBDIVIDE_SCHEME].choice == HE_SQRT3 ? 3 : 4, args[SUBDIVIDE_STEPS].number);
 }
 

@@ -3,6 +3,7 @@
 #include "remesh/remesh.h"
 
 #include <float.h>
+#include <math.h>
 
 enum {
     REMESH_EDGE_LENGTH,
@@ -61,6 +62,28 @@ static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_
         he_results_set_number(out, REMESH_OUT_DISTANCE, done.distance);
     }
     return status;
+}
+
+/* `pace` is the time of the usual number of steps, or fewer. */
+static unsigned remesh_times(const he_arg *args)
+{
+    return 1 + (unsigned)args[REMESH_STEPS].number / (2 * HE_REMESH_STEPS_USUAL);
+}
+
+/* A wanted length that depends on the curvature is not foreseen. */
+static double remesh_growth(const he_mesh *mesh, const he_arg *args)
+{
+    const uint32_t faces = mesh == NULL ? 0 : he_mesh_faces(mesh);
+    double wanted = faces;
+    if (faces == 0 || args[REMESH_ERROR].given) {
+        return 1;
+    }
+    if (args[REMESH_TARGET_FACES].given) {
+        wanted = args[REMESH_TARGET_FACES].number;
+    } else if (args[REMESH_EDGE_LENGTH].number > 0) {
+        wanted = he_remesh_foretell(mesh, args[REMESH_EDGE_LENGTH].number);
+    }
+    return fmax(1, wanted / faces);
 }
 
 const he_op he_remesh_rows[] = {
@@ -176,6 +199,8 @@ const he_op he_remesh_rows[] = {
                      HE_BAD_VALUE, HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .pace = 25,
+        .times = remesh_times,
+        .growth = remesh_growth,
         .run = run_remesh,
     },
     {.name = NULL},

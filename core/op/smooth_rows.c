@@ -31,6 +31,12 @@ static he_status run_smooth(he_mesh *m, const he_arg *args, he_results *out, he_
     return status;
 }
 
+/* `pace` is the time of one step. */
+static unsigned smooth_times(const he_arg *args)
+{
+    return (unsigned)args[SMOOTH_STEPS].number;
+}
+
 const he_op he_smooth_rows[] = {
     {
         .name = "smooth",
@@ -87,6 +93,7 @@ const he_op he_smooth_rows[] = {
                      HE_BOUNDARY_EDGE, HE_BAD_VALUE, HE_NOT_FINITE},
         .change = {0, 0, 0},
         .pace = 30,
+        .times = smooth_times,
         .run = run_smooth,
     },
     {.name = NULL},

@@ -2,7 +2,9 @@
 
 #include "algo/result_write.h"
 #include "edit/piece/list.h"
+#include "geometry/geometry.h"
 #include "geometry/scale.h"
+#include "mesh/walk.h"
 #include "mesh/write.h"
 #include "remesh/net_make.h"
 #include "remesh/net_write.h"
@@ -95,6 +97,24 @@ static double estimate(const he_net *n, double scale)
         }
     }
     return sum;
+}
+
+double he_remesh_foretell(const he_mesh *m, double edge_length)
+{
+    enum { SAMPLES = 4096 };
+    const uint32_t issued = he_mesh_issued(m, HE_FACE);
+    const uint32_t stride = issued / SAMPLES + 1;
+    double sum = 0, count = 0;
+    for (uint32_t f = 0; f < issued; f += stride) {
+        if (he_mesh_is_live(m, HE_FACE, f)) {
+            const double length = he_edge_length(m, he_edge_of(he_face_halfedge(m, (he_face){f})));
+            sum += he_face_area(m, (he_face){f}) / edge_length / edge_length / MEAN_AREA;
+            sum += length / edge_length;
+            count++;
+        }
+    }
+    const double faces = count > 0 ? sum / count * he_mesh_faces(m) : 0;
+    return fmin(faces, HE_REMESH_FACES);
 }
 
 static double extent_of(const he_net *n)

@@ -123,4 +123,9 @@ enum { HE_REMESH_RECORDED = 20000 };
 HE_NODISCARD he_status he_remesh(he_mesh *m, const he_remesh_options *options, he_remeshed *out,
                                  he_error *err);
 
+/* Estimates how many faces there would be with edges of a length above 0, from at most some
+ * thousand faces of the mesh, so that it takes no longer for a large mesh. At most HE_REMESH_FACES.
+ */
+double he_remesh_foretell(const he_mesh *m, double edge_length);
+
 #endif

@@ -257,7 +257,7 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     for (; count < STEPS && !fuzz_at_end(&tape) && he_mesh_faces(mesh) < MOST_FACES; count++) {
         call c;
         draw(&tape, &c, mesh, other);
-        if (he_op_growth(c.op, c.args) * he_mesh_faces(mesh) > MOST_FACES) {
+        if (he_op_growth(c.op, mesh, c.args) * he_mesh_faces(mesh) > MOST_FACES) {
             break;
         }
         run(&c, mesh, &steps[count]);

@@ -4,6 +4,7 @@
 
 #include "geometry/geometry.h"
 #include "mesh/marks.h"
+#include "op/op.h"
 #include "remesh/remesh.h"
 
 #include <float.h>
@@ -209,6 +210,33 @@ static void the_number_of_faces_is_met(void **state)
     }
 }
 
+static void what_a_length_makes_is_foreseen(void **state)
+{
+    (void)state;
+    static const double lengths[] = {0.05, 0.1, 0.4};
+    const he_op *op = he_op_find("remesh", 6);
+    he_arg args[HE_OP_PARAMS];
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        he_mesh *m = dense_shape("icosphere", "subdivisions", 4);
+        const double before = he_mesh_faces(m), told = he_remesh_foretell(m, lengths[i]);
+        he_op_defaults(op, args);
+        args[0].given = true; /* edge_length */
+        args[0].number = lengths[i];
+        assert_true(fabs(he_op_growth(op, m, args) - fmax(1, told / before)) < 1e-12);
+        const he_remesh_options options = usual(lengths[i]);
+        const double after = remesh(m, &options).faces;
+        assert_true(told > 0.6 * after && told < 3 * after);
+        he_mesh_free(m);
+    }
+    he_op_defaults(op, args);
+    assert_true(fabs(he_op_growth(op, NULL, args) - 1) < 1e-12);
+    op = he_op_find("smooth", 6);
+    he_op_defaults(op, args);
+    const unsigned once = he_op_pace(op, args);
+    args[1].number *= 7; /* steps */
+    assert_int_equal(he_op_pace(op, args), 7 * once);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +246,7 @@ int main(void)
         cmocka_unit_test(a_sphere_stays_round),
         cmocka_unit_test(a_second_remeshing_changes_little),
         cmocka_unit_test(the_number_of_faces_is_met),
+        cmocka_unit_test(what_a_length_makes_is_foreseen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
