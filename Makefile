@@ -163,7 +163,7 @@ NEEDS.durable      := build durable
 NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
 NEEDS.bench        := build node bench
-NEEDS.bench-http   := build bench-http
+NEEDS.bench-http   := build node bench-http
 NEEDS.bench-store  := build durable bench-http
 NEEDS.bench-events := build
 NEEDS.bench-slow   := build bench-http bench-slow
@@ -489,9 +489,10 @@ bench-reshape: $(SIDES) | $(INSTALLED) ## remeshing, smoothing, filling, deformi
 bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangulation: our figures alone
 	@for program in $(SPACE); do $$program; done
 
-bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
+bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd; steps a second of dragging 50,176 vertices
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks
 	@sh tests/bench/http_store.sh $(HEDGED) build/durable
+	@sh tests/bench/drag.sh $(HEDGED)
 
 $(addprefix $(BUILD)/tests/bench/,store checks): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
 	@mkdir -p $(@D)

@@ -81,9 +81,9 @@ typedef struct he_deformed {
  * another number of points than there are handles, if the last row of the matrix is not 0 0 0 1, or
  * if the triangles are so thin that the system of equations has no solution.
  * Returns HE_NOT_FINITE if a vertex would have a position that is not finite.
- * Returns HE_LIMIT if a vertex has more than HE_DEFORM_NEIGHBOURS neighbours, with biharmonic, or if
- * the patch of free vertices is too large for one system of equations.
- * Returns HE_CANCELLED if the mesh's progress is cancelled, and HE_NO_MEMORY. */
+ * Returns HE_LIMIT if a vertex has more than HE_DEFORM_NEIGHBOURS neighbours, with biharmonic, or
+ * if the patch of free vertices is too large for one system of equations. Returns HE_CANCELLED if
+ * the mesh's progress is cancelled, and HE_NO_MEMORY. */
 HE_NODISCARD he_status he_deform(he_mesh *m, const he_deform_sets *sets, const he_deform_goal *goal,
                                  unsigned steps, he_deformed *out, he_error *err);
 

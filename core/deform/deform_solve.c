@@ -4,7 +4,7 @@
  * the rotation R and the vector t fit the goals best. So the offsets of a rigid motion are 0. */
 #include "deform/deformer.h"
 
-#include "deform/rotation.h"
+#include "base/parallel.h"
 #include "geometry/scale.h"
 
 #include <string.h>
@@ -21,11 +21,12 @@ typedef struct part {
 typedef struct solving {
     const he_deformer *d;
     part *parts;
-    he_vec3 *now;       /* the present position of each vertex of the patch, scaled */
-    he_vec3 *offset;    /* of those that are not free */
-    he_rotation *turns; /* of each vertex of the patch; NULL with biharmonic */
-    double *base;       /* what the fixed offsets contribute to the right sides */
-    double *right;      /* the right sides, then the solutions: three of d->free numbers */
+    he_vec3 *now;        /* the present position of each vertex of the patch, scaled */
+    he_vec3 *offset;     /* of those that are not free */
+    he_rotation *turns;  /* of each vertex of the patch; NULL with biharmonic */
+    double *base;        /* what the fixed offsets contribute to the right sides */
+    double *right;       /* the right sides, then the solutions: three of d->free numbers */
+    he_progress threads; /* lends threads and reports nothing */
 } solving;
 
 static void clear(solving *s)
@@ -139,12 +140,14 @@ static void prepare(solving *s)
 
 /* --- the steps of arap --- */
 
-/* Chooses the rotation of each vertex for the present positions. */
-static void turn(solving *s)
+/* Chooses the rotation of each vertex of a range for the present positions. */
+static he_status turn(void *context, uint32_t which, size_t from, size_t to, he_error *err)
 {
+    (void)which, (void)err;
+    const solving *s = context;
     const he_deformer *d = s->d;
     const he_sparse *a = &d->matrix;
-    for (uint32_t v = 0; v < d->vertices; v++) {
+    for (size_t v = from; v < to; v++) {
         const he_vec3 p = d->points[v], q = s->now[v];
         double products[9] = {0};
         for (size_t i = a->starts[v]; i < a->starts[v + 1]; i++) {
@@ -154,15 +157,18 @@ static void turn(solving *s)
         }
         s->turns[v] = he_rotation_nearest(products);
     }
+    return HE_OK;
 }
 
-/* Adds to the right sides what the rotations of the vertices contribute, beyond that of the whole
- * part. */
-static void add_turns(solving *s)
+/* Adds to the right sides of a range what the rotations of the vertices contribute, beyond that of
+ * the whole part. */
+static he_status add_turns(void *context, uint32_t which, size_t from, size_t to, he_error *err)
 {
+    (void)which, (void)err;
+    const solving *s = context;
     const he_deformer *d = s->d;
     const he_sparse *a = &d->matrix;
-    for (uint32_t v = 0; v < d->free; v++) {
+    for (size_t v = from; v < to; v++) {
         const he_rotation *own = &s->turns[v], *whole = &s->parts[d->part[v]].turn;
         he_vec3 sum = {0, 0, 0};
         for (size_t i = a->starts[v]; i < a->starts[v + 1]; i++) {
@@ -178,6 +184,7 @@ static void add_turns(solving *s)
         s->right[d->free + (size_t)v] += sum.y;
         s->right[2 * (size_t)d->free + v] += sum.z;
     }
+    return HE_OK;
 }
 
 /* Chooses the positions of the free vertices for the present rotations. */
@@ -185,10 +192,11 @@ static he_status move(solving *s, bool turned, he_error *err)
 {
     const he_deformer *d = s->d;
     memcpy(s->right, s->base, 3 * (size_t)d->free * sizeof *s->right);
-    if (turned) {
-        add_turns(s);
+    he_status status = turned ? he_run_ranges(&s->threads, d->free, add_turns, s, err) : HE_OK;
+    if (status != HE_OK) {
+        return status;
     }
-    he_status status =
+    status =
         he_factor_solve(d->factor, &d->system, (he_right_sides){s->right, s->right, 3}, NULL, err);
     if (status == HE_NOT_FINITE) {
         return he_fail(err, HE_NOT_FINITE, HE_VERTEX, d->ids[0],
@@ -224,16 +232,55 @@ static double energy_of(const solving *s)
 
 /* --- the whole --- */
 
+/* Returns true if all handles move by one vector, up to rounding. */
+static bool is_translation(const solving *s, he_vec3 *by)
+{
+    static const double ROUNDING = 1e-14;
+    const he_deformer *d = s->d;
+    bool any = false;
+    for (uint32_t v = d->free; v < d->vertices; v++) {
+        if (d->handle[v] != HE_NONE) {
+            const he_vec3 way = he_vec3_sub(s->now[v], d->points[v]);
+            *by = any ? *by : way;
+            any = true;
+            if (!(he_vec3_extent(he_vec3_sub(way, *by)) <= ROUNDING)) {
+                return false;
+            }
+        }
+    }
+    return any;
+}
+
+/* Chooses the first positions of the free vertices. */
+static he_status begin(solving *s, he_error *err)
+{
+    const he_deformer *d = s->d;
+    he_vec3 by = {0, 0, 0};
+    if (d->fields == NULL || !is_translation(s, &by)) {
+        return move(s, false, err);
+    }
+    for (uint32_t v = 0; v < d->free; v++) {
+        s->now[v] = he_deformer_carry(d, v, &s->parts[d->part[v]].turn, by);
+        if (!he_vec3_is_finite(s->now[v])) {
+            return he_fail(err, HE_NOT_FINITE, HE_VERTEX, d->ids[v],
+                           "vertex %u would have a position that is not finite", d->ids[v]);
+        }
+    }
+    return HE_OK;
+}
+
 static he_status do_steps(solving *s, unsigned steps, he_progress *progress, he_error *err)
 {
-    he_status status = move(s, false, err);
+    he_status status = begin(s, err);
     for (unsigned i = 0; i < steps && status == HE_OK && s->turns != NULL; i++) {
         /* The steps of a small mesh are too short to be told of one by one. */
         if (i == 0 || s->d->free >= HE_PROGRESS_STRIDE) {
             status = he_progress_step(progress, i, steps, err);
         }
         if (status == HE_OK) {
-            turn(s);
+            status = he_run_ranges(&s->threads, s->d->vertices, turn, s, err);
+        }
+        if (status == HE_OK) {
             status = move(s, true, err);
         }
     }
@@ -260,7 +307,7 @@ static he_status unscale(const solving *s, he_vec3 *positions, he_error *err)
 he_status he_deformer_solve(const he_deformer *d, he_deform_motion *motion, he_progress *progress,
                             he_error *err)
 {
-    solving s = {.d = d};
+    solving s = {.d = d, .threads = {.parallel = progress == NULL ? NULL : progress->parallel}};
     motion->energy = 0;
     if (motion->steps < 1 || motion->steps > HE_DEFORM_STEPS) {
         return he_fail_plain(err, HE_BAD_VALUE, "a deformation does 1 to %d steps, not %u",

@@ -15,6 +15,7 @@ void he_deformer_free(he_deformer *d)
         he_sparse_clear(&d->matrix);
         he_sparse_clear(&d->system);
         he_factor_free(d->factor);
+        he_mem_free(d->fields);
         he_mem_free(d);
     }
 }
@@ -31,7 +32,7 @@ size_t he_deformer_bytes(const he_deformer *d)
     const size_t vertex =
         sizeof *d->ids + sizeof *d->handle + sizeof *d->part + sizeof *d->points + sizeof *d->at;
     return sizeof *d + d->vertices * vertex + bytes_of(&d->matrix) + bytes_of(&d->system) +
-           (d->factor == NULL ? 0 : he_factor_bytes(d->factor));
+           (d->factor == NULL ? 0 : he_factor_bytes(d->factor)) + he_deformer_field_bytes(d);
 }
 
 const uint32_t *he_deformer_vertices(const he_deformer *d, uint32_t *count)
@@ -139,6 +140,9 @@ static he_status factor(he_deformer *d, he_progress *progress, he_error *err)
 {
     static const double LEAST = 1e-14, MOST = 1e-3, TIMES = 100;
     he_status status = he_factor_make(&d->system, progress, &d->factor, err);
+    if (status == HE_OK) {
+        return he_deformer_make_fields(d, err);
+    }
     for (double by = LEAST; status == HE_BAD_VALUE && by <= MOST; by *= TIMES) {
         raise_diagonal(&d->system, 1 + by);
         status = he_factor_make(&d->system, progress, &d->factor, err);

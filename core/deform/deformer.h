@@ -3,6 +3,7 @@
 #define HE_DEFORM_DEFORMER_H
 
 #include "deform/deform.h"
+#include "deform/rotation.h"
 #include "solve/factor.h"
 
 /* The patch of the surface around the free vertices: the triangles that have a corner at a free
@@ -24,6 +25,9 @@ struct he_deformer {
     he_sparse matrix;  /* over all vertices of the patch: the Laplacian L, or L (1/m) L */
     he_sparse system;  /* its rows and columns of free vertices */
     he_factor *factor; /* of `system`; NULL if no vertex is free */
+    /* For each free vertex, what is the same for all translations of the handles (deform_fields.c):
+     * four columns. NULL if the system is singular, or almost. */
+    double *fields;
 };
 
 /* The triangles of a patch. */
@@ -39,5 +43,12 @@ typedef struct he_deform_triangles {
 HE_NODISCARD he_status he_deformer_find_patch(he_deformer *d, const he_mesh *m,
                                               const he_deform_sets *sets, he_deform_triangles *out,
                                               he_progress *progress, he_error *err);
+
+/* Makes the fields of a deformer that has a factor that is exact. Returns HE_NO_MEMORY. */
+HE_NODISCARD he_status he_deformer_make_fields(he_deformer *d, he_error *err);
+size_t he_deformer_field_bytes(const he_deformer *d);
+/* Returns where a free vertex is, in scaled units, if all handles move by a vector and the part in
+ * which it lies turns by `turn`; the deformer must have fields. */
+he_vec3 he_deformer_carry(const he_deformer *d, uint32_t v, const he_rotation *turn, he_vec3 by);
 
 #endif

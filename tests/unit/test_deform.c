@@ -374,6 +374,66 @@ static void what_lies_behind_fixed_vertices_stays(void **state)
 }
 
 /* The handles that `by` and `to` give go to the same places. */
+/* For a translation the deformer uses fields that it made before; if one of the handles moves a
+ * little differently, it solves for the motion. */
+static void a_translation_leads_where_its_equations_do(void **state)
+{
+    (void)state;
+    static const he_vec3 by = {0.3, -0.2, 0.5};
+    for (int method = 0; method < HE_DEFORM_METHODS; method++) {
+        static lists same, other;
+        same = other = (lists){.handle_count = 0};
+        he_mesh *m = dense_shape("icosphere", "subdivisions", 4);
+        he_mesh *again = dense_copy(m);
+        for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            const he_vec3 p = at(m, v), goal = he_vec3_add(p, by);
+            if (p.z > 0.9) {
+                add_handle(&same, v, goal);
+                add_handle(&other, v, goal);
+            } else if (p.z < -0.5) {
+                add_fixed(&same, v);
+                add_fixed(&other, v);
+            }
+        }
+        other.goals[0].x += 1e-11;
+        (void)deform(m, (he_deform_method)method, &same, NULL, 2);
+        (void)deform(again, (he_deform_method)method, &other, NULL, 2);
+        double worst = 0;
+        for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+            worst = fmax(worst, apart(at(m, v), at(again, v)));
+        }
+        print_message("note: apart by %g\n", worst);
+        assert_true(worst > 0 && worst < 1e-10);
+        he_mesh_free(again);
+        he_mesh_free(m);
+    }
+}
+
+/* A handle whose goal is its place keeps its bits, and numbers never exceed what a double holds. */
+static void extremes_are_told_as_numbers(void **state)
+{
+    (void)state;
+    he_mesh *m = dense_grid(4, NULL, 1);
+    he_set_position(m, (he_vertex){0}, (he_vec3){-0.0, -0.0, -0.0});
+    static lists l;
+    l = (lists){.handle_count = 0};
+    add_handle(&l, 0, (he_vec3){0, 0, 0});
+    he_mesh *before = dense_copy(m);
+    assert_int_equal(deform(m, HE_DEFORM_ARAP, &l, NULL, 2).moved, 0);
+    assert_true(he_mesh_equal(m, before));
+    for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
+        he_set_position(m, (he_vertex){v}, he_vec3_scale(at(m, v), 1e200));
+    }
+    l = (lists){.handle_count = 0};
+    add_handle(&l, 0, (he_vec3){0, 0, 1e200});
+    add_fixed(&l, 24);
+    const he_deformed done = deform(m, HE_DEFORM_ARAP, &l, NULL, 2);
+    assert_true(isfinite(done.energy) && done.energy > 1e307);
+    assert_true(isfinite(done.largest) && done.largest >= 1e200);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
 static void vectors_and_points_agree(void **state)
 {
     (void)state;
@@ -579,6 +639,8 @@ int main(void)
         cmocka_unit_test(the_energy_falls_with_each_step),
         cmocka_unit_test(arap_keeps_lengths_better),
         cmocka_unit_test(what_lies_behind_fixed_vertices_stays),
+        cmocka_unit_test(a_translation_leads_where_its_equations_do),
+        cmocka_unit_test(extremes_are_told_as_numbers),
         cmocka_unit_test(vectors_and_points_agree),
         cmocka_unit_test(random_meshes_stay_valid),
         cmocka_unit_test(every_allocation_may_fail),

@@ -9,9 +9,10 @@
 
 import { heldAround } from './ways.js';
 
-// Steps of the method, the same for a preview and for the edit, so that both lead to the same
-// positions.
-const STEPS = 2;
+// The number of steps times the number of vertices is at most WORK, so that a step of the drag stays
+// quick. It is the same for a preview and for the edit, so that both lead to the same positions.
+const WORK = 60000;
+const MOST_STEPS = 8;
 
 // The position of the slider at which everything bends.
 const ALL = 100;
@@ -117,8 +118,9 @@ export class Bend {
     }
 
     #operation(by) {
-        const { vertices, fixed } = this.#drag;
-        return { op: 'deform', method: 'arap', steps: STEPS, vertices, by, fixed };
+        const { vertices, fixed, geometry } = this.#drag;
+        const steps = Math.min(Math.max(Math.floor(WORK / geometry.vertexCount), 1), MOST_STEPS);
+        return { op: 'deform', method: 'arap', steps, vertices, by, fixed };
     }
 
     // Asks for one position after the other, as long as newer ones are wanted.
