@@ -38,8 +38,8 @@ he_status he_deformer_make_fields(he_deformer *d, he_error *err)
             }
         }
     }
-    he_status status =
-        he_factor_solve(d->factor, &d->system, (he_right_sides){right, right, SIDES}, NULL, err);
+    he_status status = he_factor_solve(d->factor, &d->system,
+                                       (he_right_sides){right, right, SIDES, false}, NULL, err);
     if (status == HE_OK) {
         d->fields = right;
         return HE_OK;

@@ -196,8 +196,8 @@ static he_status move(solving *s, bool turned, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    status =
-        he_factor_solve(d->factor, &d->system, (he_right_sides){s->right, s->right, 3}, NULL, err);
+    status = he_factor_solve(d->factor, &d->system, (he_right_sides){s->right, s->right, 3, turned},
+                             NULL, err);
     if (status == HE_NOT_FINITE) {
         return he_fail(err, HE_NOT_FINITE, HE_VERTEX, d->ids[0],
                        "vertex %u, or another that follows, would have a position that is not "

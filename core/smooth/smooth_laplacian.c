@@ -151,7 +151,7 @@ static he_status solve(he_smoothing *s, const patch *p, const he_laplacian *l, h
 {
     he_sparse whole = {0}, part = {0};
     double *right = he_mem_array(NULL, 3 * (size_t)s->count + 1, sizeof *right);
-    const he_right_sides sides = {right, right, 3};
+    const he_right_sides sides = {right, right, 3, false};
     bool solved = false;
     he_status status = right == NULL ? he_fail_plain(err, HE_NO_MEMORY,
                                                      "no memory to smooth %u vertices", s->count)

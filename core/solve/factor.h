@@ -32,6 +32,9 @@ typedef struct he_right_sides {
     const double *right;
     double *solution;
     uint32_t count;
+    /* Do not look at the errors of the solutions and improve them, which takes as long again: for
+     * steps of a method whose next step starts from any approximation. `residual` must be NULL. */
+    bool once;
 } he_right_sides;
 
 /* Solves A X = B. `a` is the matrix that was factored; a solution whose error is larger

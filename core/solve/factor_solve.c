@@ -216,9 +216,9 @@ static ALWAYS_INLINE void improve(const he_factor *f, block *b, const bool *chos
     }
 }
 
-/* Solves for all sides of the block. Each side is improved once, by a solution for what it leaves
- * over, if its error is larger than a few roundings. */
-static ALWAYS_INLINE void solve_block(const he_factor *f, const he_sparse *a, block *b,
+/* Solves for all sides of the block. Unless `once` is true, each side is improved once, by a
+ * solution for what it leaves over, if its error is larger than a few roundings. */
+static ALWAYS_INLINE void solve_block(const he_factor *f, const he_sparse *a, block *b, bool once,
                                       size_t width)
 {
     bool chosen[TOGETHER], any = false;
@@ -231,6 +231,9 @@ static ALWAYS_INLINE void solve_block(const he_factor *f, const he_sparse *a, bl
                width * sizeof *b->right);
     }
     improve(f, b, chosen, width);
+    if (once) {
+        return;
+    }
     leave(f, a, b, error, width);
     for (size_t c = 0; c < width; c++) {
         chosen[c] = error[c] > MOST_ERROR;
@@ -274,20 +277,23 @@ he_status he_factor_solve(const he_factor *factor, const he_sparse *a, he_right_
     if (status != HE_OK) {
         return status;
     }
-    const double norm = he_sparse_norm(a);
+    const double norm = residual == NULL ? 0 : he_sparse_norm(a);
     double worst = 0;
     for (uint32_t first = 0, count; first < sides.count && status == HE_OK; first += count) {
         count = sides.count - first < b.width ? sides.count - first : (uint32_t)b.width;
         take_sides(factor, sides, first, count, &b);
         if (b.width == 1) {
-            solve_block(factor, a, &b, 1);
+            solve_block(factor, a, &b, sides.once, 1);
         } else {
-            solve_block(factor, a, &b, TOGETHER);
+            solve_block(factor, a, &b, sides.once, TOGETHER);
         }
         for (uint32_t c = 0; c < count && status == HE_OK; c++) {
             status = give_side(&b, n, c, sides.solution + (size_t)(first + c) * n, err);
-            const double scale = norm * largest(&b, b.solution, n, c) + largest(&b, b.right, n, c);
-            worst = scale > 0 ? fmax(worst, largest(&b, b.permuted, n, c) / scale) : worst;
+            if (residual != NULL) {
+                const double scale =
+                    norm * largest(&b, b.solution, n, c) + largest(&b, b.right, n, c);
+                worst = scale > 0 ? fmax(worst, largest(&b, b.permuted, n, c) / scale) : worst;
+            }
         }
     }
     if (residual != NULL) {

@@ -176,8 +176,8 @@ he_status he_harmonic_solve(const he_harmonic *h, double *values, uint32_t sides
     for (uint32_t side = 0; side < sides; side++) {
         move_fixed(h, values + side * n, right + (size_t)side * h->free);
     }
-    he_status status =
-        he_factor_solve(h->factor, &h->part, (he_right_sides){right, right, sides}, residual, err);
+    he_status status = he_factor_solve(h->factor, &h->part,
+                                       (he_right_sides){right, right, sides, false}, residual, err);
     for (uint32_t side = 0; side < sides && status == HE_OK; side++) {
         for (uint32_t v = 0; v < n; v++) {
             if (h->numbers[v] != UINT32_MAX) {

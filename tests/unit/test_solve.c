@@ -114,7 +114,8 @@ static void solutions_equal_those_of_elimination(void **state)
         assert_int_equal(he_factor_rows(f), n);
         assert_true(he_factor_bytes(f) > n * sizeof(double));
         /* the solutions may take the place of the right sides */
-        assert_int_equal(he_factor_solve(f, &a, (he_right_sides){x, x, 3}, &residual, NULL), HE_OK);
+        assert_int_equal(he_factor_solve(f, &a, (he_right_sides){x, x, 3, false}, &residual, NULL),
+                         HE_OK);
         assert_true(residual <= 1e-12);
         for (uint32_t side = 0; side < 3; side++) {
             eliminate(&d, b + side * n, expected);
@@ -169,18 +170,20 @@ static void conjugate_gradients_solve_what_a_factor_solves(void **state)
         for (uint32_t i = 0; i < 3 * N; i++) {
             b[i] = i < 2 * N ? uniform(&r) : 0;
         }
-        assert_int_equal(he_conjugate_solve(&a, (he_right_sides){b, x, 3}, NULL, &solved, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_conjugate_solve(&a, (he_right_sides){b, x, 3, false}, NULL, &solved, NULL), HE_OK);
         assert_true(solved);
         assert_int_equal(he_factor_make(&a, NULL, &f, NULL), HE_OK);
-        assert_int_equal(he_factor_solve(f, &a, (he_right_sides){b, exact, 3}, NULL, NULL), HE_OK);
+        assert_int_equal(he_factor_solve(f, &a, (he_right_sides){b, exact, 3, false}, NULL, NULL),
+                         HE_OK);
         for (uint32_t i = 0; i < 3 * N; i++) {
             assert_true(fabs(x[i] - exact[i]) <= 1e-13);
         }
         /* A side has the same bits alone, and the solution may take its place. */
         memcpy(alone, b + N, sizeof alone);
         assert_int_equal(
-            he_conjugate_solve(&a, (he_right_sides){alone, alone, 1}, NULL, &solved, NULL), HE_OK);
+            he_conjugate_solve(&a, (he_right_sides){alone, alone, 1, false}, NULL, &solved, NULL),
+            HE_OK);
         assert_true(solved);
         assert_memory_equal(alone, x + N, sizeof alone);
         he_factor_free(f);
@@ -203,8 +206,8 @@ static void systems_with_a_light_diagonal_are_left_to_a_factor(void **state)
         he_sparse a;
         bool solved = true;
         make_step(&r, masses[i], &a);
-        assert_int_equal(he_conjugate_solve(&a, (he_right_sides){b, x, 1}, NULL, &solved, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_conjugate_solve(&a, (he_right_sides){b, x, 1, false}, NULL, &solved, NULL), HE_OK);
         assert_false(solved);
         assert_memory_equal(x, before, sizeof x);
         he_sparse_clear(&a);
@@ -303,7 +306,8 @@ static void a_large_system_leaves_nothing_over(void **state)
     }
     he_sparse_multiply(&a, x, b);
     assert_int_equal(he_factor_make(&a, NULL, &f, NULL), HE_OK);
-    assert_int_equal(he_factor_solve(f, &a, (he_right_sides){b, b, 1}, &residual, NULL), HE_OK);
+    assert_int_equal(he_factor_solve(f, &a, (he_right_sides){b, b, 1, false}, &residual, NULL),
+                     HE_OK);
     for (uint32_t i = 0; i < N; i++) {
         worst = fmax(worst, fabs(x[i] - b[i]));
     }
@@ -333,13 +337,15 @@ static void a_solution_does_not_depend_on_the_other_sides(void **state)
             b[i] = round < 2 ? uniform(&r) : i % N == i / N;
         }
         assert_int_equal(he_factor_make(&hard, NULL, &f, NULL), HE_OK);
-        assert_int_equal(he_factor_solve(f, &hard, (he_right_sides){b, x, SIDES}, &residual, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_factor_solve(f, &hard, (he_right_sides){b, x, SIDES, false}, &residual, NULL),
+            HE_OK);
         assert_true(residual <= 1e-12);
         for (size_t side = 0; side < SIDES; side++) {
-            assert_int_equal(
-                he_factor_solve(f, &hard, (he_right_sides){b + side * N, alone, 1}, NULL, NULL),
-                HE_OK);
+            assert_int_equal(he_factor_solve(f, &hard,
+                                             (he_right_sides){b + side * N, alone, 1, false}, NULL,
+                                             NULL),
+                             HE_OK);
             assert_memory_equal(alone, x + side * N, sizeof alone);
         }
         he_factor_free(f);
@@ -402,14 +408,14 @@ static void what_is_wrong_is_refused(void **state)
     assert_int_equal(he_sparse_make(1, (he_entry[]){{0, 0, 1e-200}}, 1, &a, NULL), HE_OK);
     assert_int_equal(he_factor_make(&a, NULL, &f, NULL), HE_OK);
     double x = 1e200;
-    assert_int_equal(he_factor_solve(f, &a, (he_right_sides){&x, &x, 1}, NULL, &err),
+    assert_int_equal(he_factor_solve(f, &a, (he_right_sides){&x, &x, 1, false}, NULL, &err),
                      HE_NOT_FINITE);
     he_factor_free(f);
     he_sparse_clear(&a);
     /* the matrix without rows */
     assert_int_equal(he_sparse_make(0, NULL, 0, &a, NULL), HE_OK);
     assert_int_equal(he_factor_make(&a, NULL, &f, NULL), HE_OK);
-    assert_int_equal(he_factor_solve(f, &a, (he_right_sides){&x, &x, 1}, NULL, NULL), HE_OK);
+    assert_int_equal(he_factor_solve(f, &a, (he_right_sides){&x, &x, 1, false}, NULL, NULL), HE_OK);
     he_factor_free(f);
     he_sparse_clear(&a);
 }
@@ -428,7 +434,7 @@ static he_status all(const he_entry *entries, size_t count)
         status = he_factor_make(&b, NULL, &f, NULL);
     }
     if (status == HE_OK) {
-        status = he_factor_solve(f, &b, (he_right_sides){x, x, 1}, NULL, NULL);
+        status = he_factor_solve(f, &b, (he_right_sides){x, x, 1, false}, NULL, NULL);
     }
     bool solved = true;
     if (status == HE_OK) {
@@ -476,7 +482,7 @@ static void conjugate_gradients_can_be_cancelled(void **state)
         bool solved;
         he_progress progress;
         he_progress_init(&progress, tell_until, &left);
-        status = he_conjugate_solve(&a, (he_right_sides){b, x, 1}, &progress, &solved, NULL);
+        status = he_conjugate_solve(&a, (he_right_sides){b, x, 1, false}, &progress, &solved, NULL);
         assert_true(status == HE_OK || (status == HE_CANCELLED && x[0] == 0));
     }
     he_sparse_clear(&a);

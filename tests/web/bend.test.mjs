@@ -297,7 +297,9 @@ test('the slider says how far the bending reaches, up to all', async (t) => {
     await page.mouse.up();
     const near = asked.at(-1);
     await press(page, 'g');
-    await page.getByLabel('How far').focus();
+    const slider = page.getByLabel('How far');
+    await slider.waitFor();
+    await slider.focus();
     await page.keyboard.press('End');
     assert.equal(await page.locator('#bend-reach').textContent(), 'all but the farthest');
     await page.keyboard.press('Escape');

@@ -122,7 +122,7 @@ static void solve(bench_side *side, bench_result *out)
     }
     bench_require(he_factor_make(&m, NULL, &f, NULL));
     const double start = bench_seconds();
-    bench_require(he_factor_solve(f, &m, (he_right_sides){x, x, SIDES}, &residual, NULL));
+    bench_require(he_factor_solve(f, &m, (he_right_sides){x, x, SIDES, false}, &residual, NULL));
     out->value = bench_seconds() - start;
     out->amount = m.n;
     for (size_t i = 0; i < count; i++) {
