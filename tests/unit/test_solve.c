@@ -438,7 +438,7 @@ static he_status all(const he_entry *entries, size_t count)
     }
     bool solved = true;
     if (status == HE_OK) {
-        status = he_conjugate_solve(&a, (he_right_sides){x, x, 1}, NULL, &solved, NULL);
+        status = he_conjugate_solve(&a, (he_right_sides){x, x, 1, false}, NULL, &solved, NULL);
     }
     assert_true(solved);
     he_factor_free(f);
