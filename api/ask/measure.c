@@ -127,6 +127,14 @@ CURVATURE(mean_curvatures, mean)
 CURVATURE(gaussian_curvatures, gaussian)
 #undef CURVATURE
 
+static he_status vertex_degree(const he_mesh *m, uint32_t id, const options *o, double *out,
+                               he_error *err)
+{
+    (void)o, (void)err;
+    *out = he_vertex_degree(m, (he_vertex){id});
+    return HE_OK;
+}
+
 /* --- measures of half-edges, which stand for the corners at their origin --- */
 
 static he_status corner_angle(const he_mesh *m, uint32_t id, const options *o, double *out,
@@ -235,12 +243,29 @@ static he_status face_centroid(const he_mesh *m, uint32_t id, const options *o, 
     return HE_OK;
 }
 
+static he_status face_degree(const he_mesh *m, uint32_t id, const options *o, double *out,
+                             he_error *err)
+{
+    (void)o, (void)err;
+    *out = he_face_degree(m, (he_face){id});
+    return HE_OK;
+}
+
+static he_status face_smallest_angle(const he_mesh *m, uint32_t id, const options *o, double *out,
+                                     he_error *err)
+{
+    (void)o, (void)err;
+    *out = he_face_smallest_angle(m, (he_face){id});
+    return HE_OK;
+}
+
 static const measure measures[] = {
     {HE_VERTEX, "normal", 3, WEIGHTS, vertex_normal, vertex_normals},
     {HE_VERTEX, "area", 1, PLAIN, NULL, vertex_areas},
     {HE_VERTEX, "angle_defect", 1, PLAIN, NULL, angle_defects},
     {HE_VERTEX, "mean_curvature", 1, PLAIN, NULL, mean_curvatures},
     {HE_VERTEX, "gaussian_curvature", 1, PLAIN, NULL, gaussian_curvatures},
+    {HE_VERTEX, "degree", 1, PLAIN, vertex_degree, NULL},
     {HE_HALFEDGE, "angle", 1, PLAIN, corner_angle, NULL},
     {HE_HALFEDGE, "normal", 3, CREASE, corner_normal, corner_normals},
     {HE_EDGE, "length", 1, PLAIN, edge_length, NULL},
@@ -248,6 +273,8 @@ static const measure measures[] = {
     {HE_EDGE, "cotangent", 1, PLAIN, NULL, edge_cotangents},
     {HE_FACE, "normal", 3, PLAIN, face_normal, NULL},
     {HE_FACE, "area", 1, PLAIN, face_area, NULL},
+    {HE_FACE, "degree", 1, PLAIN, face_degree, NULL},
+    {HE_FACE, "smallest_angle", 1, PLAIN, face_smallest_angle, NULL},
     {HE_FACE, "centroid", 3, PLAIN, face_centroid, NULL},
 };
 enum { MEASURES = sizeof measures / sizeof measures[0] };

@@ -162,11 +162,13 @@ static const struct {
     {"measure_name",
      "{\"type\":\"string\",\"enum\":[\"normal\",\"area\",\"angle_defect\",\"mean_curvature\","
      "\"gaussian_curvature\","
-     "\"angle\",\"length\",\"dihedral\",\"cotangent\",\"centroid\"],\"description\":\"Of vertices "
-     "normal, area (the mixed one), angle_defect, mean_curvature, gaussian_curvature; of "
-     "half-edges "
+     "\"angle\",\"length\",\"dihedral\",\"cotangent\",\"centroid\",\"degree\",\"smallest_angle\"],"
+     "\"description\":\"Of vertices "
+     "normal, area (the mixed one), angle_defect, mean_curvature, gaussian_curvature, degree (the "
+     "number of edges); of half-edges "
      "angle and normal, at the corner; of edges length, dihedral (convex above 0), cotangent (the "
-     "weight); of faces normal, area, centroid. Angles are in radians.\"}"},
+     "weight); of faces normal, area, centroid, degree (the number of corners), smallest_angle. "
+     "Angles are in radians.\"}"},
     {"measured_value",
      "{\"oneOf\":[{\"type\":\"number\"},{\"$ref\":\"#/components/schemas/point\"},"
      "{\"type\":\"null\"}]}"},

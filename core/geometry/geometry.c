@@ -85,6 +85,17 @@ double he_corner_angle(const he_mesh *m, he_halfedge h)
     return ahead == 0 || behind == 0 ? 0 : he_vec3_angle(a, b);
 }
 
+double he_face_smallest_angle(const he_mesh *m, he_face f)
+{
+    he_halfedge first = he_face_halfedge(m, f), h = first;
+    double least = HE_PI;
+    do {
+        least = fmin(least, he_corner_angle(m, h));
+        h = he_next(m, h);
+    } while (h.i != first.i);
+    return least;
+}
+
 /* Returns the dihedral angle of edge e. `left` and `right` are the unit normals of the faces of the
  * edge's first and second half-edge. */
 static double dihedral_between(const he_mesh *m, he_edge e, he_vec3 left, he_vec3 right)

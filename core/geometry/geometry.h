@@ -51,6 +51,10 @@ HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_progress *progress
  * has no length. */
 double he_corner_angle(const he_mesh *m, he_halfedge h);
 
+/* Returns the smallest of the angles at the corners of a face, in radians: pi / 3 for a triangle
+ * with equal sides, and near 0 for a sliver. */
+double he_face_smallest_angle(const he_mesh *m, he_face f);
+
 /* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
     he_vec3 normal;   /* unit vector, or zero if the face is degenerate */

@@ -94,17 +94,6 @@ static unsigned kinds_of(he_select_measure measure)
     return 0;
 }
 
-static double smallest_angle(const he_mesh *m, he_face f)
-{
-    he_halfedge first = he_face_halfedge(m, f), h = first;
-    double least = HE_PI;
-    do {
-        least = fmin(least, he_corner_angle(m, h));
-        h = he_next(m, h);
-    } while (h.i != first.i);
-    return least;
-}
-
 static double curvature_of(const he_curvature *c, he_select_measure measure)
 {
     switch (measure) {
@@ -134,7 +123,7 @@ static double measure_one(const he_mesh *m, const he_select_rule *rule, uint32_t
     case HE_MEASURE_LENGTH:
         return he_edge_length(m, (he_edge){id});
     case HE_MEASURE_SMALLEST_ANGLE:
-        return smallest_angle(m, (he_face){id});
+        return he_face_smallest_angle(m, (he_face){id});
     case HE_MEASURE_DEGREE:
         return rule->of == HE_FACE ? he_face_degree(m, (he_face){id})
                                    : he_vertex_degree(m, (he_vertex){id});

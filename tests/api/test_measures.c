@@ -53,7 +53,10 @@ static void each_measure_of_a_cube(void **state)
         {"edge", "edges", "cotangent", 1},
         {"halfedge", "halfedges", "angle", 1.5707963267948966},
         {"face", "faces", "area", 4},
+        {"face", "faces", "degree", 4},
+        {"face", "faces", "smallest_angle", 1.5707963267948966},
         {"vertex", "vertices", "angle_defect", 1.5707963267948966},
+        {"vertex", "vertices", "degree", 3},
     };
     api_bench *b = bench_new();
     put(b, "{\"shape\":\"cube\",\"size\":2}");
@@ -75,7 +78,7 @@ static void each_measure_of_a_cube(void **state)
         for (const cJSON *v = in(all, "values")->child; v != NULL; v = v->next, count++) {
             assert_true(fabs(v->valuedouble - rows[i].value) < 1e-12);
         }
-        assert_int_equal(count, i < 3 ? 12 : i == 3 ? 24 : i == 4 ? 6 : 8);
+        assert_int_equal(count, i < 3 ? 12 : i == 3 ? 24 : i < 7 ? 6 : 8);
         bench_reply_free(&r);
     }
     bench_free(b);
@@ -175,6 +178,26 @@ static void defects_of_a_sphere_sum_to_two_pi_euler(void **state)
         sum += v->valuedouble;
     }
     assert_true(fabs(sum - 4 * PI) < 1e-9);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+static void quality_and_degree_differ_between_elements(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    /* A right triangle with two sides of length 1, a quad beside it, and an isolated vertex. */
+    put(b, "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[-1,1,0],[-1,0,0],[9,9,9]],"
+           "\"faces\":[[0,1,2],[0,2,3,4]]}");
+    expect_answer(b, "{\"measure\":\"degree\",\"of\":{\"vertices\":\"all\"}}",
+                  "{\"measure\":\"degree\",\"components\":1,\"values\":[3,2,3,2,2,0]}");
+    expect_answer(b, "{\"measure\":\"degree\",\"of\":{\"faces\":\"all\"}}",
+                  "{\"measure\":\"degree\",\"components\":1,\"values\":[3,4]}");
+    bench_reply r;
+    const cJSON *both = ask(b, "{\"measure\":\"smallest_angle\",\"of\":{\"faces\":\"all\"}}", &r);
+    const cJSON *values = in(both, "values");
+    assert_true(fabs(cJSON_GetArrayItem(values, 0)->valuedouble - PI / 4) < 1e-12);
+    assert_true(fabs(cJSON_GetArrayItem(values, 1)->valuedouble - PI / 2) < 1e-12);
     bench_reply_free(&r);
     bench_free(b);
 }
@@ -385,6 +408,7 @@ int main(void)
         cmocka_unit_test(what_has_no_value_is_null),
         cmocka_unit_test(octets_are_doubles_and_null_is_nan),
         cmocka_unit_test(defects_of_a_sphere_sum_to_two_pi_euler),
+        cmocka_unit_test(quality_and_degree_differ_between_elements),
         cmocka_unit_test(rays_hit_once_and_name_where),
         cmocka_unit_test(an_empty_mesh_is_nowhere),
         cmocka_unit_test(a_mesh_that_changes_is_asked_anew),
