@@ -3,6 +3,8 @@
 import { Address } from './open/address.js';
 import * as api from './wire/api.js';
 import { isReady, showName, showState } from './stage/bar.js';
+import { Colouring } from './colour/colouring.js';
+import { colourByDeviation, nextAfter } from './edit/offers.js';
 import { Comparing } from './edit/comparing.js';
 import { byId } from './kit/dom.js';
 import { fileNameOf, save } from './kit/download.js';
@@ -18,6 +20,7 @@ import { Legend } from './stage/legend.js';
 import { Lens } from './lens/lens.js';
 import { Look } from './look/look.js';
 import { MeshList } from './meshes/list.js';
+import { Measuring } from './measure/measuring.js';
 import { MeshActs } from './meshes/acts.js';
 import { askShape } from './meshes/new_shape.js';
 import { Refining } from './open/refining.js';
@@ -89,6 +92,7 @@ const comparing = new Comparing(
     {
         compare: (other) => editing.watch('compare', (work) => api.compare(session.mesh, other, work)),
         meshes: async () => (await api.listMeshes()).items,
+        color: (other) => colourByDeviation(other, { colouring, editing, session }),
         onPlace: (face) => session.selection.select('face', face).then(frameSelection).catch(fail),
         onError: fail,
     },
@@ -140,12 +144,19 @@ const stage = new Stage(
     },
     {
         content: () => session.shown,
-        onPick: (chosen, also) => editing.pick(chosen, also).catch(fail),
+        onPick: (chosen, also, place) =>
+            (measuring.isOn && byId('measure-kind').value !== 'area'
+                ? measuring.click(chosen, place)
+                : editing.pick(chosen, also)
+            ).catch(fail),
         onMode: (kind) => {
             byId('goto-kind').value = kind;
         },
         onRest: () => address.write(),
-        onFrame: () => look.frameDrawn(),
+        onFrame: () => {
+            look.frameDrawn();
+            measuring.place();
+        },
         onSlow: () => look.slow(),
         onBroken: (reason) => look.broken(reason),
         onError: fail,
@@ -185,10 +196,49 @@ const offering = new Offering(byId('lesson-open'), session, {
     onApply: (operation) => editing.run(operation).catch(fail),
     onError: fail,
 });
+const colouring = new Colouring(
+    {
+        section: byId('colour'),
+        select: byId('colour-by'),
+        part: byId('colour-part'),
+        scale: byId('colour-scale'),
+        shade: byId('colour-shade'),
+        said: byId('colour-said'),
+        values: byId('colour-values'),
+        key: byId('colour-key'),
+        canvas,
+    },
+    session,
+    stage,
+    { label, onError: fail },
+);
 const editing = new Editing(canvas, session, stage, toasts, {
-    onPicking: () => refining.end(),
+    onPicking: () => {
+        refining.end();
+        measuring.stop();
+    },
     onKnown: (operation) => offering.offer(operation),
+    nextAfter: (operation, before) =>
+        nextAfter(operation, before, { colouring, editing, session, onError: fail }),
 });
+const measuring = new Measuring(
+    {
+        button: byId('measure-button'),
+        section: byId('measure'),
+        kind: byId('measure-kind'),
+        hint: byId('measure-hint'),
+        form: byId('measure-form'),
+        ids: byId('measure-ids'),
+        results: byId('measure-results'),
+        said: byId('measure-said'),
+        done: byId('measure-done'),
+        clear: byId('measure-clear'),
+        labels: byId('measure-labels'),
+    },
+    session,
+    stage,
+    { onStart: () => editing.stopPicking(), onError: fail },
+);
 const lens = new Lens(
     {
         section: byId('lens'),
@@ -291,6 +341,8 @@ function update(what, change) {
         editing.follow(what);
     }
     lens.follow(what);
+    colouring.follow(what);
+    measuring.follow(what);
     if (what === 'gone') {
         refreshList().catch(fail);
     }
@@ -317,6 +369,7 @@ function label() {
               revision: content.revision,
               selection: selection.chosen.map(({ kind, id }) => `${kind}:${id}`).join(' '),
               materials: session.materials.revision,
+              colour: colouring.label,
           };
 }
 
@@ -367,6 +420,7 @@ function showWhatMayBeDone() {
     const ready = isReady(session, signIn.mayEdit) && !refining.isOn;
     showState(session, ready, stage.isThere);
     editing.setEnabled(ready);
+    measuring.setEnabled(session.mesh !== null && !refining.isOn);
     history.setEnabled(ready);
     lens.setEnabled(ready, session.mesh !== null);
 }
@@ -432,6 +486,17 @@ async function flyTo(kind, id) {
     frameSelection();
 }
 
+// Handles the Esc key: ends what goes on in the view, or clears the selection.
+function giveUp() {
+    if (refining.isWanted) {
+        refining.end();
+    } else if (measuring.isOn) {
+        measuring.giveUp();
+    } else {
+        editing.giveUp();
+    }
+}
+
 function toggleLevels() {
     if (refining.isWanted) {
         refining.end();
@@ -466,7 +531,8 @@ listenToKeys(canvas, {
     redo,
     check: () => byId('check').click(),
     help: () => byId('help').showModal(),
-    clear: () => (refining.isWanted ? refining.end() : editing.giveUp()),
+    measure: () => measuring.toggle(),
+    clear: giveUp,
 });
 byId('keys').append(...keyList());
 byId('help-button').addEventListener('click', () => byId('help').showModal());

@@ -7,11 +7,13 @@ export class Comparing {
     #elements;
     #callbacks;
     #mesh = null;
+    #isKept = false; // an edit is running that does not move the faces
 
     // `form` contains `kind`, a choice of mesh or revision, with the fields `other` and `revision`,
     // and `result`, a list that gets the numbers. `compare(other)` returns a promise of the server's
     // answer, `meshes()` one of the list of meshes; `onPlace(face)` is called when the user wants to
-    // see a face of the open mesh.
+    // see a face of the open mesh, and `color(other)` when the mesh is to be coloured by its distance
+    // from the other mesh or revision; it returns a promise.
     constructor(elements, callbacks) {
         const { form, kind, other } = elements;
         this.#elements = elements;
@@ -35,7 +37,9 @@ export class Comparing {
 
     // Called when the open mesh has changed, so that its faces may be others.
     forget() {
-        this.#elements.result.replaceChildren();
+        if (!this.#isKept) {
+            this.#elements.result.replaceChildren();
+        }
     }
 
     #showFields() {
@@ -61,15 +65,33 @@ export class Comparing {
         const mesh = this.#mesh;
         button.disabled = true;
         try {
-            const found = await this.#callbacks.compare(
-                kind.value === 'mesh' ? other.value : Number(revision.value),
-            );
+            const asked = kind.value === 'mesh' ? other.value : Number(revision.value);
+            const found = await this.#callbacks.compare(asked);
             if (mesh === this.#mesh) {
-                result.replaceChildren(...this.#rowsOf(found));
+                result.replaceChildren(...this.#rowsOf(found), this.#colorButton(asked));
             }
         } finally {
             button.disabled = false;
         }
+    }
+
+    // Returns a button that colours the mesh by its distance from what it was compared with. The edit
+    // that writes the distances does not change the surface, so the comparison stays.
+    #colorButton(other) {
+        const button = make('button', { type: 'button', className: 'edits' }, 'Colour by the deviation');
+        button.addEventListener('click', async () => {
+            button.disabled = true;
+            this.#isKept = true;
+            try {
+                await this.#callbacks.color(other);
+            } catch (error) {
+                this.#callbacks.onError(error);
+            } finally {
+                this.#isKept = false;
+                button.disabled = false;
+            }
+        });
+        return make('div', {}, make('dt', { className: 'unseen' }, 'Colours'), make('dd', {}, button));
     }
 
     #rowsOf({ lower, upper, forward, backward }) {

@@ -64,14 +64,18 @@ export class Editing {
     #trial;
     #work;
     #onPicking;
+    #nextAfter;
     #marking = 0; // number of the last request for the elements that the form's fields name
 
     // `onPicking()` is called when a field of the form begins to wait for a click in the view.
     // `onKnown(operation)` is called when a dry run has found that the operation in the form is
-    // possible, and with null when that is not known any more.
-    constructor(canvas, session, stage, toasts, { onPicking, onKnown }) {
+    // possible, and with null when that is not known any more. `nextAfter(operation, before)` returns
+    // what may be done after an operation on a mesh whose revision was `before`: {label, run}, see
+    // Toasts.tell(), or null.
+    constructor(canvas, session, stage, toasts, { onPicking, onKnown, nextAfter }) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
         this.#onPicking = onPicking;
+        this.#nextAfter = nextAfter;
         const onError = (error) => toasts.show(error);
         const onRun = (operation) => this.run(operation).catch(onError);
         this.#work = new Work(
@@ -228,7 +232,7 @@ export class Editing {
         }
     }
 
-    // Shows the progress of work on the open mesh that is no edit. `begin(work)` begins the work and
+    // Shows the progress of other work on the open mesh. `begin(work)` begins the work and
     // returns a promise of its result.
     async watch(title, begin) {
         this.#work.start(title, false);
@@ -247,6 +251,7 @@ export class Editing {
             return;
         }
         this.#work.start(operation.op, false);
+        const before = this.#session.shown.revision;
         try {
             const answer = await this.#session.run(operation, this.#work);
             const [result] = answer?.results ?? [];
@@ -261,7 +266,8 @@ export class Editing {
             const { revision, history } = this.#session.shown;
             const isFinal = history.entries[0]?.undoable === false;
             const end = isFinal ? ' This edit cannot be undone.' : '';
-            this.#toasts.tell(operation.op, `Done: the mesh is now at revision ${revision}.${end}`);
+            const next = answer === null ? null : this.#nextAfter(operation, before);
+            this.#toasts.tell(operation.op, `Done: the mesh is now at revision ${revision}.${end}`, next);
         } finally {
             this.#work.end();
         }
@@ -290,7 +296,8 @@ export class Editing {
     // Says what the operation `segment` has found, and selects the feature edges in the page, so that
     // the patches can be seen.
     async #showPatches(operation, result) {
-        this.#toasts.tell(operation.op, `The faces are divided into ${patchesOf(result)}.`);
+        const next = this.#nextAfter(operation, this.#session.shown.revision);
+        this.#toasts.tell(operation.op, `The faces are divided into ${patchesOf(result)}.`, next);
         if (result.features > 0 && result.features <= MOST_MARKED) {
             const ids = await api.getSet(this.#session.mesh, 'edges', 'feature');
             await this.#session.selection.selectAll('edge', ids);

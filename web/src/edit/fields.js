@@ -15,6 +15,7 @@ import {
     vectors,
 } from '../kit/controls.js';
 import { matrix } from '../kit/matrix.js';
+import { MeshChoice } from '../kit/mesh_choice.js';
 
 const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
 export const KINDS = Object.values(PLURALS);
@@ -74,9 +75,7 @@ export function controlFor(param, meshes, pickable) {
             : new Choice(options, usual ?? choices[0]);
     }
     if (type === 'mesh') {
-        const control = new Choice([['', 'which mesh']], '');
-        meshes().then((items) => control.add(items.map((item) => [item.id, item.name || item.id])));
-        return control;
+        return new MeshChoice(name, meshes());
     }
     if (type === 'number' || type === 'integer') {
         return new Numeral(name, hintFor(param), type === 'integer' ? '1' : 'any');

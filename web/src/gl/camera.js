@@ -1,7 +1,7 @@
 // camera.js - the position of the camera, and how pointer, wheel, fingers and keys move it. view.js
 // computes what it shows.
 
-import { Matrix4, PerspectiveCamera } from 'three';
+import { Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 import { FIELD_OF_VIEW, UP, fitDistance, turnTo } from '../geometry/view.js';
@@ -97,6 +97,15 @@ export class Camera {
             this.three.projectionMatrix,
             this.three.matrixWorldInverse,
         ).elements;
+    }
+
+    // Returns the ray from the camera through a place on the screen, which is given in clip coordinates
+    // from -1 to 1: {origin, direction}.
+    rayAt(x, y) {
+        this.three.updateMatrixWorld();
+        const origin = this.three.position;
+        const direction = new Vector3(x, y, 0.5).unproject(this.three).sub(origin).normalize();
+        return { origin: origin.toArray(), direction: direction.toArray() };
     }
 
     // Sets the near and the far plane close to what is drawn, because the depth buffer is more exact

@@ -5,6 +5,7 @@
 //   cut.js       the face that a section plane cuts
 //   guides.js    grid, axes and bounding box
 //   marks.js     the marks on it: selection, arrows, boundary loops, previews
+//   rulers.js    lines that measure
 //   camera.js    the position of the camera
 //
 // A frame is drawn only after a change. After each frame `onFrame` is called with a label that says
@@ -30,6 +31,7 @@ import { Cut } from './cut.js';
 import { Guides } from './guides.js';
 import { Marks } from './marks.js';
 import { Motion } from './motion.js';
+import { Rulers } from './rulers.js';
 import { Surface } from './surface.js';
 
 export class NoWebGL extends Error {}
@@ -46,6 +48,7 @@ export class Renderer {
     #motion = new Motion(() => this.#draw());
     #hurry = 'auto';
     #colors = COLORS.dark;
+    #rulers = new Rulers();
     #scene = new Scene();
     #pickScene = new Scene();
     #geometry = null;
@@ -105,6 +108,7 @@ export class Renderer {
             fieldLines,
             fieldVertices,
             preview,
+            ...this.#rulers.objects,
         ]);
         this.setColors('dark');
         this.show(null, null);
@@ -124,6 +128,7 @@ export class Renderer {
     // mesh is too large for a texture; then the mesh that was shown before stays visible.
     show(geometry, label) {
         this.#surface.show(geometry);
+        this.#surface.values.hide(); // they belong to other elements
         this.#geometry = geometry;
         this.#marks.reset(geometry);
         this.#label = label;
@@ -170,6 +175,13 @@ export class Renderer {
         this.#draw();
     }
 
+    // Colours the faces by values, see Values, which `act(values)` sets; `label` is as in show().
+    color(act, label) {
+        act(this.#surface.values);
+        this.#label = label;
+        this.#draw();
+    }
+
     // Marks the selected elements, each {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to}
     // or {kind: 'vertex', id}, and draws `halfedges` as arrows, see around.js. These marks and
     // arrows replace those of earlier calls.
@@ -199,6 +211,12 @@ export class Renderer {
         if (geometry !== null) {
             this.#marks.move(geometry);
         }
+        this.#draw();
+    }
+
+    // Draws lines and points over everything, see Rulers.show().
+    rule(lines, points) {
+        this.#rulers.show(lines, points);
         this.#draw();
     }
 
@@ -329,6 +347,11 @@ export class Renderer {
         });
     }
 
+    // Returns the ray from the camera through a place on the screen, see Camera.rayAt().
+    rayAt(x, y) {
+        return this.#camera.rayAt(x, y);
+    }
+
     // Returns the matrix of view and projection, see Camera.matrix.
     get matrix() {
         return this.#camera.matrix;
@@ -389,6 +412,7 @@ export class Renderer {
         this.#surface.setPixelRatio(ratio);
         this.#marks.setScreen(ratio, height);
         this.#cut.setPixelRatio(ratio);
+        this.#rulers.setScreen(ratio);
         this.#draw();
     }
 

@@ -2,6 +2,7 @@
 // made from gl_VertexID, so the arrays need not be repeated in vertex buffers.
 
 import { CUT_FRAGMENT, CUT_VERTEX, LOOK_FRAGMENT, LOOK_VERTEX } from './look_shaders.js';
+import { VALUE_FRAGMENT, VALUE_VERTEX } from './value_shader.js';
 
 const TEXTURES = `
 precision highp float;
@@ -27,7 +28,7 @@ uvec4 triangleAt(int index) {
 // The vertex shader of faces, which runs for each corner of a triangle. `bary` are barycentric
 // coordinates. Normals are computed from derivatives in the fragment shader: a vertex shader would
 // have to fetch all three corners in each of its three runs.
-export const SURFACE_VERTEX = `${TEXTURES}
+export const SURFACE_VERTEX = `${TEXTURES}${VALUE_VERTEX}
 uniform usampler2D labels;
 uniform sampler2D palette;
 uniform bool isColored;
@@ -66,6 +67,7 @@ void main() {
 #ifdef LOOKED
     lookAtCorner(index, corner, place);
 #endif
+    putValue(index, corner, words[corner], words.w & 0x1fffffffu);
     triangle = uint(index);
     sides = words.w >> 29;
     bary = vec3(corner == 0, corner == 1, corner == 2);
@@ -81,6 +83,7 @@ void main() {
 export const SURFACE_FRAGMENT = `
 precision highp float;
 precision highp int;
+${VALUE_FRAGMENT}
 flat in uint sides;
 flat in vec4 base;
 flat in vec4 glow;
@@ -112,7 +115,7 @@ void main() {
 #endif
     float light = 0.34 + 0.46 * max(dot(n, KEY), 0.0)
                 + 0.24 * max(dot(n, normalize(eye)), 0.0);
-    bool isPainted = glow.w > (gl_FrontFacing ? 0.0 : 1.0);
+    bool isPainted = !isValued() && glow.w > (gl_FrontFacing ? 0.0 : 1.0);
     vec3 fill = isPainted ? base.rgb : gl_FrontFacing ? FRONT : BACK;
     fill *= light;
     fill = isPainted ? min(fill + glow.rgb, 1.0) : fill;
@@ -124,6 +127,7 @@ void main() {
         fill = markedBack(light);
     }
 #endif
+    fill = isValued() ? colourOfFace() * lightOfValues(light) : fill;
     float bright = max(max(fill.r, fill.g), fill.b);
     // The colour of selected faces stays recognizable where the shading is dark.
     float chosenness = chosen ? (isPainted ? 0.92 : 0.8) : 0.0;
@@ -134,10 +138,13 @@ void main() {
     vec3 dx = dFdx(bary);
     vec3 dy = dFdy(bary);
     vec3 rate = max(sqrt(dx * dx + dy * dy), vec3(1e-9)).zxy;
-    vec3 line = 1.0 - smoothstep(edgeWidth - 0.6, edgeWidth + 0.6, bary.zxy / rate);
+    bool isOfEdges = isValued() && valuesOf == OF_EDGES;
+    float width = isOfEdges ? 2.5 * edgeWidth : edgeWidth;
+    vec3 line = 1.0 - smoothstep(width - 0.6, width + 0.6, bary.zxy / rate);
     line *= vec3(float(sides & 1u), float((sides >> 1) & 1u), float((sides >> 2) & 1u));
     // Without this, the lines of the edges would cover a triangle that is only a few pixels large.
-    line *= smoothstep(1.0, 9.0, 1.0 / rate);
+    // If these lines have colours, they may.
+    line *= isOfEdges ? vec3(1.0) : smoothstep(1.0, 9.0, 1.0 / rate);
     float nearest = max(max(line.x, line.y), line.z);
 #ifdef LOOKED
     cutHere();
@@ -151,13 +158,14 @@ void main() {
         return;
     }
 #endif
-    float drawn = edgeStrength * nearest;
+    float drawn = (isOfEdges ? 1.0 : edgeStrength) * nearest;
     ivec2 place = ivec2(gl_FragCoord.xy) & 3;
     float opacity = isPainted && !chosen ? max(base.a, LEAST_OPACITY) : 1.0;
     if (max(opacity, drawn) < THRESHOLDS[place.x][place.y]) {
         discard;
     }
-    vec3 edge = mix(EDGE_IN_THE_DARK, EDGE, smoothstep(0.12, 0.25, bright));
+    vec3 edge = isOfEdges ? colourOfSide(line)
+                          : mix(EDGE_IN_THE_DARK, EDGE, smoothstep(0.12, 0.25, bright));
     color = vec4(mix(fill, edge, drawn), 1.0);
 }
 `;

@@ -30,6 +30,7 @@ import {
     SURFACE_PICK,
     SURFACE_VERTEX,
 } from './shaders.js';
+import { Values } from './values.js';
 
 const DOT_SIZE = 7; // in CSS pixels, as all sizes here
 const EDGE_WIDTH = 0.75; // on each side of an edge
@@ -55,6 +56,7 @@ export class Surface {
     };
     #proxyCount = 0;
     #ratio = 1;
+    values; // the values by which the faces are coloured
     #mostRows;
     #textures = { vertices: { value: null }, triangles: { value: null } };
     #looks = { labels: { value: null }, palette: { value: null } };
@@ -67,6 +69,7 @@ export class Surface {
     // `mostRows` is the maximum height of a texture in texels.
     constructor(mostRows) {
         this.#mostRows = mostRows;
+        this.values = new Values(mostRows);
         const dots = (fragment, uniforms) =>
             new RawShaderMaterial({
                 glslVersion: GLSL3,
@@ -127,6 +130,7 @@ export class Surface {
                 ...this.#textures,
                 ...this.#looks,
                 ...this.look.uniforms,
+                ...this.values.uniforms,
                 isColored: this.#isColored,
                 edgeWidth: this.#edgeWidth,
                 ...uniforms,
@@ -301,6 +305,7 @@ export class Surface {
         this.#proxyLook.triangles.value?.forget();
         this.#proxyLook.normals.value?.forget();
         this.#still?.forget();
+        this.values.forget();
     }
 
     // Returns the arrays of a mesh, or arrays of zeros if there is no mesh. Throws a RangeError if

@@ -39,12 +39,8 @@ class Field {
 export class Choice extends Field {
     constructor(options, value) {
         super(make('select'));
-        this.add(options);
-        this.node.value = value;
-    }
-
-    add(options) {
         this.node.append(...options.map(([value, text]) => make('option', { value }, text)));
+        this.node.value = value;
     }
 }
 

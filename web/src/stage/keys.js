@@ -24,6 +24,7 @@ const KEYS = [
     ['0-9', null, 'While a tool is selected: type the exact amount', null],
     ['S', 's', 'Split an edge, a face, or the face between two vertices', 'split'],
     ['X', 'x', 'Collapse an edge, delete a face or a vertex', 'remove'],
+    ['M', 'm', 'Measure: start or end', 'measure'],
     ['C', 'c', 'Check the mesh: list defects, holes and components', 'check'],
     ['Ctrl Z', 'ctrl+z', 'Undo', 'undo'],
     ['Ctrl Shift Z', 'ctrl+shift+z', 'Redo', 'redo'],

@@ -2,6 +2,7 @@
 
 import { NoWebGL, Renderer } from '../gl/render.js';
 import { HOLE_REACH, REACH, choose } from '../geometry/pick.js';
+import { distanceToPoint, placeOnScreen } from '../geometry/view.js';
 
 // If the pointer moved further than this many CSS pixels between press and release, it turned the
 // camera; otherwise it clicked.
@@ -22,10 +23,10 @@ export class Stage {
 
     // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
     // for the kind of element to pick. `content()` returns the Content that is shown, or null.
-    // `onPick(chosen, also)` is called after a click with the result of choose(); `also` says that
-    // the Shift key was held. `onMode(kind)` is called when clicks begin to pick elements of another
-    // kind. `onRest()` is called when the camera has come to rest, `onFrame()` after each frame;
-    // `onSlow()` and `onBroken()` are explained in Renderer.
+    // `onPick(chosen, also, place)` is called after a click with the result of choose(); `also` says
+    // that the Shift key was held, `place` is [x, y] in the window. `onMode(kind)` is called when
+    // clicks begin to pick elements of another kind. `onRest()` is called when the camera has come to
+    // rest, `onFrame()` after each frame; `onSlow()` and `onBroken()` are explained in Renderer.
     constructor(canvas, { noWebGL, contextLost, modes }, { content, ...acts }) {
         this.#canvas = canvas;
         this.#modes = modes;
@@ -96,7 +97,8 @@ export class Stage {
     // Writes what the frame shows into data attributes of the canvas, so that tests can wait for a
     // certain frame.
     #markFrame(label) {
-        for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces']) {
+        this.#acts.onFrame();
+        for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces', 'colour']) {
             if (label?.[name] === undefined) {
                 delete this.#canvas.dataset[name];
             } else {
@@ -151,6 +153,16 @@ export class Stage {
     // Shows or hides the colours of materials.
     colorFaces(isColored) {
         this.#renderer?.colorFaces(isColored);
+    }
+
+    // Colours the faces by values, see Renderer.color(). Levels of detail have no values.
+    color(act, label) {
+        this.#marked?.color(act, label);
+    }
+
+    // Draws lines and points over everything, see Rulers.show().
+    rule(lines, points) {
+        this.#renderer?.rule(lines, points);
     }
 
     capture() {
@@ -246,21 +258,49 @@ export class Stage {
             const isClick =
                 down !== null && Math.hypot(x - down.clientX, y - down.clientY) <= CLICK_PIXELS;
             if (isClick && this.#marked !== null && this.#contentNow() !== null) {
-                this.#acts.onPick(this.#choose(x, y), event.shiftKey);
+                this.#acts.onPick(this.elementAt(x, y, this.#pickMode), event.shiftKey, [x, y]);
             }
         });
     }
 
-    // Returns the element that a click at a place in the window picks, see choose(), or null.
-    #choose(clientX, clientY) {
+    // Returns the element of a kind at a place in the window, see choose(), or null.
+    elementAt(clientX, clientY, kind) {
+        const content = this.#contentNow();
+        if (this.#marked === null || content === null) {
+            return null;
+        }
+        const screen = this.#screenAt(clientX, clientY);
+        const { geometry, boundary } = content;
+        const reach = kind === 'halfedge' ? HOLE_REACH : REACH;
+        const seen = this.#renderer.look(screen.x, screen.y, reach);
+        const look = (...place) => this.#renderer.look(...place, REACH);
+        return choose(kind, geometry, seen, { ...screen, boundary, look });
+    }
+
+    // Returns the camera's matrix, the size of the canvas, and a place in the window as a place on the
+    // canvas: {matrix, width, height, x, y}.
+    #screenAt(clientX, clientY) {
         const box = this.#canvas.getBoundingClientRect();
         const [x, y] = [clientX - box.left, clientY - box.top];
-        const { matrix } = this.#renderer;
-        const mode = this.#pickMode;
-        const { geometry, boundary } = this.#contentNow();
-        const seen = this.#renderer.look(x, y, mode === 'halfedge' ? HOLE_REACH : REACH);
-        const look = (...place) => this.#renderer.look(...place, REACH);
-        const screen = { matrix, width: box.width, height: box.height, x, y, boundary, look };
-        return choose(mode, geometry, seen, screen);
+        return { matrix: this.#renderer.matrix, width: box.width, height: box.height, x, y };
+    }
+
+    // Returns the ray that leads through a place in the window, {origin, direction} in view
+    // coordinates.
+    rayAt(clientX, clientY) {
+        const { width, height, x, y } = this.#screenAt(clientX, clientY);
+        return this.#renderer.rayAt((2 * x) / width - 1, 1 - (2 * y) / height);
+    }
+
+    // Returns how many CSS pixels a point in view coordinates is from a place in the window.
+    pixelsFrom(point, clientX, clientY) {
+        const { matrix, width, height, x, y } = this.#screenAt(clientX, clientY);
+        return distanceToPoint(matrix, width, height, point, x, y);
+    }
+
+    // Returns the place on the canvas, in CSS pixels, at which a point in view coordinates appears;
+    // null if it is behind the camera, or if nothing is drawn.
+    placeOf(point) {
+        return this.#renderer === null ? null : placeOnScreen(this.#screenAt(0, 0), point);
     }
 }

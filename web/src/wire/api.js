@@ -252,6 +252,70 @@ export async function query(mesh, queries) {
     return (await postJson(`${meshPath(mesh)}/query`, { queries })).results;
 }
 
+// --- values of all elements ---
+//
+// These are read as bytes and from one revision; they fail with status 410 if the server no longer has
+// it. `kind` is 'vertices', 'halfedges', 'edges' or 'faces'.
+
+// Returns a measure of all elements that exist, in the order of their ids, as a Float64Array; NaN if
+// an element has no value. A vector is three numbers.
+export async function measureAll(mesh, measure, kind, revision, signal) {
+    const question = { measure, of: { [kind]: 'all' } };
+    return new Float64Array(await ask(mesh, question, revision, signal));
+}
+
+// Returns the neighbours of all elements that exist, whose number is `count`, in the order of their
+// ids: {offsets, ids}; those of the element at index i are ids[offsets[i]] to ids[offsets[i + 1] - 1].
+export async function relateAll(mesh, relation, kind, count, revision, signal) {
+    const question = { relation, of: { [kind]: 'all' } };
+    const words = new Uint32Array(await ask(mesh, question, revision, signal));
+    return { offsets: words.subarray(0, count + 1), ids: words.subarray(count + 1) };
+}
+
+function ask(mesh, question, revision, signal) {
+    return readBytes(`${meshPath(mesh)}/query?revision=${revision}`, {
+        method: 'POST',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ queries: [question] }),
+        signal,
+    });
+}
+
+// Returns the values of an attribute by id, also of ids without an element, as an ArrayBuffer.
+export function getValues(mesh, kind, name, revision, signal) {
+    const path = `${meshPath(mesh)}/attributes/${kind}/${encodeURIComponent(name)}`;
+    return readBytes(`${path}?revision=${revision}`, { signal });
+}
+
+// Reads an answer as bytes. If the server answers with a job, waits for the job and reads its result.
+async function readBytes(path, options) {
+    const headers = { ...options.headers, Accept: 'application/octet-stream', Prefer: 'wait=30' };
+    let answer = await request(path, { ...options, headers });
+    if (answer.status === 202) {
+        const job = await answer.json();
+        await finish(job, null);
+        answer = await request(`v1/jobs/${job.id}/result`, { headers, signal: options.signal });
+    }
+    return answer.arrayBuffer();
+}
+
+// Returns which measures the server has, [{name, kind, components}]: it is asked for each measure of
+// its description of no elements of each kind, and refuses those that it does not have.
+export async function getMeasures(mesh) {
+    const { components } = await getDescription();
+    const { measure_name: names, domain: kinds } = components.schemas;
+    const asked = kinds.enum
+        .filter((kind) => kind !== 'mesh')
+        .flatMap((kind) => names.enum.map((name) => ({ name, kind })));
+    const answers = await query(
+        mesh,
+        asked.map(({ name, kind }) => ({ measure: name, of: { [kind]: [] } })),
+    );
+    return asked
+        .map((one, i) => ({ ...one, components: answers[i].components }))
+        .filter((one) => one.components !== undefined);
+}
+
 // Returns what a check finds: {defects: [{code, detail, ...}], totals: {CODE: count}, ...}, or null if
 // the server would need a long time for that.
 export async function check(mesh) {

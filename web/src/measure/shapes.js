@@ -1,0 +1,73 @@
+// shapes.js - computes lengths, angles and circles from points [x, y, z]. Pure.
+
+export const minus = (a, b) => a.map((value, i) => value - b[i]);
+export const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+export const along = (origin, direction, t) => origin.map((value, i) => value + t * direction[i]);
+
+export function cross(a, b) {
+    return [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ];
+}
+
+export function distance(a, b) {
+    return Math.hypot(...minus(a, b));
+}
+
+export function middle(points) {
+    return [0, 1, 2].map((i) => points.reduce((sum, p) => sum + p[i], 0) / points.length);
+}
+
+// Returns the angle between two vectors, 0 to pi; null if one of them has no direction. The arc tangent
+// is exact for small angles, too, where the arc cosine is not.
+export function angleBetween(a, b) {
+    if (Math.hypot(...a) === 0 || Math.hypot(...b) === 0) {
+        return null;
+    }
+    return Math.atan2(Math.hypot(...cross(a, b)), dot(a, b));
+}
+
+// Returns the angle at the point `at` between two other points; null if one of them is `at`.
+export function angleAt(from, at, to) {
+    return angleBetween(minus(from, at), minus(to, at));
+}
+
+// Returns the circle through three points, {center, radius, axes}, where `axes` are two vectors of
+// length 1 in its plane; null if the points are on a line.
+export function circleThrough(a, b, c) {
+    const [u, v] = [minus(b, a), minus(c, a)];
+    const normal = cross(u, v);
+    const square = dot(normal, normal);
+    const longest = Math.max(dot(u, u), dot(v, v));
+    if (!(square > 1e-24 * longest * longest)) {
+        return null;
+    }
+    // The centre is where the planes that halve both sides meet, in the plane of the points.
+    const toCenter = cross(
+        minus(v.map((x) => x * dot(u, u)), u.map((x) => x * dot(v, v))),
+        normal,
+    ).map((x) => x / (2 * square));
+    const radius = Math.hypot(...toCenter);
+    const first = toCenter.map((x) => -x / radius);
+    const up = normal.map((x) => x / Math.sqrt(square));
+    return { center: along(a, toCenter, 1), radius, axes: [first, cross(up, first)] };
+}
+
+// Returns points on a circle, the first one again at the end.
+export function pointsOf({ center, radius, axes }, count) {
+    return Array.from({ length: count + 1 }, (_, i) => {
+        const angle = (2 * Math.PI * i) / count;
+        return along(
+            along(center, axes[0], radius * Math.cos(angle)),
+            axes[1],
+            radius * Math.sin(angle),
+        );
+    });
+}
+
+// Returns a line through some points as pairs of its neighbours: [a, b, b, c, ...].
+export function pairsOf(points) {
+    return points.slice(1).flatMap((point, i) => [points[i], point]);
+}
