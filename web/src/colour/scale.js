@@ -87,7 +87,7 @@ export class Scale {
         const picture = make('div', { className: 'bars' });
         const strip = make('canvas', { className: 'strip', 'aria-hidden': 'true' });
         const [low, high] = ['Lowest', 'Highest'].map((title, end) => this.#handle(title, end));
-        const [from, to] = ['From', 'To'].map((title, end) => this.#field(title, end));
+        const [from, to] = ['Lowest', 'Highest'].map((title, end) => this.#field(title, end));
         const reset = make(
             'button',
             {

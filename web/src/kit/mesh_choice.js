@@ -16,7 +16,7 @@ export class MeshChoice {
     constructor(name, meshes) {
         this.#select = make(
             'select',
-            { 'aria-label': name },
+            { 'aria-label': `${name}: mesh` },
             make('option', { value: '' }, 'which mesh'),
             make('option', { value: REVISION }, 'an earlier revision'),
         );
