@@ -118,19 +118,24 @@ export class Colouring {
 
     // Takes the colours away.
     clear() {
-        this.#reading?.abort();
-        this.#reading = null;
-        [this.#source, this.#part, this.#read, this.#column] = [null, null, null, null];
-        [this.#map, this.#range, this.#isWanted] = [null, null, false];
-        const { select, part, said, values, shade } = this.#elements;
-        select.value = '';
+        this.#reset();
+        const { part, values, shade } = this.#elements;
         part.hidden = true;
         shade.parentElement.hidden = true;
-        said.textContent = '';
         values.replaceChildren();
         this.#scale.clear();
         this.#key.hide();
         this.#stage.color((shown) => shown.hide(), this.#acts.label());
+    }
+
+    // Forgets the choice. The view and the legend stay as they are.
+    #reset() {
+        this.#reading?.abort();
+        this.#reading = null;
+        [this.#source, this.#part, this.#read] = [null, null, null];
+        [this.#map, this.#range, this.#isWanted] = [null, null, false];
+        this.#elements.select.value = '';
+        this.#elements.said.textContent = '';
     }
 
     // --- the choice ---
@@ -172,12 +177,13 @@ export class Colouring {
 
     async #choose(key) {
         const source = this.#sources.find((one) => one.key === key);
-        this.clear();
-        if (key !== '' && source === undefined) {
-            this.#elements.said.textContent = 'The mesh does not have this attribute.';
-            return;
-        }
-        if (source !== undefined) {
+        if (source === undefined) {
+            this.clear();
+            const { said } = this.#elements;
+            said.textContent = key === '' ? '' : 'The mesh does not have this attribute.';
+        } else {
+            // The former colours stay until the values have arrived.
+            this.#reset();
             this.#source = source;
             this.#part = usualPart(source);
             this.#elements.select.value = key;
@@ -354,6 +360,9 @@ export class Colouring {
 
     // Shows the legend, and the range in the view, after a change of the range only.
     #showRange() {
+        if (this.#read === null) {
+            return;
+        }
         const legend = this.#legend();
         const { origin, factor } = scalingOf(this.#column);
         this.#stage.color((values) => {
@@ -459,12 +468,18 @@ export class Colouring {
     // --- selecting by values ---
 
     #selectRange() {
+        if (this.#read === null) {
+            return;
+        }
         const [from, to] = this.#legend().range;
         this.#selectWhere((number) => number >= from && number <= to);
     }
 
     // Selects the elements whose numbers pass a test, if they are not too many.
     #selectWhere(test) {
+        if (this.#read === null) {
+            return;
+        }
         const count = this.#column.countOf(test);
         const { said } = this.#elements;
         if (count > MOST_SELECTED || count === 0) {

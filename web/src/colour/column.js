@@ -8,6 +8,9 @@
 // of the others, the colours show the range of the others.
 const MOST_SPREAD = 4;
 
+// At most so many numbers are looked at to find the extreme ones.
+const MOST_SAMPLES = 50000;
+
 // A map of categories is offered for at most this many different values.
 export const MOST_CATEGORIES = 256;
 
@@ -19,6 +22,9 @@ export class Column {
     count = 0; // how many elements have a number
     missing = 0; // how many elements have none
     isWhole = true; // all numbers are integers
+    #counts = new Map(); // histograms by their number of bins
+    #inner = null; // the range of the numbers without the first and the last percent
+    #categories; // undefined until they are asked for
 
     constructor(numbers, ids) {
         [this.numbers, this.ids] = [numbers, ids];
@@ -44,6 +50,13 @@ export class Column {
     // Returns how many elements have a number in each of `bins` parts of the range from the least to
     // the largest number.
     histogram(bins) {
+        if (!this.#counts.has(bins)) {
+            this.#counts.set(bins, this.#count(bins));
+        }
+        return this.#counts.get(bins);
+    }
+
+    #count(bins) {
         const counts = new Uint32Array(bins);
         for (const id of this.ids) {
             const number = this.at(id);
@@ -87,20 +100,39 @@ export class Column {
         if (this.count === 0) {
             return [0, 0];
         }
-        const sorted = Float64Array.from(this.ids, (id) => this.at(id))
-            .filter((number) => !Number.isNaN(number))
-            .sort();
-        const at = (part) => sorted[Math.round(part * (sorted.length - 1))];
-        const [low, high] = [at(0.01), at(0.99)];
+        this.#inner ??= this.#innerRange();
+        const [low, high] = this.#inner;
         const isSpread = this.most - this.least > MOST_SPREAD * (high - low) && high > low;
         const [from, to] = isSpread ? [low, high] : [this.least, this.most];
         const reach = Math.max(Math.abs(from), Math.abs(to));
         return isEven ? [-reach, reach] : [from, to];
     }
 
+    // Of many elements, every second, third, ... one is looked at.
+    #innerRange() {
+        const step = Math.ceil(this.ids.length / MOST_SAMPLES);
+        const samples = [];
+        for (let i = 0; i < this.ids.length; i += step) {
+            const number = this.at(this.ids[i]);
+            if (!Number.isNaN(number)) {
+                samples.push(number);
+            }
+        }
+        const sorted = Float64Array.from(samples).sort();
+        const at = (part) => sorted[Math.round(part * (sorted.length - 1))] ?? this.least;
+        return [at(0.01), at(0.99)];
+    }
+
     // Returns {value, count} of each different number in ascending order, or null if there are more
     // than MOST_CATEGORIES.
     get categories() {
+        if (this.#categories === undefined) {
+            this.#categories = this.#findCategories();
+        }
+        return this.#categories;
+    }
+
+    #findCategories() {
         const counts = new Map();
         for (const id of this.ids) {
             const number = this.at(id);
