@@ -479,7 +479,7 @@ test('without WebGL the page says so and still works', async (t) => {
 test('everything is reached by keyboard, and the focus is seen', async (t) => {
     const { page } = await openMesh(t, CUBE);
     const reached = [];
-    for (let i = 0; i < 20; i++) {
+    for (let i = 0; i < 30; i++) {
         await page.keyboard.press('Tab');
         const { name, outline } = await page.evaluate(() => {
             const { activeElement: focused } = document;

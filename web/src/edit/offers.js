@@ -21,7 +21,7 @@ const MOVED = ['decimate', 'smooth', 'deform'];
 export function nextAfter(operation, before, tools) {
     const { colouring, onError } = tools;
     const { op } = operation;
-    const show = (label, act) => ({ label, run: () => act().catch(onError) });
+    const show = (label, act) => ({ label, isOffer: true, run: () => act().catch(onError) });
     if (op === 'deviation') {
         const { attribute = 'deviation' } = operation;
         return show('Colour by the deviation', () =>

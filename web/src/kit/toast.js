@@ -105,14 +105,16 @@ export class Toasts {
 
     // Shows a message of success, about the open mesh, for a while. If there is something to do about
     // it, `next` is {label, run}, the label and the function of a button; then the message stays
-    // until it is closed.
+    // until it is closed, unless `next` has `isOffer`, because it can be done at any other time, too.
     tell(title, detail, next = null) {
         const toast = this.#add('status', title, detail, this.#mesh);
         if (toast === null) {
             return;
         }
-        if (next === null) {
+        if (next === null || next.isOffer === true) {
             this.#closeLater(toast);
+        }
+        if (next === null) {
             return;
         }
         const onclick = () => {
