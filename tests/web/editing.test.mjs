@@ -322,13 +322,13 @@ test('what a form says wrongly is answered in words', async (t) => {
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 4\d\d/] });
     await chooseOperation(page, 'edge_split');
     await page.locator('#param-edge').fill('two');
+    const expectRefusal = (pattern) =>
+        page.locator('[data-name="edge"] + #verdict').filter({ hasText: pattern }).waitFor();
     await page.getByRole('button', { name: 'Apply' }).click();
-    await expectToast(page, /two.*not a number/);
-    await page.getByRole('button', { name: 'Close message' }).click();
+    await expectRefusal(/two.*not a number/);
     await page.locator('#param-edge').fill('77');
     await page.getByRole('button', { name: 'Apply' }).click();
-    await expectToast(page, /77/);
-    await page.getByRole('button', { name: 'Close message' }).click();
+    await expectRefusal(/77/);
     await checkAccessible(page, 'refused operation');
 });
 

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { checkAccessible, isNear, projector, readCanvas, waitForFrame } from './browser.mjs';
+import { checkAccessible, isNear, projector, readCanvas, waitForFrame, waitForTold } from './browser.mjs';
 import { get, getAll, post } from './daemon.mjs';
 import { chooseOperation, click, fillVector, goTo, isEdit, press } from './page.mjs';
 import { openMesh } from './visit.mjs';
@@ -435,4 +435,109 @@ test('what an edit would do stands below its field and covers nothing', async (t
         }
         await checkAccessible(page, 'verdict below its field', '#details');
     }
+});
+
+const submit = (page) => page.locator('#parameters').getByRole('button', { name: 'Apply' }).click();
+
+test('what is missing is said beside its field, and nothing is sent', async (t) => {
+    const { page } = await openMesh(t, GRID);
+    const sent = [];
+    page.on('request', (request) => isEdit(request) && sent.push(request.url()));
+    for (const [operation, name, words] of [
+        ['decimate', 'faces', 'Fill in faces or ratio.'],
+        ['hole_fill', 'halfedge', 'Fill in halfedge: type ids, or press Pick and click in the view.'],
+        ['append', 'mesh', 'Fill in mesh: choose a mesh.'],
+        ['plane_cut', 'point', 'Fill in point'],
+    ]) {
+        await choose(page, operation);
+        await submit(page);
+        const verdict = page.locator(`[data-name="${name}"] + #verdict`);
+        await verdict.filter({ hasText: words }).waitFor();
+        const control = field(page, name);
+        assert.equal(await control.getAttribute('aria-invalid'), 'true');
+        assert.ok(await control.evaluate((node) => node === document.activeElement), operation);
+        await checkAccessible(page, `${operation} without ${name}`, '#details');
+    }
+    assert.equal(await page.getByRole('alert').count(), 0);
+    assert.deepEqual(sent, []);
+});
+
+test('what the server refuses is said beside the field that it is about', async (t) => {
+    const { page } = await openMesh(t, GRID, { allowed: [/status of 4\d\d/] });
+    await choose(page, 'smooth');
+    await field(page, 'steps').fill('-4');
+    await submit(page);
+    await page.locator('[data-name="steps"] + #verdict').filter({ hasText: 'Not possible: ' }).waitFor();
+    assert.equal(await field(page, 'steps').getAttribute('aria-invalid'), 'true');
+    assert.equal(await page.getByRole('alert').count(), 0);
+    // The mistake is forgotten when the field changes.
+    await field(page, 'steps').fill('2');
+    await page.waitForFunction(
+        () => document.getElementById('param-steps').getAttribute('aria-invalid') === 'false',
+    );
+});
+
+test('an edge or an inner half-edge at a hole means the half-edge of the hole', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, GRID);
+    await post(daemon, `/${mesh}/edits`, { op: 'face_delete', face: 4 });
+    await waitForFrame(page, { revision: 2 });
+    const loops = (await get(daemon, `/${mesh}/boundaries`)).loops;
+    const [rim] = loops.filter(({ halfedges }) => halfedges.length === 4);
+    const hole = rim.halfedges[0];
+    const { twin, edge, origin } = await get(daemon, `/${mesh}/halfedges/${hole}`);
+    await choose(page, 'hole_fill');
+    await goTo(page, 'edge', edge);
+    await expectValue(page, 'halfedge', `${hole}`);
+    await goTo(page, 'halfedge', twin);
+    await expectValue(page, 'halfedge', `${hole}`);
+    await goTo(page, 'halfedge', hole);
+    await expectValue(page, 'halfedge', `${hole}`);
+    await goTo(page, 'vertex', origin);
+    await page.waitForFunction((ids) => ids.includes(document.getElementById('param-halfedge').value), rim.halfedges.map(String));
+    await goTo(page, 'edge', edge);
+    await expectVerdict(page, 'Would make: +1 F');
+    await submit(page);
+    await waitForFrame(page, { revision: 3 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.boundary_loops, 1);
+    // Beside the form, the page says what was made.
+    await expectVerdict(page, 'Made: +1 F');
+});
+
+test('a field takes the selection by its name, and its vertices if it wants vertices', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, GRID);
+    await goTo(page, 'face', 4);
+    await choose(page, 'transform');
+    await field(page, 'vertex').fill('the selection');
+    await page.locator('#parameters').getByLabel('translate z', { exact: true }).fill('0.25');
+    const sent = page.waitForRequest(isEdit);
+    await submit(page);
+    const { vertices } = (await sent).postDataJSON().ops[0];
+    const face = await get(daemon, `/${mesh}/faces/4`);
+    assert.deepEqual(vertices, [...face.vertices].sort((a, b) => a - b));
+    await waitForFrame(page, { revision: 2 });
+    const places = (await getAll(daemon, mesh, 'vertices')).map(({ position }) => position);
+    places.forEach(([, , z], id) => assert.equal(z, vertices.includes(id) ? 0.25 : 0));
+    // Edges cannot be made of faces.
+    await choose(page, 'edge_delete');
+    await field(page, 'edge').fill('the selection');
+    await submit(page);
+    await expectVerdict(page, 'faces are selected, but edges are needed.');
+});
+
+test('what an operation did is said in numbers of the mesh', async (t) => {
+    const { page } = await openMesh(t, GRID);
+    await choose(page, 'triangulate');
+    await submit(page);
+    await waitForFrame(page, { revision: 2 });
+    await waitForTold(page, /9 to 18 faces\./);
+    await choose(page, 'decimate');
+    await field(page, 'faces').fill('8');
+    await submit(page);
+    await waitForFrame(page, { revision: 3 });
+    await waitForTold(page, /18 to 8 faces, 16 to \d+ vertices, stop: faces, error 0/);
+    await choose(page, 'reverse');
+    await submit(page);
+    await waitForFrame(page, { revision: 4 });
+    await waitForTold(page, /Changed: 8 F|Changed: .*8 F/);
+    assert.ok(!(await page.evaluate(() => window.told)).some((text) => /Done|revision/.test(text)));
 });

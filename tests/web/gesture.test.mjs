@@ -45,7 +45,7 @@ test('all faces that are selected are drawn where they will be', () => {
     const geometry = squares(FACES);
     const chosen = FACES.map((vertices, id) => ({ kind: 'face', id, element: { vertices } }));
     const view = { right: [1, 0, 0], up: [0, 0, 1], back: [0, -1, 0], position: [0, -9, 0] };
-    const gesture = begin('extrude', chosen, geometry);
+    const gesture = begin('extrude', { kind: 'face', chosen, crowd: null }, geometry);
     const { operation, lines } = drag(gesture, { ...view, height: 100 }, [0, -10]);
     assert.deepEqual(operation.faces, [0, 1, 2]);
     assert.equal(operation.region, true);

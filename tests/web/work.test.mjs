@@ -118,7 +118,7 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
     assert.ok(await page.getByRole('button', { name: 'Undo', exact: true }).isDisabled());
     await checkAccessible(page, 'working');
     release();
-    await waitForTold(page, /compact.*revision 2/);
+    await waitForTold(page, /compact.*All ids are new\. This edit cannot be undone\./);
     await checkAccessible(page, 'done');
     await waitForFrame(page, { mesh, revision: 2 });
     assert.ok(await page.locator('#work').isHidden());

@@ -11,6 +11,7 @@ import { fileNameOf, save } from './kit/download.js';
 import { Editing } from './edit/editing.js';
 import { askExport } from './meshes/exporting.js';
 import { framing } from './geometry/framing.js';
+import { Gizmo } from './gizmo/gizmo.js';
 import { History } from './panels/history.js';
 import { ImportReport } from './meshes/import_report.js';
 import { Importing } from './meshes/importing.js';
@@ -23,7 +24,9 @@ import { MeshList } from './meshes/list.js';
 import { Measuring } from './measure/measuring.js';
 import { MeshActs } from './meshes/acts.js';
 import { askShape } from './meshes/new_shape.js';
+import { Palette } from './palette/palette.js';
 import { Refining } from './open/refining.js';
+import { Select } from './select/select.js';
 import { Session } from './open/session.js';
 import { SignIn } from './panels/sign_in.js';
 import { Stage } from './stage/stage.js';
@@ -149,6 +152,7 @@ const stage = new Stage(
                 ? measuring.click(chosen, place)
                 : editing.pick(chosen, also)
             ).catch(fail),
+        onLine: (event) => select.pickLine(event).catch(fail),
         onMode: (kind) => {
             byId('goto-kind').value = kind;
         },
@@ -216,6 +220,8 @@ const editing = new Editing(canvas, session, stage, toasts, {
     onPicking: () => {
         refining.end();
         measuring.stop();
+        select.cancel();
+        gizmo.hide();
     },
     onKnown: (operation) => offering.offer(operation),
     nextAfter: (operation, before) =>
@@ -239,6 +245,23 @@ const measuring = new Measuring(
     stage,
     { onStart: () => editing.stopPicking(), onError: fail },
 );
+const select = new Select(canvas, session, stage, {
+    isFree: () => !editing.isDragging,
+    onArm: () => {
+        editing.stop();
+        gizmo.hide();
+    },
+    onTell: (title, detail) => toasts.tell(title, detail),
+    onError: fail,
+});
+const gizmo = new Gizmo(canvas, session, stage, {
+    onArm: () => {
+        editing.stop();
+        select.cancel();
+    },
+    onRun: (operation) => editing.run(operation, true),
+    onError: fail,
+});
 const lens = new Lens(
     {
         section: byId('lens'),
@@ -340,6 +363,8 @@ function update(what, change) {
         showSelection();
         editing.follow(what);
     }
+    select.follow(what);
+    gizmo.follow(what);
     lens.follow(what);
     colouring.follow(what);
     measuring.follow(what);
@@ -367,7 +392,7 @@ function label() {
         : {
               mesh,
               revision: content.revision,
-              selection: selection.chosen.map(({ kind, id }) => `${kind}:${id}`).join(' '),
+              selection: selection.name,
               materials: session.materials.revision,
               colour: colouring.label,
           };
@@ -383,6 +408,7 @@ function showSelection() {
     if (content !== null) {
         const { geometry } = content;
         stage.select(selection.marksIn(geometry), selection.arrowsIn(geometry), label());
+        stage.selectMany(selection.crowd);
     }
     inspector.show(selection);
     showMaterialOfSelection();
@@ -421,6 +447,8 @@ function showWhatMayBeDone() {
     showState(session, ready, stage.isThere);
     editing.setEnabled(ready);
     measuring.setEnabled(session.mesh !== null && !refining.isOn);
+    select.setEnabled(session.mesh !== null && !refining.isOn, ready);
+    gizmo.setEnabled(ready);
     history.setEnabled(ready);
     lens.setEnabled(ready, session.mesh !== null);
 }
@@ -464,6 +492,21 @@ async function openNew({ id }) {
 
 // --- buttons ---
 
+// Handles the Esc key: ends what is going on in the view, or else clears the selection.
+function giveUp() {
+    if (refining.isWanted) {
+        refining.end();
+    } else if (measuring.isOn) {
+        measuring.giveUp();
+    } else if (select.isArmed) {
+        select.cancel();
+    } else if (gizmo.isOn) {
+        gizmo.hide();
+    } else {
+        editing.giveUp();
+    }
+}
+
 // Moves the camera to the selection, or to the whole mesh if nothing is selected.
 function frameSelection() {
     const geometry = session.shown?.geometry;
@@ -484,17 +527,6 @@ async function goTo(event) {
 async function flyTo(kind, id) {
     await session.selection.select(kind, id);
     frameSelection();
-}
-
-// Handles the Esc key: ends what goes on in the view, or clears the selection.
-function giveUp() {
-    if (refining.isWanted) {
-        refining.end();
-    } else if (measuring.isOn) {
-        measuring.giveUp();
-    } else {
-        editing.giveUp();
-    }
 }
 
 function toggleLevels() {
@@ -533,6 +565,13 @@ listenToKeys(canvas, {
     help: () => byId('help').showModal(),
     measure: () => measuring.toggle(),
     clear: giveUp,
+    ...Object.fromEntries(['box', 'lasso', 'paint'].map((tool) => [tool, () => select.draw(tool)])),
+    ...Object.fromEntries(
+        ['all', 'invert', 'grow', 'shrink', 'connected'].map((name) => [name, () => select.change(name)]),
+    ),
+    gizmo: () => gizmo.toggle(),
+    loop: () => select.line('loop'),
+    ring: () => select.line('ring'),
 });
 byId('keys').append(...keyList());
 byId('help-button').addEventListener('click', () => byId('help').showModal());
@@ -564,6 +603,10 @@ for (const button of document.querySelectorAll('.new-shape')) {
 window.addEventListener('error', (event) => fail(event.error ?? event));
 window.addEventListener('unhandledrejection', (event) => fail(event.reason));
 
+new Palette({
+    operations: () => (signIn.mayEdit && session.mesh !== null ? editing.operations : []),
+    onOpen: (name) => editing.openForm(name),
+});
 showWhatMayBeDone();
 inspector.show(session.selection);
 api.getOperations()

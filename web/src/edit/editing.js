@@ -3,22 +3,29 @@
 
 import * as api from '../wire/api.js';
 import { Bend } from '../bend/bend.js';
+import { SELECTION } from '../kit/controls.js';
 import { Direct } from './direct.js';
 import { byId, enable } from '../kit/dom.js';
 import { begin, drag } from './gesture.js';
+import { slip } from '../kit/numbers.js';
 import { Lasso } from '../stage/lasso.js';
 import { isIn, markOf, readAll } from '../open/selection.js';
 import { Tools } from './tools.js';
-import { Trial, patchesOf, selectionOf, wordsOf } from './trial.js';
+import { doneOf } from './results.js';
+import { Trial, madeOf, patchesOf, selectionOf, wordsOf } from './trial.js';
 import { clipMatrixOf } from '../geometry/view.js';
 import { Work } from '../kit/work.js';
 
 // An operation on the whole mesh gets no dry run if the mesh has more faces than this.
 const MOST_TRIED = 100000;
 
-// If a form's fields contain more elements than this, the view does not mark them. If the operation
-// `select` finds more, they are not selected in the page.
+// If a form's fields contain more elements than this, the view does not mark them.
 const MOST_MARKED = 1000;
+
+// If more elements are selected than MOST_TRIED_IDS, an operation on them gets no dry run. If there
+// are more than MOST_SENT, their ids are not sent: they become a set, which the operation takes.
+const MOST_TRIED_IDS = 20000;
+const MOST_SENT = 500000;
 
 // The operation whose form is shown if a tool of the view cannot work on the selected elements, by
 // the name of the tool.
@@ -67,7 +74,7 @@ export class Editing {
     #nextAfter;
     #marking = 0; // number of the last request for the elements that the form's fields name
 
-    // `onPicking()` is called when a field of the form begins to wait for a click in the view.
+    // `onPicking()` is called when something begins to wait for a click or a drag in the view.
     // `onKnown(operation)` is called when a dry run has found that the operation in the form is
     // possible, and with null when that is not known any more. `nextAfter(operation, before)` returns
     // what may be done after an operation on a mesh whose revision was `before`: {label, run}, see
@@ -78,6 +85,8 @@ export class Editing {
         this.#nextAfter = nextAfter;
         const onError = (error) => toasts.show(error);
         const onRun = (operation) => this.run(operation).catch(onError);
+        const onApply = (operation) =>
+            this.run(operation).catch((error) => this.#tools.refuse(error) || onError(error));
         this.#work = new Work(
             {
                 box: byId('work'),
@@ -87,7 +96,11 @@ export class Editing {
             },
             onError,
         );
-        this.#trial = new Trial(byId('verdict'), (...asked) => this.#try(...asked), onKnown);
+        this.#trial = new Trial(
+            byId('verdict'),
+            (...asked) => this.#try(...asked),
+            (operation) => onKnown(operation && namesSelection(operation) ? null : operation),
+        );
         this.#tools = new Tools(
             {
                 select: byId('operation'),
@@ -97,7 +110,8 @@ export class Editing {
                 verdict: byId('verdict'),
             },
             {
-                onRun,
+                onRun: onApply,
+                onRefuse: (error, isPlain) => this.#trial.refuse(error, isPlain),
                 onTouch: (operation, error) => {
                     this.#markField();
                     if (error === null) {
@@ -140,7 +154,7 @@ export class Editing {
             {
                 begin: (tool) => {
                     const gesture = stage.isThere
-                        ? begin(tool, session.selection.chosen, session.shown.geometry)
+                        ? begin(tool, session.selection, session.shown.geometry)
                         : null;
                     this.#bend.offer(gesture?.op === 'vertex_move');
                     return gesture;
@@ -180,19 +194,25 @@ export class Editing {
         this.#tools.setOperations(operations);
     }
 
+    // The server's table of operations.
+    get operations() {
+        return this.#tools.operations;
+    }
+
     setEnabled(isEnabled) {
         this.#tools.setEnabled(isEnabled);
         this.#direct.setEnabled(isEnabled);
-        const { last } = this.#session.selection;
-        const isCollapse = REMOVALS[last?.kind] === 'edge_collapse';
+        const { kind } = this.#session.selection;
+        const isCollapse = REMOVALS[kind] === 'edge_collapse';
+        const isPossible = kind !== null && this.#tools.operationOn(REMOVALS[kind]) !== null;
         byId('remove').textContent = isCollapse ? 'Collapse' : 'Delete';
-        enable(byId('remove'), isEnabled && last !== undefined);
+        enable(byId('remove'), isEnabled && isPossible);
     }
 
     // Called when the selection or the mesh has changed; `what` says what has changed, see the
     // constructor of Session.
     follow(what) {
-        this.#tools.setSelection(this.#session.selection.chosen);
+        this.#tools.setSelection(this.#session.selection);
         if (what === 'mesh') {
             this.#lasso.cancel();
         }
@@ -222,8 +242,11 @@ export class Editing {
         if (isDear) {
             return 'No preview: this operation may take long on a mesh of this size.';
         }
+        if (namesSelection(operation) && this.#session.selection.count > MOST_TRIED_IDS) {
+            return 'No preview for so many elements.';
+        }
         try {
-            return wordsOf(await api.tryEdit(mesh, operation, signal));
+            return wordsOf(await api.tryEdit(mesh, await this.#expand(operation), signal));
         } catch (error) {
             if (!signal.aborted) {
                 this.#tools.mark(error.pointer ?? '');
@@ -243,38 +266,89 @@ export class Editing {
         }
     }
 
-    async run(operation) {
+    // Returns an operation in which the ids of the selected elements are in place of SELECTION. Throws
+    // a Problem if the operation does not take elements of the selected kind.
+    async #expand(operation) {
+        const members = Object.entries(operation).map(async ([name, value]) => [
+            name,
+            value === SELECTION ? await this.#selected(name) : value,
+        ]);
+        return Object.fromEntries(await Promise.all(members));
+    }
+
+    // Returns the selected elements, or their vertices, as the value of the parameter `name`.
+    async #selected(name) {
+        const { selection, shown } = this.#session;
+        const isVertices = name === 'vertices' && selection.asCrowd !== null;
+        if (PLURALS[selection.kind] !== name && !isVertices) {
+            const what = selection.kind === null ? 'Nothing is' : `${PLURALS[selection.kind]} are`;
+            throw slip(name, 'Other elements', `${what} selected, but ${name} are needed.`);
+        }
+        const ids = isVertices
+            ? selection.asCrowd.verticesIn(shown.geometry)
+            : await selection.ids();
+        if (ids.length <= MOST_SENT) {
+            return ids;
+        }
+        const set = { domain: name, name: 'selected' };
+        await this.#session.saveSet(set, ids);
+        return { [set.name]: true };
+    }
+
+    // Runs an operation and says what it has done: in a message or, if `isQuiet` is true or the
+    // operation is local, below the form.
+    async run(operation, isQuiet = false) {
         this.#trial.clear();
         this.#direct.cancel();
-        if (!this.#tools.isWhole(operation.op)) {
-            await this.#session.run(operation);
+        const { shown, mesh } = this.#session;
+        const before = shown.hasFacts ? shown.summary.counts : null;
+        const isWhole = this.#tools.isWhole(operation.op);
+        if (!isWhole && !namesSelection(operation)) {
+            const answer = await this.#session.run(operation);
+            if (answer !== null) {
+                this.#trial.tell(madeOf(answer));
+            }
             return;
         }
         this.#work.start(operation.op, false);
-        const before = this.#session.shown.revision;
+        const { revision } = shown;
         try {
-            const answer = await this.#session.run(operation, this.#work);
+            const answer = await this.#session.run(await this.#expand(operation), this.#work);
             const [result] = answer?.results ?? [];
             if (result?.selected !== undefined) {
                 await this.#showSelected(operation, result);
-                return;
-            }
-            if (result?.patches !== undefined) {
+            } else if (result?.patches !== undefined) {
                 await this.#showPatches(operation, result);
-                return;
+            } else if (answer !== null && isQuiet) {
+                this.#trial.tell(madeOf(answer));
+            } else if (answer !== null) {
+                await this.#tellDone(operation, { mesh, before, revision, answer });
             }
-            const { revision, history } = this.#session.shown;
-            const isFinal = history.entries[0]?.undoable === false;
-            const end = isFinal ? ' This edit cannot be undone.' : '';
-            const next = answer === null ? null : this.#nextAfter(operation, before);
-            this.#toasts.tell(operation.op, `Done: the mesh is now at revision ${revision}.${end}`, next);
         } finally {
             this.#work.end();
         }
     }
 
+    // Says what an operation has done, see results.js; `before` are the counts and `revision` is the
+    // revision before it.
+    async #tellDone(operation, { mesh, before, revision, answer }) {
+        const { op: name } = operation;
+        const { shown } = this.#session;
+        const isKnown = shown.hasFacts && shown.mesh === mesh;
+        const summary = isKnown ? shown.summary : await api.getSummary(mesh);
+        const isFinal = shown.history.entries[0]?.undoable === false;
+        const words = doneOf(this.#tools.rowOf(name), {
+            result: answer.results?.[0],
+            before,
+            after: summary.counts,
+        });
+        const end = isFinal ? ' This edit cannot be undone.' : '';
+        const next = this.#nextAfter(operation, revision);
+        this.#toasts.tell(name, `${words ?? madeOf(answer)}${end}`, next);
+    }
+
     // Says what the operation `select` has found, and selects it in the page, so that the forms of
-    // other operations are filled with it. If it is too much, says how forms can name it instead.
+    // other operations are filled with it.
     async #showSelected(operation, result) {
         const { into = 'selected', value } = operation;
         const listed = Object.keys(KINDS).find((kind) => kind in operation);
@@ -282,11 +356,6 @@ export class Editing {
         const kind = operation.elements ?? (isSized ? PLURALS[KINDS[listed]] : 'faces');
         const name = value === undefined ? into : `${into}=${value}`;
         const words = selectionOf(result);
-        if (result.selected > MOST_MARKED) {
-            const how = `Write \u201c${name}\u201d into a field for ${kind} to use them.`;
-            this.#toasts.tell(operation.op, `The set has ${words}. ${how}`);
-            return;
-        }
         this.#toasts.tell(operation.op, `The set \u201c${name}\u201d of ${kind} has ${words}.`);
         const ids = await api.getSet(this.#session.mesh, kind, into, value);
         const one = Object.entries(PLURALS).find(([, plural]) => plural === kind)[0];
@@ -298,7 +367,7 @@ export class Editing {
     async #showPatches(operation, result) {
         const next = this.#nextAfter(operation, this.#session.shown.revision);
         this.#toasts.tell(operation.op, `The faces are divided into ${patchesOf(result)}.`, next);
-        if (result.features > 0 && result.features <= MOST_MARKED) {
+        if (result.features > 0) {
             const ids = await api.getSet(this.#session.mesh, 'edges', 'feature');
             await this.#session.selection.selectAll('edge', ids);
         }
@@ -324,12 +393,24 @@ export class Editing {
         }
     }
 
+    // Whether a drag or a click in the view does something else than to pick an element.
+    get isDragging() {
+        return this.#lasso.isArmed || this.#direct.isArmed;
+    }
+
+    // Stops what waits for a drag or a click in the view.
+    stop() {
+        this.stopPicking();
+        this.#direct.cancel();
+    }
+
     // Deletes or collapses the selected elements; if the operation takes only one element, the
     // element that was selected last.
     async remove() {
-        const { chosen, last } = this.#session.selection;
-        if (last !== undefined) {
-            await this.run(this.#tools.operationOn(REMOVALS[last.kind], chosen));
+        const { kind } = this.#session.selection;
+        const operation = kind === null ? null : this.#tools.operationOn(REMOVALS[kind]);
+        if (operation !== null) {
+            await this.run(operation);
         }
     }
 
@@ -403,13 +484,14 @@ export class Editing {
     // give exact numbers. `isKey` says that the user pressed the tool's key and not its button.
     start(tool, isKey) {
         const name = FORMS[tool];
+        this.#onPicking();
         const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);
         if (!this.#tools.has(name) || !isThere) {
             this.#direct.cancel();
-            this.#open(name);
+            this.openForm(name);
         } else if (
             this.#direct.isArmed &&
-            this.#session.selection.last.kind === name.split('_')[0]
+            this.#session.selection.kind === name.split('_')[0]
         ) {
             this.#tools.show(name);
         }
@@ -425,13 +507,14 @@ export class Editing {
         }
         this.#direct.cancel();
         this.#tools.show(name);
-        if (name === 'face_extrude' && this.#session.selection.chosen.length > 1) {
+        if (name === 'face_extrude' && this.#session.selection.count > 1) {
             this.#tools.tick('region'); // as in a drag, faces that share an edge move together
         }
         return this.#tools.focus(AMOUNTS[name]);
     }
 
-    #open(name) {
+    // Shows the form of an operation and moves the focus there.
+    openForm(name) {
         if (this.#tools.has(name)) {
             this.#tools.open(name);
         } else {
@@ -440,8 +523,8 @@ export class Editing {
         }
     }
 
-    // Handles the Esc key: cancels the lasso or the selected tool; if there is none, stops waiting for a click
-    // that fills a field; if no field waits, clears the selection.
+    // Handles the Esc key: cancels the lasso or the selected tool; if there is none, stops waiting for
+    // a click that fills a field; if no field waits, clears the selection.
     giveUp() {
         if (this.#lasso.isArmed) {
             this.#lasso.cancel();
@@ -453,4 +536,9 @@ export class Editing {
             this.#session.selection.clear();
         }
     }
+}
+
+// Returns whether a parameter of an operation names the selection.
+function namesSelection(operation) {
+    return Object.values(operation).includes(SELECTION);
 }

@@ -92,7 +92,13 @@ export function controlFor(param, meshes, pickable) {
     if (isPlace(param)) {
         return type === 'point' ? new Vector(name) : vectors(name);
     }
-    return new Ids(name, { isList: isList(param), isNullable: nullable, isSet: set });
+    const isMany = isList(param);
+    return new Ids(name, {
+        isList: isMany,
+        isNullable: nullable,
+        isSet: set,
+        plural: isMany ? (param.plural ?? type) : undefined,
+    });
 }
 
 // Returns whether the server chooses the value of a parameter that is not given.
@@ -117,12 +123,17 @@ function isNeeded({ required, required_with: values = [] }, selected) {
     return required || values.includes(selected);
 }
 
+// The largest whole number that the server takes. A limit that is as large is none to a user.
+const LIMITLESS = 2147483646;
+
 // Returns a note on a parameter: whether the value is a whole number, its range, and whether it may
 // be left out.
 export function marksOf(param, selected) {
     const { type, min, max, exclusive } = param;
     const marks = type === 'integer' ? ['whole'] : [];
-    if (min !== undefined || max !== undefined) {
+    if (max >= LIMITLESS) {
+        marks.push(exclusive ? `more than ${min}` : `${min} or more`);
+    } else if (min !== undefined || max !== undefined) {
         const between = exclusive ? 'between' : 'from';
         marks.push(`${between} ${min} ${exclusive ? 'and' : 'to'} ${max}`);
     }
@@ -132,21 +143,30 @@ export function marksOf(param, selected) {
     return marks.join(', ');
 }
 
-// Returns whether every parameter has a value or needs none; `fields` are those of the parameters
-// that may be given. If parameters are alternatives, which have the same `group`, a value for one of
-// them is enough.
-export function isComplete(fields, selected) {
-    return fields.every(
+// Returns the first field that needs a value and has none, or undefined; `fields` are those of the
+// parameters that may be given. If parameters are alternatives, which have the same `group`, a value
+// for one of them is enough.
+export function missingOf(fields, selected) {
+    return fields.find(
         (field) =>
-            !isNeeded(field.param, selected) ||
-            field.control.isSaid ||
-            fields.some(
-                (other) =>
-                    field.param.group !== undefined &&
-                    other.param.group === field.param.group &&
-                    other.control.isSaid,
-            ),
+            isNeeded(field.param, selected) &&
+            ![field, ...othersOf(field, fields)].some(({ control }) => control.isSaid),
     );
+}
+
+// Returns the fields of the alternatives to a field.
+function othersOf({ param }, fields) {
+    return fields.filter((other) => param.group !== undefined && other.param.group === param.group);
+}
+
+// Returns what to say beside a field that needs a value and has none.
+export function wantOf(field, fields) {
+    const { name, type } = field.param;
+    const names = [...new Set([name, ...othersOf(field, fields).map(({ param }) => param.name)])];
+    const choice = names.length > 1 ? `${names.slice(0, -1).join(', ')} or ${names.at(-1)}` : name;
+    const kind = kindOf(field.param);
+    const how = kind !== null ? ': type ids, or press Pick and click in the view' : '';
+    return `Fill in ${choice}${type === 'mesh' ? ': choose a mesh' : how}.`;
 }
 
 // Returns [name, value], the member that a field adds to the request; the value is undefined if the

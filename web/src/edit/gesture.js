@@ -4,6 +4,7 @@
 // Points are in view coordinates (see geometry.js); the edit is in coordinates of the mesh.
 
 import { edgesOfTriangles, hasVertex, normalOfFace, pointAt, trianglesOfFace } from '../geometry/geometry.js';
+import { membersOf } from '../geometry/sets.js';
 import { middleOf, pixelAtOne, reachFrom } from '../geometry/view.js';
 
 // The amount that a tool applies after a click without a drag, as a fraction of the selection's
@@ -17,6 +18,9 @@ const INSET = [0.01, 0.99];
 // If a normal of length 1 is shorter than this when projected to the screen, it points almost at
 // the viewer or away; then dragging upwards counts as dragging along the normal.
 const LEAST_ACROSS = 0.3;
+
+// The tools do not work on more selected elements than this.
+const MOST_CROWD = 20000;
 
 // The largest number of lines that preview an edit.
 const MOST_LINES = 20000;
@@ -37,14 +41,16 @@ const OPERATIONS = {
     inset: { face: 'face_inset' },
 };
 
-// Starts a tool, 'move', 'extrude' or 'inset', on the selected elements `chosen` (see Selection):
-// returns a gesture, the data that drag() needs, or null if the tool does not fit the selection.
-export function begin(tool, chosen, geometry) {
-    const kind = chosen.at(-1)?.kind;
+// Starts a tool, 'move', 'extrude' or 'inset', on a Selection: returns a gesture, the data that
+// drag() needs, or null if the tool does not fit the selection.
+export function begin(tool, selection, geometry) {
+    const { kind } = selection;
     const op = OPERATIONS[tool][kind];
-    if (op === undefined) {
+    const isNameless = selection.crowd && kind === 'edge' && op !== 'vertex_move';
+    if (op === undefined || isNameless || (selection.crowd && selection.count > MOST_CROWD)) {
         return null;
     }
+    const chosen = selection.crowd ? membersIn(selection.crowd, geometry) : selection.chosen;
     const ends = chosen.flatMap((one) => endsOf(one));
     const vertices = [...new Set(ends)].filter((id) => hasVertex(geometry, id));
     if (vertices.length === 0) {
@@ -59,6 +65,21 @@ export function begin(tool, chosen, geometry) {
     return { tool, op, kind, chosen, geometry, vertices, middle, reach, pairs, regions };
 }
 
+// Returns the members of a Crowd in the form of Selection.chosen, with only the corners of each.
+// Edges are without ids, so edges can be moved, but not extruded.
+function membersIn({ kind, flags, pairs }, geometry) {
+    if (kind === 'edge') {
+        return Array.from({ length: pairs.length / 2 }, (_, i) => {
+            return { kind, element: { vertices: [pairs[2 * i], pairs[2 * i + 1]] } };
+        });
+    }
+    const cornersOf = (id) =>
+        kind === 'vertex' ? [id] : edgesOfFace(geometry, id).map(([from]) => from);
+    return [...membersOf(flags)].map((id) => {
+        return { kind, id, element: { vertices: cornersOf(id) } };
+    });
+}
+
 function endsOf({ kind, id, element }) {
     if (kind === 'vertex') {
         return [id];
@@ -67,7 +88,7 @@ function endsOf({ kind, id, element }) {
 }
 
 // Returns the edges of faces that end at some of the given vertices, at most MOST_LINES edges.
-function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
+export function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
     // An array is faster than a Set, which matters because millions of triangles are checked.
     const wanted = new Uint8Array(vertexCount);
     vertices.forEach((id) => {

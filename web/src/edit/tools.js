@@ -2,21 +2,23 @@
 // elements. The forms are made from the server's list of operations, so that a new operation
 // appears without a change here.
 
+import { slip } from '../kit/numbers.js';
 import { Chooser } from './chooser.js';
-import { Flag } from '../kit/controls.js';
-import { enable, make, prose } from '../kit/dom.js';
+import { Flag, SELECTION } from '../kit/controls.js';
+import { enable, formatCount, make, prose } from '../kit/dom.js';
 import {
     KINDS,
     controlFor,
     isAbout,
-    isComplete,
     isList,
     isOpen,
     isPlace,
     kindOf,
     marksOf,
+    missingOf,
     readField,
     roomFor,
+    wantOf,
 } from './fields.js';
 
 // By kind of element: the function that returns the ids of the elements of this kind to which a
@@ -27,6 +29,24 @@ const LINKS = {
     face: (element) => (typeof element.face === 'number' ? [element.face] : []),
     halfedge: (element) => element.halfedges?.slice(0, 1) ?? [],
 };
+
+// Returns the boundary half-edge that a selected element means, or null: its own, that of its edge, or
+// the only one beside it. `near` are the half-edges around the element, see around.js.
+function boundaryOf({ kind, id, element }, near) {
+    if (kind === 'vertex') {
+        return element.boundary ? element.halfedge : null;
+    }
+    if (kind === 'edge') {
+        const side = element.faces.indexOf(null);
+        return side < 0 ? null : element.halfedges[side];
+    }
+    if (kind === 'halfedge') {
+        const isInner = near.some((one) => one.id === id && one.across === null);
+        return element.boundary ? id : isInner ? element.twin : null;
+    }
+    const beside = near.filter(({ face }) => face === null);
+    return beside.length === 1 ? beside[0].id : null;
+}
 
 // The kinds of parameters that a selected element fills, and its name for one and for several.
 const TAKEN = {
@@ -51,11 +71,14 @@ export class Tools {
     #verdict;
     #onRun;
     #onTouch;
+    #onRefuse;
     #onArm;
     #onDraw;
     #meshes;
     #armed = null; // {param, control, button} of the field that waits for a click
     #selection = [];
+    #crowd = null;
+    #around = []; // half-edges around the element selected last
     #isEnabled = true;
     #isChosen = false; // the user chose an operation, so that it stays when the selection changes
     // name of the parameter -> {param, control, row, or, marks, isTaken}; `or` is the line above the
@@ -64,19 +87,21 @@ export class Tools {
 
     // `onRun(operation)` runs the operation of the form and shows errors. `onTouch(operation,
     // error)` is called after a change of the form: `operation` is null if the form is incomplete
-    // or has an error. `onArm({name, kind, isList})` is called when a field begins to wait for
+    // or has an error. `onRefuse(error, isPlain)` shows an error in `verdict`, see refuse().
+    // `onArm({name, kind, isList})` is called when a field begins to wait for
     // clicks in the view, and with undefined when it stops. `onDraw()` is called when the user wants
     // to draw a lasso for the form, see takeLasso(). `meshes()` returns the list of meshes. `verdict`
     // is the element that says what the edit in the form would do; it is placed below the field in
     // which the user types.
     constructor(
         { select, form, search, all, verdict },
-        { onRun, onTouch, onArm, onDraw, meshes, onError },
+        { onRun, onTouch, onRefuse, onArm, onDraw, meshes, onError },
     ) {
         this.#form = form;
         this.#verdict = verdict;
         this.#onRun = onRun;
         this.#onTouch = onTouch;
+        this.#onRefuse = onRefuse;
         this.#onArm = onArm;
         this.#onDraw = onDraw;
         this.#meshes = () => meshes().catch((error) => (onError(error), []));
@@ -99,9 +124,13 @@ export class Tools {
         form.addEventListener('submit', (event) => {
             event.preventDefault();
             try {
-                this.#onRun(this.#read());
+                if (this.#hasAll()) {
+                    this.#onRun(this.#read());
+                }
             } catch (error) {
-                onError(error);
+                if (!this.refuse(error)) {
+                    onError(error);
+                }
             }
         });
     }
@@ -110,12 +139,11 @@ export class Tools {
         this.#chooser.setOperations(operations);
     }
 
-    // Fills the form with the selected elements, {kind, id, element} each, in the order of
-    // selection. If the last call had the same elements, the text that the user has typed into the
-    // form stays.
-    setSelection(selection) {
-        const isSame = keyOf(selection) === keyOf(this.#selection);
-        this.#selection = selection;
+    // Fills the form with the selected elements, a Selection. If the last call had the same elements,
+    // the text that the user has typed into the form stays.
+    setSelection({ chosen, crowd, around }) {
+        const isSame = keyOf(chosen) === keyOf(this.#selection) && crowd === this.#crowd;
+        [this.#selection, this.#crowd, this.#around] = [chosen, crowd, around?.halfedges ?? []];
         if (isSame) {
             return;
         }
@@ -133,15 +161,24 @@ export class Tools {
     // Returns which operations take all selected elements, see Chooser.setFilter(); null if nothing
     // is selected.
     #filter() {
-        const { length } = this.#selection;
-        if (length === 0) {
+        const count = this.#count;
+        if (count === 0) {
             return null;
         }
-        const { kinds, names } = TAKEN[this.#selection.at(-1).kind];
+        const { kinds, names } = TAKEN[this.#kind];
         return {
-            title: length === 1 ? `For the selected ${names[0]}` : `For ${length} ${names[1]}`,
-            takes: (operation) => roomFor(operation, kinds) >= length,
+            title: count === 1 ? `For the selected ${names[0]}` : `For ${formatCount(count)} ${names[1]}`,
+            takes: (operation) => roomFor(operation, kinds) >= count,
         };
+    }
+
+    // The kind and the number of the selected elements.
+    get #kind() {
+        return this.#crowd?.kind ?? this.#selection.at(-1)?.kind;
+    }
+
+    get #count() {
+        return this.#crowd?.count ?? this.#selection.length;
     }
 
     // --- clicks ---
@@ -249,7 +286,7 @@ export class Tools {
             return;
         }
         try {
-            const isReady = isComplete(this.#open, this.#selected);
+            const isReady = missingOf(this.#open, this.#selected) === undefined;
             this.#onTouch(isReady ? this.#read() : null, null);
         } catch (error) {
             this.mark(error.pointer ?? '');
@@ -268,6 +305,32 @@ export class Tools {
             );
     }
 
+    // Returns whether every parameter has a value or needs none. If not, says so beside the first one
+    // that needs a value.
+    #hasAll() {
+        const missing = missingOf(this.#open, this.#selected);
+        if (missing === undefined) {
+            return true;
+        }
+        const { name } = missing.param;
+        this.refuse(slip(name, 'A value is missing', wantOf(missing, this.#open)), true);
+        return false;
+    }
+
+    // Shows an error beside the field to which its pointer refers, and moves the focus there. Returns
+    // false if there is no such field. `isPlain` says that the error is a sentence by itself.
+    refuse(error, isPlain = false) {
+        const field = this.#open.find((one) => isAbout(one, error.pointer ?? ''));
+        if (field === undefined) {
+            return false;
+        }
+        this.mark(error.pointer);
+        field.row.after(this.#verdict);
+        field.control.main.focus();
+        this.#onRefuse(error, isPlain);
+        return true;
+    }
+
     // Marks the field to which the pointer of a problem refers as wrong; if the pointer is '', no
     // field is marked.
     mark(pointer) {
@@ -280,13 +343,13 @@ export class Tools {
 
     // Returns whether the first parameter of an operation takes elements of the selected kind.
     #fits({ params } = { params: [] }) {
-        return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
+        return params.length > 0 && params[0].type === this.#kind;
     }
 
     // Returns the operation whose form is shown when the user has chosen none: one that takes all
     // selected elements, else one that takes some of them, or undefined.
     #fitting() {
-        const [kind, count] = [this.#selection.at(-1)?.kind, this.#selection.length];
+        const [kind, count] = [this.#kind, this.#count];
         const some = this.#chooser.all.filter((one) => this.#fits(one) && !isDeletion(one));
         return some.find((one) => roomFor(one, [kind]) >= count) ?? some[0];
     }
@@ -299,13 +362,25 @@ export class Tools {
     }
 
     // Returns the request for an operation on all selected elements, or only on the one selected
-    // last if the operation takes one element.
-    operationOn(name, selection) {
-        const { kind, id } = selection.at(-1);
+    // last if the operation takes one element; null if the operation cannot take the selection.
+    operationOn(name) {
+        const [kind, last] = [this.#kind, this.#selection.at(-1)];
         const row = this.#chooser.find(name);
         const { plural } = row?.params.find(({ type }) => type === kind) ?? {};
-        const ids = selection.map((chosen) => chosen.id);
-        return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
+        if (this.#crowd !== null) {
+            return plural === undefined ? null : { op: name, [plural]: SELECTION };
+        }
+        const ids = this.#selection.map((chosen) => chosen.id);
+        return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: last.id };
+    }
+
+    get operations() {
+        return this.#chooser.all;
+    }
+
+    // Returns the row of an operation in the server's table, or undefined.
+    rowOf(name) {
+        return this.#chooser.find(name);
     }
 
     // Returns whether the operation works on the whole mesh, so that it may take long.
@@ -441,12 +516,14 @@ export class Tools {
     }
 
     // Fills each field with selected elements of the kind that its parameter takes, in the order of
-    // selection; an element goes into one field only. Of several alternative parameters only the
+    // selection; an element goes into one field only. A Crowd goes into the first field that takes
+    // sets of its kind. Of several alternative parameters only the
     // first that fits is filled. Fields that the user filled by clicks stay as they are; if
     // `isEmptyOnly` is true, all fields that are not empty do.
     #fill(isEmptyOnly = false) {
         const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
         const fields = this.#open;
+        let isNamed = false; // a field names the selection
         const isKept = ({ control, isTaken }) => isTaken || (isEmptyOnly && control.isSaid);
         const groups = new Set(fields.filter(isKept).map(({ param }) => param.group));
         groups.delete(undefined);
@@ -454,6 +531,13 @@ export class Tools {
             const { param, control } = field;
             const kind = kindOf(param);
             if (kind === null || isPlace(param) || isKept(field)) {
+                continue;
+            }
+            if (kind === this.#crowd?.kind && isList(param) && param.set && !isNamed) {
+                control.setSelection();
+                isNamed = true;
+                groups.add(param.group);
+                groups.delete(undefined);
                 continue;
             }
             const ids = groups.has(param.group) ? [] : left.get(kind);
@@ -465,7 +549,19 @@ export class Tools {
         }
     }
 
+    // Whether the operation takes only half-edges of the boundary.
+    get #isAtBoundary() {
+        return this.#chooser.operation?.refusals.includes('not_boundary') ?? false;
+    }
+
     #ids(kind) {
+        if (kind === 'halfedge' && this.#isAtBoundary) {
+            const ids = this.#selection.map((chosen) => boundaryOf(chosen, this.#around));
+            const found = ids.filter((id) => id !== null);
+            if (found.length > 0) {
+                return [...new Set(found)];
+            }
+        }
         const direct = this.#selection.filter((chosen) => chosen.kind === kind);
         return direct.length > 0
             ? direct.map(({ id }) => id)

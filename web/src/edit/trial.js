@@ -46,10 +46,20 @@ export class Trial {
         }
     }
 
-    // Shows why the form cannot be sent.
-    refuse(error) {
+    // Shows why the form cannot be sent. `isPlain` says that the error is a sentence by itself.
+    refuse(error, isPlain = false) {
         this.clear();
-        this.#sayRefused(error);
+        if (isPlain) {
+            this.#say(error.detail, true);
+        } else {
+            this.#sayRefused(error);
+        }
+    }
+
+    // Shows what the edit has done, until the form changes.
+    tell(words) {
+        this.clear();
+        this.#say(words, false);
     }
 
     #sayRefused(error) {
@@ -126,8 +136,33 @@ function openOf({ results }) {
     return `. ${formatNumberOf(length, 'hole')} ${stays} open (${reasons.join(', ')}).`;
 }
 
+// Returns what an edit has done, by its answer: how many elements it made, deleted or changed.
+export function madeOf(answer) {
+    if (answer.replaced) {
+        return isRenumbering(answer) ? 'All ids are new.' : 'The whole mesh was replaced.';
+    }
+    const { sizes, changed } = sizesOf(answer);
+    if (sizes.length > 0) {
+        return `Made: ${sizes.join(' ')}`;
+    }
+    return changed.length > 0 ? `Changed: ${changed.join(' ')}` : 'Nothing has changed.';
+}
+
+function isRenumbering({ results }) {
+    return results.some(({ op }) => op === 'compact');
+}
+
+function sizesOf({ created, deleted, modified }) {
+    const signs = [
+        ['+', created],
+        ['\u2212', deleted],
+    ];
+    const sizes = signs.flatMap(([sign, found]) => tally(found).map((word) => `${sign}${word}`));
+    return { sizes, changed: tally(modified) };
+}
+
 function changesOf(answer) {
-    const { created, deleted, modified, replaced } = answer;
+    const { replaced } = answer;
     const chosen = answer.results.find(({ selected }) => selected !== undefined);
     if (chosen !== undefined) {
         return `Would select: ${selectionOf(chosen)}.`;
@@ -136,17 +171,12 @@ function changesOf(answer) {
     if (divided !== undefined) {
         return `Would divide the faces into ${patchesOf(divided)}.`;
     }
-    const signs = [
-        ['+', created],
-        ['\u2212', deleted],
-    ];
-    const sizes = signs.flatMap(([sign, found]) => tally(found).map((word) => `${sign}${word}`));
-    const changed = tally(modified);
+    const { sizes, changed } = sizesOf(answer);
     if (sizes.length > 0) {
         return `Would make: ${sizes.join(' ')}`;
     }
     if (replaced) {
-        return answer.results.some(({ op }) => op === 'compact')
+        return isRenumbering(answer)
             ? 'Would change the ids of all elements.'
             : 'Would replace the whole mesh.';
     }

@@ -13,9 +13,13 @@ const MOST_TIMES = 8;
 
 // Returns {center, radius, normal}, a ball around the selected elements and the direction that they
 // face; null if nothing is selected. The ball of a single vertex contains its neighbours, and that
-// of the half-edge selected last contains next, prev and the face. `normal` is the mean normal of the selected faces or, if no face is selected, of the faces beside the
-// selection; it is null if these faces have no common direction.
+// of the half-edge selected last contains next, prev and the face. `normal` is the mean normal of the
+// selected faces or, if no face is selected, of the faces beside the selection; it is null if these
+// faces have no common direction, or if the selection is a Crowd.
 export function framing(geometry, selection) {
+    if (selection.crowd) {
+        return framingOf(geometry, selection.crowd.verticesIn(geometry));
+    }
     const marks = selection.marksIn(geometry);
     const arrows = selection.arrowsIn(geometry);
     const placeOf = (id) => pointAt(geometry, id);
@@ -38,6 +42,23 @@ export function framing(geometry, selection) {
         radius: reachFrom(center, around.map(placeOf)),
         normal: meanNormal(geometry, new Set(faces.length > 0 ? faces : beside)),
     };
+}
+
+// Returns a ball around many vertices.
+function framingOf(geometry, ids) {
+    const [low, high] = [
+        [Infinity, Infinity, Infinity],
+        [-Infinity, -Infinity, -Infinity],
+    ];
+    for (const id of ids) {
+        for (let axis = 0; axis < 3; axis++) {
+            const value = geometry.vertices[4 * id + axis];
+            low[axis] = Math.min(low[axis], value);
+            high[axis] = Math.max(high[axis], value);
+        }
+    }
+    const center = low.map((value, axis) => (value + high[axis]) / 2);
+    return { center, radius: Math.hypot(...center.map((value, axis) => high[axis] - value)), normal: null };
 }
 
 // Returns the vertices that are framed with a half-edge; none if `last` is another element. `arrows`

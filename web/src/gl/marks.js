@@ -34,7 +34,7 @@ const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
 const PREVIEW_WIDTH = 2;
 const FIELD_WIDTH = 3;
-const RAISED = 0.996; // lines are drawn at this part of their distance from the camera
+export const RAISED = 0.996; // lines are drawn at this part of their distance from the camera
 
 export class Marks {
     // The objects of three.js by which the marks are drawn.
@@ -269,7 +269,8 @@ function replace(object, geometry, visible) {
     object.visible = visible;
 }
 
-function dots(tint, uniforms) {
+// Returns an object of three.js that draws points as dots of a colour; `uniforms` are those of the look.
+export function dots(tint, uniforms) {
     return new Points(
         new BufferGeometry(),
         new RawShaderMaterial({

@@ -6,29 +6,23 @@
 //   guides.js    grid, axes and bounding box
 //   marks.js     the marks on it: selection, arrows, boundary loops, previews
 //   rulers.js    lines that measure
+//   many.js      a selection of many elements
+//   ids.js       which element is visible at a pixel
 //   camera.js    the position of the camera
 //
 // A frame is drawn only after a change. After each frame `onFrame` is called with a label that says
 // what the frame shows, so that a test can wait for a certain frame instead of a time.
 
-import {
-    NearestFilter,
-    Plane,
-    RGBAIntegerFormat,
-    Scene,
-    UnsignedIntType,
-    Vector3,
-    WebGLRenderTarget,
-    WebGLRenderer,
-} from 'three';
+import { Plane, Scene, Vector3, WebGLRenderer } from 'three';
 
 import { ballOf } from '../geometry/geometry.js';
-import { readSquare } from '../geometry/pick.js';
 import { DIRECTION } from '../geometry/view.js';
 import { Camera } from './camera.js';
 import { COLORS } from './colors.js';
 import { Cut } from './cut.js';
 import { Guides } from './guides.js';
+import { Ids } from './ids.js';
+import { Many } from './many.js';
 import { Marks } from './marks.js';
 import { Motion } from './motion.js';
 import { Rulers } from './rulers.js';
@@ -49,6 +43,8 @@ export class Renderer {
     #hurry = 'auto';
     #colors = COLORS.dark;
     #rulers = new Rulers();
+    #many;
+    #ids;
     #scene = new Scene();
     #pickScene = new Scene();
     #geometry = null;
@@ -80,17 +76,21 @@ export class Renderer {
         this.#renderer.debug.onShaderError = (...which) => this.#giveUpLook(...which);
         this.#camera = new Camera(canvas, (isHeld) => {
             this.#motion.moved();
+            this.#ids.forget();
             this.#draw();
             onMove(isHeld);
         });
         this.#surface = new Surface(this.#renderer.capabilities.maxTextureSize);
         this.#chosen = this.#surface.chosenMaterials();
         this.#marks = new Marks(Object.values(this.#chosen), this.#surface.look.uniforms);
+        this.#many = new Many(this.#chosen.plain, this.#surface.look.uniforms);
+        this.#ids = new Ids(this.#renderer, this.#pickScene, this.#camera, () => this.#colors.paper);
         const { fill, proxy, dots, pickFill, pickDots } = this.#surface;
         const { mask, face, outline } = this.#cut;
         const { chosen, boundary, arrows, hiddenLines, lines, vertices } = this.#marks;
         const { fieldLines, fieldVertices, preview } = this.#marks;
         add(this.#pickScene, [pickFill, pickDots]);
+        const { faces, lines: manyLines, points } = this.#many;
         add(this.#scene, [
             ...[this.#guides.grid, this.#guides.axes, this.#guides.box],
             fill,
@@ -99,8 +99,11 @@ export class Renderer {
             mask,
             face,
             outline,
+            faces,
             boundary,
             dots,
+            manyLines,
+            points,
             arrows,
             hiddenLines,
             lines,
@@ -115,6 +118,7 @@ export class Renderer {
         this.fit();
         canvas.addEventListener('webglcontextlost', () => {
             this.#surface.forget();
+            this.#ids.forget();
             onLost(true);
         });
         canvas.addEventListener('webglcontextrestored', () => {
@@ -130,7 +134,9 @@ export class Renderer {
         this.#surface.show(geometry);
         this.#surface.values.hide(); // they belong to other elements
         this.#geometry = geometry;
+        this.#ids.forget();
         this.#marks.reset(geometry);
+        this.#many.show(null, null);
         this.#label = label;
         this.#draw();
     }
@@ -143,6 +149,7 @@ export class Renderer {
             this.#surface.update(places);
             this.#marks.move(this.#geometry);
         }
+        this.#ids.forget();
         this.#label = label;
         this.#draw();
     }
@@ -151,6 +158,7 @@ export class Renderer {
     // and the numbers of vertices and triangles have changed, see Levels.
     refine(ranges, label) {
         this.#surface.refine(ranges);
+        this.#ids.forget();
         this.#label = label;
         this.#draw();
     }
@@ -179,6 +187,12 @@ export class Renderer {
     color(act, label) {
         act(this.#surface.values);
         this.#label = label;
+        this.#draw();
+    }
+
+    // Shows a selection of many elements, a Crowd, or none (null).
+    selectMany(crowd) {
+        this.#many.show(this.#geometry === null ? null : crowd, this.#geometry);
         this.#draw();
     }
 
@@ -229,6 +243,7 @@ export class Renderer {
     // Shows all vertices as dots, or only isolated vertices, which would otherwise be invisible.
     showVertices(all) {
         this.#surface.showVertices(all);
+        this.#ids.forget();
         this.#draw();
     }
 
@@ -290,7 +305,9 @@ export class Renderer {
 
     #setChosen() {
         const { plain, looked } = this.#chosen;
-        this.#marks.chosen.material = this.#surface.look.isPlain ? plain : looked;
+        const material = this.#surface.look.isPlain ? plain : looked;
+        this.#marks.chosen.material = material;
+        this.#many.faces.material = material;
     }
 
     // Called when a program does not compile. If it is one for looks, the mesh is drawn plainly.
@@ -366,35 +383,15 @@ export class Renderer {
         return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
     }
 
-    // Returns which triangles and vertices are visible within `reach` CSS pixels of a place on the
-    // canvas, in the form of readSquare() in pick.js. Vertices are included only if they are shown
-    // as dots.
-    look(x, y, reach) {
-        const ratio = this.#renderer.getPixelRatio();
-        const radius = Math.ceil(reach * ratio);
-        const size = 2 * radius + 1;
-        const [width, height] = [this.#canvas.width, this.#canvas.height];
-        const target = new WebGLRenderTarget(size, size, {
-            format: RGBAIntegerFormat,
-            type: UnsignedIntType,
-            minFilter: NearestFilter,
-            magFilter: NearestFilter,
-        });
-        const left = Math.floor(x * ratio) - radius;
-        const top = Math.floor(y * ratio) - radius;
-        const camera = this.#camera.three;
-        this.#camera.setDepthRange(0);
-        camera.setViewOffset(width, height, left, top, size, size);
-        this.#renderer.setRenderTarget(target);
-        this.#renderer.setClearColor(0x000000, 0);
-        this.#renderer.render(this.#pickScene, camera);
-        const ids = new Uint32Array(4 * size * size);
-        this.#renderer.readRenderTargetPixels(target, 0, 0, size, size, ids);
-        this.#renderer.setRenderTarget(null);
-        this.#renderer.setClearColor(this.#colors.paper, 1);
-        camera.clearViewOffset();
-        target.dispose();
-        return readSquare(ids, size);
+    // Returns which triangles and vertices are visible near a place on the canvas, see Ids.look().
+    // Vertices are included only if they are shown as dots.
+    look(x, y, reach, isKept = false) {
+        return this.#ids.look(x, y, reach, isKept);
+    }
+
+    // Returns which triangle is visible in each pixel, see Ids.triangles().
+    get shownTriangles() {
+        return this.#ids.triangles(this.#surface.pickDots);
     }
 
     #resize() {
@@ -406,6 +403,7 @@ export class Renderer {
             return; // without a new frame, because drawing a large mesh takes long
         }
         this.#size = size;
+        this.#ids.forget();
         this.#renderer.setPixelRatio(ratio);
         this.#renderer.setSize(width, height, false);
         this.#camera.setAspect(width / height);
@@ -413,6 +411,7 @@ export class Renderer {
         this.#marks.setScreen(ratio, height);
         this.#cut.setPixelRatio(ratio);
         this.#rulers.setScreen(ratio);
+        this.#many.setPixelRatio(ratio);
         this.#draw();
     }
 
@@ -445,6 +444,7 @@ export class Renderer {
         this.#camera.setDepthRange(this.#guides.reach);
         this.#marks.raise(this.#camera.three.position);
         this.#cut.raise(this.#camera.three.position);
+        this.#many.raise(this.#camera.three.position);
         this.#renderer.render(this.#scene, this.#camera.three);
     }
 }

@@ -106,6 +106,11 @@ export class Color extends Text {
     }
 }
 
+// What a user writes into a field to name all elements that are selected in the page, and the value
+// that such a field has, until the page replaces it by their ids.
+export const SELECTION_NAME = 'the selection';
+export const SELECTION = Object.freeze({ [SELECTION_NAME]: true });
+
 // Returns the set that a text names: "selected" means {selected: true}, the elements whose bool
 // attribute `selected` is true, and "patch=3" means {patch: 3}. Returns null if the text names no
 // set; a text that begins with a digit or a sign is a list of ids.
@@ -115,7 +120,7 @@ export function setOf(text) {
 }
 
 // A text field for ids of elements: `isList` allows several ids, `isNullable` allows none, and
-// `isSet` allows the name of a set, see setOf().
+// `isSet` allows the name of a set, see setOf(), or of the selection. Sets of `plural` are offered.
 export class Ids {
     node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
     #name;
@@ -123,7 +128,7 @@ export class Ids {
     #isNullable;
     #isSet;
 
-    constructor(name, { isList = false, isNullable = false, isSet = false } = {}) {
+    constructor(name, { isList = false, isNullable = false, isSet = false, plural } = {}) {
         [this.#name, this.#isList, this.#isNullable] = [name, isList, isNullable];
         this.#isSet = isSet;
         this.node.placeholder = isSet
@@ -133,6 +138,9 @@ export class Ids {
               : isNullable
                 ? 'id or none'
                 : 'id';
+        if (isSet && plural !== undefined) {
+            this.node.setAttribute('list', `sets-${plural}`);
+        }
         if (!isList && !isNullable) {
             this.node.inputMode = 'numeric';
         }
@@ -154,6 +162,11 @@ export class Ids {
         this.node.value = ids.join(' ');
     }
 
+    // Names the selection in place of ids.
+    setSelection() {
+        this.node.value = SELECTION_NAME;
+    }
+
     // Returns the valid ids in the text.
     get ids() {
         return wordsOf(this.node.value).filter((word) => /^\d{1,9}$/.test(word)).map(Number);
@@ -167,6 +180,9 @@ export class Ids {
     // Returns an array of ids if the field takes several, or a set; else one id, or null for "none".
     read() {
         const text = this.node.value.trim();
+        if (this.#isSet && text === SELECTION_NAME) {
+            return SELECTION;
+        }
         const set = this.#isSet ? setOf(text) : null;
         if (set !== null) {
             return set;

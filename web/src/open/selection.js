@@ -1,27 +1,38 @@
 // selection.js - the selected elements of a mesh, which stay selected while the mesh changes. This
 // module does not touch the page.
 //
+// If few elements are selected, the server's data about each of them is in `chosen`. Otherwise, and
+// until these data have arrived, the selected elements are a Crowd, and `chosen` is empty.
+//
 // While a selected element is being read from the server, the user may select another one, and the
 // mesh may change. Only the last selection counts; its elements are read again if the mesh has
 // changed.
 
 import * as api from '../wire/api.js';
 import { describe } from './around.js';
+import { Crowd, PLURALS } from './crowd.js';
 import { hasVertex, trianglesOfFace } from '../geometry/geometry.js';
+
+// If more elements are selected than this, their data is not read from the server.
+export const MOST_READ = 1000;
 
 export class Selection {
     chosen = []; // {kind, id, element}, in the order of selection
+    crowd = null; // a Crowd, or null
     around = null; // result of describe() for the element selected last
     gone = []; // {kind, id, detail} of elements that were selected until an edit deleted them
 
     #mesh = null;
+    #geometryNow;
     #onChange;
     #choice = 0; // counts selections by the user
     #change = 0; // counts changes of the mesh
     #seen = 0; // value of #change when the data of `chosen` was read
 
-    // `onChange()` is called when the selection changes.
-    constructor(onChange) {
+    // `geometryNow()` returns the arrays of the mesh that is shown, see geometry.js. `onChange()` is
+    // called when the selection changes.
+    constructor(geometryNow, onChange) {
+        this.#geometryNow = geometryNow;
         this.#onChange = onChange;
     }
 
@@ -34,6 +45,61 @@ export class Selection {
 
     get last() {
         return this.chosen.at(-1);
+    }
+
+    // The kind of the selected elements, or null.
+    get kind() {
+        return this.crowd?.kind ?? this.last?.kind ?? null;
+    }
+
+    get count() {
+        return this.crowd?.count ?? this.chosen.length;
+    }
+
+    // The selected elements as text: `face:3 face:7`, or their number, `1600 faces`.
+    get name() {
+        return this.crowd === null
+            ? this.chosen.map(({ kind, id }) => `${kind}:${id}`).join(' ')
+            : `${this.count} ${PLURALS[this.kind]}`;
+    }
+
+    // The selected elements as a Crowd; null if nothing or half-edges are selected.
+    get asCrowd() {
+        if (this.crowd !== null || this.chosen.length === 0 || this.kind === 'halfedge') {
+            return this.crowd;
+        }
+        const ids = this.chosen.map(({ id }) => id);
+        if (this.kind === 'edge') {
+            const pairs = Uint32Array.from(this.chosen.flatMap(({ element }) => element.vertices));
+            return new Crowd('edge', { pairs, ids });
+        }
+        const flags = new Uint8Array(Math.max(...ids) + 1);
+        ids.forEach((id) => {
+            flags[id] = 1;
+        });
+        return new Crowd(this.kind, { flags });
+    }
+
+    // Returns the ids of all selected elements.
+    async ids() {
+        return this.crowd === null ? this.chosen.map(({ id }) => id) : this.crowd.ids(this.#mesh);
+    }
+
+    // Selects the members of a Crowd, at once; if they are few, their data is then read.
+    async choose(crowd) {
+        const choice = ++this.#choice;
+        if (crowd.count === 0) {
+            this.clear();
+            return;
+        }
+        this.#set([], null, [], crowd);
+        this.#onChange();
+        if (crowd.count <= MOST_READ) {
+            const ids = await crowd.ids(this.#mesh);
+            if (choice === this.#choice) {
+                await this.selectAll(crowd.kind, ids);
+            }
+        }
     }
 
     // Selects an element; if `also` is true, elements of the same kind that were selected before
@@ -62,6 +128,13 @@ export class Selection {
     async selectAll(kind, ids) {
         const choice = ++this.#choice;
         const change = this.#change;
+        if (ids.length > MOST_READ) {
+            const crowd = await Crowd.read(this.#mesh, kind, ids, this.#geometryNow());
+            if (choice === this.#choice) {
+                await this.choose(crowd);
+            }
+            return;
+        }
         const [chosen] = await readAll(this.#mesh, ids.map((id) => ({ kind, id })));
         const around = await this.#describe(chosen.at(-1));
         if (choice === this.#choice) {
@@ -74,7 +147,10 @@ export class Selection {
     }
 
     #take(kind, id, also, read) {
-        if (read !== null) {
+        if (read !== null && also && this.crowd?.kind === kind) {
+            this.#set([], null, [], this.crowd.with(id, read.element));
+            this.#onChange();
+        } else if (read !== null) {
             const others = also ? this.chosen.filter((s) => s.kind === kind && s.id !== id) : [];
             this.#set([...others, { kind, id, element: read.element }], read.around, []);
             this.#onChange();
@@ -113,14 +189,14 @@ export class Selection {
 
     clear() {
         this.#choice++;
-        if (this.chosen.length + this.gone.length > 0) {
+        if (this.count + this.gone.length > 0) {
             this.#set([], null, []);
             this.#onChange();
         }
     }
 
-    #set(chosen, around, gone) {
-        Object.assign(this, { chosen, around, gone });
+    #set(chosen, around, gone, crowd = null) {
+        Object.assign(this, { chosen, around, gone, crowd });
     }
 
     // Called when the mesh has changed: reads the selected elements again. Returns a function that
@@ -136,7 +212,9 @@ export class Selection {
         return () => {
             if (choice === this.#choice && change === this.#change) {
                 this.#seen = change;
-                this.#set(chosen, around, [...stillGone, ...lost]);
+                const crowd = this.crowd?.keptIn(this.#geometryNow()) ?? null;
+                const isLeft = crowd !== null && crowd.count > 0;
+                this.#set(chosen, around, [...stillGone, ...lost], isLeft ? crowd : null);
             }
         };
     }

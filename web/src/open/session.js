@@ -52,7 +52,10 @@ export class Session {
     constructor(onChange, onError) {
         this.#onChange = onChange;
         this.#onError = onError;
-        this.selection = new Selection(() => onChange('selection'));
+        this.selection = new Selection(
+            () => this.shown?.geometry,
+            () => onChange('selection'),
+        );
     }
 
     // The id of the open mesh, or null.
@@ -311,6 +314,15 @@ export class Session {
     // Undoes the last step, or all steps since the revision `to`.
     undo(to = undefined) {
         return this.#edit((revision) => api.undo(this.mesh, revision, to));
+    }
+
+    // Makes a named set, {domain, name}, of some elements, see putSet() in api.js.
+    saveSet(set, ids) {
+        return this.#edit((revision) => api.putSet(this.mesh, set, ids, revision));
+    }
+
+    deleteSet(set) {
+        return this.#edit(() => api.deleteSet(this.mesh, set));
     }
 
     redo() {

@@ -1,8 +1,9 @@
 // inspector.js - shows everything the server says about the selected element, with links to other
 // elements.
 
-import { formatMeasure, make } from '../kit/dom.js';
+import { formatMeasure, formatNumberOf, make } from '../kit/dom.js';
 import { unitText } from '../kit/units.js';
+import { PLURALS } from '../open/crowd.js';
 import { TITLES, linkTo, shortened } from '../kit/element_links.js';
 import { explained } from '../kit/words.js';
 
@@ -22,6 +23,9 @@ const LINKS = {
     face: 'face',
     faces: 'face',
 };
+
+// If more elements are selected than this, the hint counts them.
+const MOST_NAMED = 24;
 
 // The number of digits with which a measure is shown: so few that three measures fit into a line.
 const DIGITS = 5;
@@ -49,12 +53,12 @@ export class Inspector {
 
     // Shows the element that was selected last, its neighbours, and those selected elements that
     // were deleted by edits of the mesh, see selection.js.
-    show({ chosen: selection, around, gone }) {
+    show({ chosen: selection, around, gone, crowd }) {
         const last = selection.at(-1);
         this.#gone.hidden = gone.length === 0;
         this.#gone.replaceChildren(...gone.map((element) => this.#farewell(element)));
-        this.#title.textContent = last ? `${TITLES[last.kind]} ${last.id}` : 'Nothing selected';
-        this.#hint.textContent = hintFor(selection);
+        this.#title.textContent = last ? `${TITLES[last.kind]} ${last.id}` : titleOf(crowd);
+        this.#hint.textContent = crowd === null ? hintFor(selection) : '';
         this.#hint.hidden = this.#hint.textContent === '';
         this.#members.hidden = last === undefined;
         this.#members.replaceChildren(
@@ -129,12 +133,23 @@ function plainValue(value) {
     return make('span', {}, typeof value === 'object' ? JSON.stringify(value) : `${value}`);
 }
 
+// Returns the title for a selection that has no element to describe; `crowd` is a Crowd or null.
+function titleOf(crowd) {
+    return crowd === null
+        ? 'Nothing selected'
+        : formatNumberOf(crowd.count, crowd.kind, PLURALS[crowd.kind]);
+}
+
 function hintFor(selection) {
     if (selection.length === 0) {
         return 'Click the mesh to pick an element. Shift and click picks several.';
     }
     const others = selection.slice(0, -1);
-    return others.length === 0
-        ? ''
-        : `with ${TITLES[others[0].kind].toLowerCase()} ${others.map(({ id }) => id).join(', ')}`;
+    if (others.length === 0) {
+        return '';
+    }
+    const [{ kind }] = others;
+    return others.length > MOST_NAMED
+        ? `with ${formatNumberOf(others.length, `other ${kind}`, `other ${PLURALS[kind]}`)}`
+        : `with ${TITLES[kind].toLowerCase()} ${others.map(({ id }) => id).join(', ')}`;
 }

@@ -20,13 +20,15 @@ export class Stage {
     #isLevel = false; // a level of detail is shown, which has no ids
     #acts;
     #timer = 0;
+    #followers = [];
 
     // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
     // for the kind of element to pick. `content()` returns the Content that is shown, or null.
     // `onPick(chosen, also, place)` is called after a click with the result of choose(); `also` says
-    // that the Shift key was held, `place` is [x, y] in the window. `onMode(kind)` is called when
-    // clicks begin to pick elements of another kind. `onRest()` is called when the camera has come to
-    // rest, `onFrame()` after each frame; `onSlow()` and `onBroken()` are explained in Renderer.
+    // that the Shift key was held, `place` is [x, y] in the window; `onLine(event)` after a click with
+    // the Alt key. `onMode(kind)` is called when clicks begin to pick elements of another kind.
+    // `onRest()` is called when the camera has come to rest, `onFrame()` after each frame; `onSlow()`
+    // and `onBroken()` are explained in Renderer.
     constructor(canvas, { noWebGL, contextLost, modes }, { content, ...acts }) {
         this.#canvas = canvas;
         this.#modes = modes;
@@ -48,7 +50,7 @@ export class Stage {
                 acts.onError(error);
             }
         }
-        modes.addEventListener('change', () => this.setPickMode(this.#pickMode));
+        modes.addEventListener('change', () => this.setPickMode(this.pickMode));
         this.#listenToClicks();
     }
 
@@ -98,6 +100,7 @@ export class Stage {
     // certain frame.
     #markFrame(label) {
         this.#acts.onFrame();
+        this.#followers.forEach((follow) => follow());
         for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces', 'colour']) {
             if (label?.[name] === undefined) {
                 delete this.#canvas.dataset[name];
@@ -121,6 +124,11 @@ export class Stage {
 
     select(marks, arrows, label) {
         this.#marked?.select(marks, arrows, label);
+    }
+
+    // Shows a selection of many elements, a Crowd, or none (null).
+    selectMany(crowd) {
+        this.#marked?.selectMany(crowd);
     }
 
     markField(marks) {
@@ -231,13 +239,19 @@ export class Stage {
 
     // --- clicks ---
 
+    // Calls `follow()` after each frame, when the camera may have moved.
+    eachFrame(follow) {
+        this.#followers.push(follow);
+    }
+
     // Scrolls the page so that the view is visible or, with 'start', so that it is at the top of the
     // window.
     bringIntoSight(block = 'nearest') {
         this.#canvas.scrollIntoView({ block });
     }
 
-    get #pickMode() {
+    // The kind of elements that clicks pick.
+    get pickMode() {
         return this.#modes.querySelector('input:checked').value;
     }
 
@@ -258,13 +272,35 @@ export class Stage {
             const isClick =
                 down !== null && Math.hypot(x - down.clientX, y - down.clientY) <= CLICK_PIXELS;
             if (isClick && this.#marked !== null && this.#contentNow() !== null) {
-                this.#acts.onPick(this.elementAt(x, y, this.#pickMode), event.shiftKey, [x, y]);
+                if (event.altKey) {
+                    this.#acts.onLine(event);
+                } else {
+                    this.#acts.onPick(this.elementAt(x, y), event.shiftKey, [x, y]);
+                }
             }
         });
     }
 
-    // Returns the element of a kind at a place in the window, see choose(), or null.
-    elementAt(clientX, clientY, kind) {
+    // Returns the element under the pointer at a place in the window, see choose(), or null. It is
+    // found in a kept image, so it is for pointers that move.
+    hover(clientX, clientY) {
+        return this.elementAt(clientX, clientY, this.pickMode, true);
+    }
+
+    // Returns the edge that is nearest to a place in the window, {from, to}, or null.
+    edgeAt(clientX, clientY) {
+        return this.elementAt(clientX, clientY, 'edge');
+    }
+
+    // Returns which triangle is visible in each pixel of the canvas: {width, height, shown}, see
+    // region.js; null if the mesh is not drawn.
+    get shownTriangles() {
+        return this.#marked?.shownTriangles ?? null;
+    }
+
+    // Returns the element of a kind at a place in the window, see choose(), or null. If `isKept` is
+    // true, it is found in a kept image, which is for pointers that move.
+    elementAt(clientX, clientY, kind = this.pickMode, isKept = false) {
         const content = this.#contentNow();
         if (this.#marked === null || content === null) {
             return null;
@@ -272,8 +308,8 @@ export class Stage {
         const screen = this.#screenAt(clientX, clientY);
         const { geometry, boundary } = content;
         const reach = kind === 'halfedge' ? HOLE_REACH : REACH;
-        const seen = this.#renderer.look(screen.x, screen.y, reach);
-        const look = (...place) => this.#renderer.look(...place, REACH);
+        const seen = this.#renderer.look(screen.x, screen.y, reach, isKept);
+        const look = (...place) => this.#renderer.look(...place, REACH, isKept);
         return choose(kind, geometry, seen, { ...screen, boundary, look });
     }
 

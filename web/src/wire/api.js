@@ -387,6 +387,47 @@ export async function getSet(mesh, kind, name, value) {
     return ids;
 }
 
+// Makes a named set of the elements with these ids, {domain, name}: a bool attribute. Replaces a set
+// with this name; fails if the name is that of another attribute, or if the mesh is not at
+// `revision`.
+export async function putSet(mesh, { domain, name }, ids, revision) {
+    const path = `${meshPath(mesh)}/attributes/${domain}/${encodeURIComponent(name)}`;
+    const { attributes } = await getAttributes(mesh);
+    const other = attributes.find((it) => it.domain === domain && it.name === name);
+    if (other !== undefined && (other.type !== 'bool' || other.components !== 1)) {
+        const detail = `${name} is an attribute of type ${other.type}. Choose another name.`;
+        throw new Problem({ title: 'No set', detail });
+    }
+    const tag = await getTag(mesh);
+    // A dry run tells how many ids were ever given out, which is the length of the array.
+    const tried = await request(path, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ type: 'bool', dry_run: true, expected_revision: revision }),
+    });
+    const values = new Uint8Array((await tried.json()).attribute.bytes);
+    ids.forEach((id) => {
+        values[id] = 1;
+    });
+    const answer = await request(`${path}?type=bool`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/octet-stream', 'If-Match': tag },
+        body: values,
+    });
+    return answer.status === 202 ? finish(await answer.json(), null) : answer.json();
+}
+
+export async function deleteSet(mesh, { domain, name }) {
+    const path = `${meshPath(mesh)}/attributes/${domain}/${encodeURIComponent(name)}`;
+    return (await request(path, { method: 'DELETE' })).json();
+}
+
+// Returns the ids of the edges that continue an edge: its 'edge_loop', which leads straight on through
+// vertices with four edges, or its 'edge_ring', which leads straight across faces with four edges.
+export async function getLine(mesh, walk, edge) {
+    return (await postJson(`${meshPath(mesh)}/traverse`, { walk, from: { edge } })).edges;
+}
+
 // Returns the table of operations: [{name, doc, params, ...}].
 export async function getOperations() {
     return (await getJson('v1/operations')).operations;
