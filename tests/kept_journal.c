@@ -32,6 +32,7 @@ typedef struct kept_record {
     st_record record;
     char name[ST_MESH_NAME + 1];
     char ops[256];
+    char moment[ST_MOMENT_NAME + 1];
     bool sum_is_wrong;
 } kept_record;
 
@@ -222,9 +223,11 @@ static kept_record *copy_of(const kept_mesh *mesh, const st_record *record)
     out->record = *record;
     snprintf(out->name, sizeof out->name, "%s", record->name);
     snprintf(out->ops, sizeof out->ops, "%s", record->ops);
+    snprintf(out->moment, sizeof out->moment, "%s", record->moment == NULL ? "" : record->moment);
     out->record.id = mesh->card.id;
     out->record.name = out->name;
     out->record.ops = out->ops;
+    out->record.moment = record->moment == NULL ? NULL : out->moment;
     out->record.key = NULL;
     out->record.body = NULL;
     if (record->body != NULL) {

@@ -28,6 +28,12 @@ static void write_path_parameter(api_out *out, const char *name)
         api_schema_ref(out, "schemas", "domain");
     } else if (strcmp(name, "name") == 0) {
         api_schema_ref(out, "schemas", "attribute_name");
+    } else if (strcmp(name, "revision") == 0) {
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "integer");
+        api_out_key_string(out, "format", "int64");
+        api_out_key_number(out, "minimum", 1);
+        api_out_object_end(out);
     } else {
         api_out_object_begin(out);
         api_out_key_string(out, "type", "string");

@@ -431,6 +431,23 @@ static const api_route routes[] = {
             "be read. `dropped` tells how many entries were removed to keep within the undo "
             "budget; the oldest undo steps were removed with them. An undone edit can be redone "
             "until the next edit, however full the history is."},
+    {.method = "PATCH",
+     .path = "/v1/meshes/{mesh}/edits/{revision}",
+     .name = "name_revision",
+     .run = api_moment_patch,
+     .reads = API_READS_CARD,
+     .role = API_ROLE_WRITE,
+     .flags = API_WRITES | API_IDEMPOTENCY_KEY,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = merge_patch,
+     .produces = json,
+     .statuses = {200, 204, 409, 410, 412, 413, 415, 422},
+     .request = "moment_patch",
+     .response = "entry",
+     .summary = "Name a revision",
+     .doc = "A JSON merge patch (RFC 7396) of the name of a revision, by which the moment is found "
+            "again. The history keeps the name with the entry of the revision, within the undo "
+            "budget, and drops both together. The content and its revision do not change."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_edits",
@@ -483,7 +500,7 @@ static const api_route routes[] = {
      .summary = "Events of a mesh",
      .doc =
          "Server-sent events. `edit`: a new revision as a delta, complete enough to mirror the "
-         "mesh exactly. `metadata`: the name of the mesh changed. `job`: a job on this mesh "
+         "mesh exactly. `metadata`: the name of the mesh changed. `moment`: a revision was named. `job`: a job on this mesh "
          "started or ended. `resync`: fetch the mesh again, because events were left out. `bye`: "
          "the stream ends. With Last-Event-ID or `since` the stream continues where a client was "
          "interrupted, or begins with `resync` if the history does not reach back that far."},

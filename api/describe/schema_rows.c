@@ -41,6 +41,7 @@ static const api_record *const records[] = {
     &api_reloaded_record,
     &api_history_record,
     &api_metadata_record,
+    &api_moment_record,
     &api_resync_record,
     &api_bye_record,
     &api_attribute_read_record,
@@ -461,6 +462,8 @@ const api_member api_answer_members[] = {
 
     {"metadata", NULL, NULL, REQUIRED, NULL},
 
+    {"moment", NULL, NULL, REQUIRED, NULL},
+
     {"resync", NULL, NULL, REQUIRED, NULL},
 
     {"bye", NULL, NULL, REQUIRED, NULL},
@@ -475,6 +478,9 @@ const api_member api_answer_members[] = {
 
     {"mesh_event_metadata", "event", "=metadata", REQUIRED, NULL},
     {"mesh_event_metadata", "data", "#metadata", REQUIRED, "The name changed."},
+
+    {"mesh_event_moment", "event", "=moment", REQUIRED, NULL},
+    {"mesh_event_moment", "data", "#moment", REQUIRED, "A revision was named."},
 
     {"mesh_event_job", "event", "=job", REQUIRED, NULL},
     {"mesh_event_job", "data", "#job_state_told", REQUIRED, "A job on this mesh started or ended."},
@@ -582,6 +588,9 @@ const api_member api_request_members[] = {
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
     {"mesh_patch", "name", "text?", OPTIONAL, "The new name; null removes the name."},
+
+    {"moment_patch", "name", "text?", OPTIONAL,
+     "The new name of the revision, at most 200 bytes of UTF-8; null takes the name away."},
 
     {"ticket_asked", "path", "text", REQUIRED,
      "The path and query of the GET that the ticket is for, exactly as in its URL."},

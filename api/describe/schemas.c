@@ -442,7 +442,7 @@ static void write_unions(api_out *out)
 {
     static const char *const walks[] = {"path",          "loop",      "rings",     "breadth_first",
                                         "shortest_path", "edge_loop", "edge_ring", NULL};
-    static const char *const mesh_events[] = {"edit", "metadata", "job", "resync", "bye", NULL};
+    static const char *const mesh_events[] = {"edit",   "metadata", "moment", "job", "resync", "bye", NULL};
     static const char *const job_events[] = {"job", "bye", NULL};
     api_schema_union(out, "walk", "walk", "walk", walks);
     api_schema_union(out, "walked", "walk", "walked", walks);

@@ -11,6 +11,8 @@ static void render(const st_mesh_info *info, const st_change *change, api_text *
         api_event_bye(text, "deleted");
     } else if (change->action == ST_REPLACE) {
         api_event_resync(text, info->incarnation, info->revision, "replaced");
+    } else if (change->named != 0) {
+        api_event_moment(text, change->named, change->moment);
     } else if (change->delta == NULL) {
         api_event_metadata(text, info);
     } else {

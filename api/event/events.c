@@ -70,6 +70,24 @@ void api_event_metadata(api_text *text, const st_mesh_info *info)
     api_event_record(text, "metadata", &api_metadata_record, info);
 }
 
+typedef struct moment {
+    uint64_t revision;
+    const char *name; /* NULL: none */
+} moment;
+
+static const api_field moment_fields[] = {
+    API_FIELD("revision", "count", moment, revision, .required = true),
+    API_FIELD("name", "text?", moment, name, .required = true,
+              .doc = "The new name of the revision; null if it has none any more."),
+};
+const api_record api_moment_record = API_RECORD("moment", moment_fields);
+
+void api_event_moment(api_text *text, uint64_t revision, const char *name)
+{
+    const moment value = {revision, name[0] == '\0' ? NULL : name};
+    api_event_record(text, "moment", &api_moment_record, &value);
+}
+
 typedef struct bye {
     const char *reason;
 } bye;

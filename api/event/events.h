@@ -4,6 +4,7 @@
  *     (none)   opening message: `retry`, and the present revision      present revision
  *     edit     a change and the values it wrote: event_values.h        the new revision
  *     metadata {"name":"..."}                                          (none)
+ *     moment   {"revision":n,"name":"..."}: the name of a revision     (none)
  *     resync   {"revision":n,"reason":"..."}: fetch the mesh anew      present revision
  *     job      the body of GET /v1/jobs/{job}; on the stream of a mesh only
  *              {"id":"...","state":"...","progress":n}, when a job starts or ends  (none)
@@ -22,8 +23,8 @@
 #include "api/json/record.h"
 #include "store/followers.h"
 
-/* The JSON members of the data of the events resync, metadata and bye. */
-extern const api_record api_resync_record, api_metadata_record, api_bye_record;
+/* The JSON members of the data of the events resync, metadata, moment and bye. */
+extern const api_record api_resync_record, api_metadata_record, api_moment_record, api_bye_record;
 
 /* A comment in the format text/event-stream, sent to keep an idle connection open. */
 #define API_EVENT_IDLE ":\n\n"
@@ -40,6 +41,9 @@ void api_event_edit(api_text *text, const st_mesh_info *info, const st_change *c
 /* Appends an `edit` with "stale":true, which announces a revision whose change cannot be sent. */
 void api_event_stale(api_text *text, const st_mesh_info *info);
 void api_event_metadata(api_text *text, const st_mesh_info *info);
+/* Appends a `moment`, which says that a revision has a new name, or no name any more if `name` is
+ * "". */
+void api_event_moment(api_text *text, uint64_t revision, const char *name);
 /* Appends a `resync`, which tells the listener to fetch the mesh again. Reasons: "replaced" (the
  * mesh data was replaced as a whole, or compacted), "gap" (the listener was too slow, and the
  * history no longer has the revisions that it missed), "busy" (too many backfills), "incarnation"

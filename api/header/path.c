@@ -145,6 +145,21 @@ bool api_path_id(const char *text, uint32_t *out)
     return true;
 }
 
+bool api_path_revision(const char *text, uint64_t *out)
+{
+    enum { DIGITS = 16 };
+    uint64_t value = 0;
+    const size_t length = strlen(text);
+    if (length > DIGITS || strspn(text, "0123456789") != length) {
+        return false;
+    }
+    for (; *text != '\0'; text++) {
+        value = value * 10 + (uint64_t)(*text - '0');
+    }
+    *out = value;
+    return value >= 1 && value <= (uint64_t)1 << 53;
+}
+
 bool api_path_is_mesh_id(const char *text)
 {
     size_t length = 0;

@@ -38,6 +38,8 @@ bool api_query_split(const char *raw, api_arena *arena, api_query *out, api_prob
 
 /* Reads an element id: a decimal number of 1 to 10 digits, below 2^32 - 2. */
 bool api_path_id(const char *text, uint32_t *out);
+/* Reads a revision: a decimal number from 1 to 2^53. */
+bool api_path_revision(const char *text, uint64_t *out);
 /* Returns true if `text` can name a mesh: [A-Za-z0-9._-]{1,64}, not "." or "..". */
 bool api_path_is_mesh_id(const char *text);
 

@@ -45,7 +45,12 @@ static const api_field entry_fields[] = {
     API_FIELD(
         "inverts", "count", st_entry, inverts, .zero_is_none = true,
         .doc = "If the entry is an undo or a redo: the revision whose change it undid or redid."),
+    API_FIELD("state", "count", st_entry, state, .required = true,
+              .doc = "The oldest revision with the same content: the mesh has equal contents at "
+                     "revisions of equal state."),
     API_FIELD_MADE_OF("ops", "*text", st_entry, ops, write_ops, .required = true),
+    API_FIELD("name", "text", st_entry, name, .zero_is_none = true,
+              .doc = "The name that a client gave to this revision, if it has one."),
     API_FIELD_RECORD("created", "#counted", st_entry, tally.created, &api_counted_record,
                      .known = API_KNOWN(st_entry, tally.known),
                      .doc = "How many elements the edit created, if that is known."),

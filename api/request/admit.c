@@ -125,6 +125,10 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
         x->problem.status = 404;
         return false;
     }
+    if (variables->revision != NULL && !api_path_revision(variables->revision, &x->revision)) {
+        return api_fail(x, API_NO_SUCH_REVISION, "\"%.100s\" is not a revision",
+                        variables->revision);
+    }
     x->code = variables->code;
     x->attribute = variables->name;
     x->job_id = variables->job;

@@ -93,6 +93,7 @@ bool api_edits_decode(api_exchange *x);
 bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_edits_post(api_exchange *x);
 void api_edits_list(api_exchange *x);
+void api_moment_patch(api_exchange *x);
 bool api_undo_decode(api_exchange *x);
 bool api_redo_decode(api_exchange *x);
 bool api_undo_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);

@@ -7,8 +7,8 @@
  * row declares.
  *
  * The path of a row is a template of literal segments and variables. {mesh} matches a mesh id, {id}
- * an element id, {domain} one of vertices, halfedges, edges, faces and mesh, {name} the name of an
- * attribute, {code} and {job} any segment, and {asset} the rest of the path. */
+ * an element id, {domain} one of vertices, halfedges, edges, faces and mesh, {revision} a revision,
+ * {name} the name of an attribute, {code} and {job} any segment, and {asset} the rest of the path. */
 #ifndef HE_API_REQUEST_ROUTE_H
 #define HE_API_REQUEST_ROUTE_H
 
@@ -186,7 +186,7 @@ typedef struct api_variables {
     const char *mesh;
     he_kind domain; /* kind of element that {domain} names; HE_KIND_COUNT: not in the template */
     /* Values of {id} and so on, percent-decoded but not checked; NULL: not in the template. */
-    const char *id, *code, *name, *job;
+    const char *id, *code, *name, *job, *revision;
 } api_variables;
 
 /* The templates of a table as a tree of path segments, so that the time to find a route does not

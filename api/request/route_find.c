@@ -142,6 +142,9 @@ static bool take_variable(const node *n, const char *segment, api_variables *out
     case 'n':
         out->name = segment;
         return true;
+    case 'r':
+        out->revision = segment;
+        return true;
     case 'a':
         return true;
     default: /* {domain} */

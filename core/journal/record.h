@@ -1,6 +1,6 @@
 /* record.h - the data that the store gives to the journal, and gets back from it.
  *
- * A RECORD is one change of one mesh: a revision, a rename or the removal. A CONTENT is the whole
+ * A RECORD is one change of one mesh: a revision, a rename, the name of a revision or the removal. A CONTENT is the whole
  * data of a mesh: its elements and attributes. A CARD is a short description of a mesh, without its
  * content. A PIECE is what one step of loading a mesh reads: first parts of its base, a content,
  * then the records after the base in order. A NOTE is stored beside the records: a job, or the key
@@ -18,6 +18,7 @@
 enum {
     ST_MESH_ID = 64,
     ST_MESH_NAME = 256,
+    ST_MOMENT_NAME = 200, /* most bytes of the name of a revision */
     ST_JOB_ID = 22,
     ST_DAMAGE = 160,
     ST_HOLDER = 64 /* most bytes of a holder's name */
@@ -49,7 +50,8 @@ typedef enum st_record_kind {
      * encoded content. */
     ST_RECORD_CONTENT = 4,
     ST_RECORD_RENAME = 5,
-    ST_RECORD_REMOVE = 6
+    ST_RECORD_REMOVE = 6,
+    ST_RECORD_MOMENT = 7 /* names a revision, or takes its name away */
 } st_record_kind;
 
 /* The Idempotency-Key of the request that made a change. The answer does not exist yet when the
@@ -129,10 +131,16 @@ typedef struct st_record {
     uint64_t incarnation;  /* random, new for each creation of a mesh with this id */
     uint64_t number;       /* number of this record among the records of the incarnation, from 1 */
     uint64_t revision;     /* revision of the mesh after the change, from 1 */
-    uint64_t metadata; /* counter of the changes of the mesh's name, from 1, after this change */
+    /* counter of the changes of names, of the mesh and of its revisions, from 1, after this
+     * change */
+    uint64_t metadata;
     /* The revision that an undo or redo inverts; for a base (whole content), the earlier revision
      * with an equal content, if there is one; else 0. */
     uint64_t inverts;
+    /* If the record is an ST_RECORD_MOMENT: the revision that it names (`named`), and the name in
+     * UTF-8 (`moment`), which is "" if the revision loses its name; else 0 and NULL. */
+    uint64_t named;
+    const char *moment;
     /* The revisions from the oldest up to this one are dropped from the history after the change,
      * to stay within the undo budget. */
     uint64_t reach;

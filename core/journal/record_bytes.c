@@ -17,9 +17,15 @@ enum { BARRIER = 1, TALLY = 2, PARTS = 4, EDIT = 8, ALL_FLAGS = BARRIER | TALLY 
 static const he_kind counted[] = {HE_VERTEX, HE_EDGE, HE_FACE};
 enum { COUNTED = sizeof counted / sizeof *counted };
 
+/* Returns true if records of the kind have a name after the names of their operations. */
 static bool is_named(st_record_kind kind)
 {
-    return kind == ST_RECORD_CONTENT || kind == ST_RECORD_RENAME;
+    return kind == ST_RECORD_CONTENT || kind == ST_RECORD_RENAME || kind == ST_RECORD_MOMENT;
+}
+
+static unsigned version_of(st_record_kind kind)
+{
+    return kind == ST_RECORD_MOMENT ? 2 : 1;
 }
 
 static bool has_body(st_record_kind kind)
@@ -49,12 +55,13 @@ size_t st_frame_write(const st_record *r, unsigned char *to)
         (r->barrier ? (unsigned)BARRIER : 0U) | (r->tally.known ? (unsigned)TALLY : 0U) |
         (r->stage != NULL ? (unsigned)PARTS : 0U) | (r->staged_edit ? (unsigned)EDIT : 0U);
     unsigned char *at = he_put_u32(to, 0);
-    at = he_put_byte(he_put_byte(at, ST_FRAME_VERSION), r->kind);
+    at = he_put_byte(he_put_byte(at, version_of(r->kind)), r->kind);
     at = he_put_byte(he_put_byte(at, flags), 0);
     at = he_put_u64(he_put_u64(at, r->number), r->revision);
     at = he_put_u64(at, 0);
     at = he_put_bytes(at, &r->time, sizeof r->time);
-    at = he_put_varint(he_put_varint(at, r->metadata), r->inverts);
+    const bool names = r->kind == ST_RECORD_MOMENT;
+    at = he_put_varint(he_put_varint(at, r->metadata), names ? r->named : r->inverts);
     at = he_put_varint(at, r->revision - r->reach);
     for (size_t i = 0; i < COUNTED; i++) {
         at = he_put_varint(at, r->issued[counted[i]]);
@@ -63,7 +70,7 @@ size_t st_frame_write(const st_record *r, unsigned char *to)
     at = he_put_varint(he_put_varint(at, r->counts.faces), r->counts.boundary);
     at = put_text(he_put_varint(at, r->bytes), r->ops, ST_FRAME_OPS);
     if (is_named(r->kind)) {
-        at = put_text(at, r->name, ST_MESH_NAME);
+        at = put_text(at, names ? r->moment : r->name, names ? ST_MOMENT_NAME : ST_MESH_NAME);
     }
     if (r->tally.known) {
         at = put_tally(put_tally(at, r->tally.created), r->tally.deleted);
@@ -129,7 +136,7 @@ static bool take_text(he_cursor *c, char *out, size_t most)
 static bool take_kind(unsigned char byte, st_record_kind *out)
 {
     *out = (st_record_kind)byte;
-    return byte >= ST_RECORD_EDIT && byte <= ST_RECORD_REMOVE;
+    return byte >= ST_RECORD_EDIT && byte <= ST_RECORD_MOMENT;
 }
 
 static bool take_numbers(he_cursor *c, st_record *r)
@@ -139,6 +146,10 @@ static bool take_numbers(he_cursor *c, st_record *r)
                  he_take_varint(c, UINT64_MAX, &r->inverts) &&
                  he_take_varint(c, r->revision, &back);
     r->reach = r->revision - back;
+    if (r->kind == ST_RECORD_MOMENT) {
+        r->named = r->inverts;
+        r->inverts = 0;
+    }
     for (size_t i = 0; taken && i < COUNTED; i++) {
         taken = take_count(c, &r->issued[counted[i]]);
     }
@@ -158,7 +169,8 @@ static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_erro
         return he_refuse_at(c, err, "the record is cut short in its header");
     }
     *flags = bytes[2];
-    if (!take_kind(bytes[1], &r->kind) || (*flags & ~(unsigned)ALL_FLAGS) != 0 || bytes[3] != 0) {
+    if (!take_kind(bytes[1], &r->kind) || bytes[0] != version_of(r->kind) ||
+        (*flags & ~(unsigned)ALL_FLAGS) != 0 || bytes[3] != 0) {
         c->at -= sizeof bytes - 1;
         return he_refuse_at(c, err, "the record has an unknown kind or flag");
     }
@@ -180,8 +192,9 @@ static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_erro
 static he_status read_rest(he_cursor *c, st_frame *out, he_error *err)
 {
     st_record *r = &out->record;
+    const size_t most = r->kind == ST_RECORD_MOMENT ? ST_MOMENT_NAME : ST_MESH_NAME;
     if (!take_text(c, out->ops, ST_FRAME_OPS) ||
-        (is_named(r->kind) && !take_text(c, out->name, ST_MESH_NAME))) {
+        (is_named(r->kind) && !take_text(c, out->name, most))) {
         return he_refuse_at(c, err, "a text in the record is cut short, too long or not UTF-8");
     }
     if (r->tally.known && (!take_counts(c, r->tally.created) || !take_counts(c, r->tally.deleted) ||
@@ -215,11 +228,11 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
     if (st_crc32c(0, c.at, he_left(&c)) != sum) {
         return he_refuse_at(&c, err, "the checksum of the record is wrong");
     }
-    if (*c.at != ST_FRAME_VERSION) {
-        return *c.at < ST_FRAME_VERSION
+    if (*c.at == 0 || *c.at > ST_FRAME_VERSION) {
+        return *c.at == 0
                    ? he_refuse_at(&c, err, "the record declares a version that no release wrote")
                    : he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, AT_VERSION,
-                                "the record has version %u, and this release reads version %d",
+                                "the record has version %u, and this release reads up to version %d",
                                 *c.at, ST_FRAME_VERSION);
     }
     /* The frame is decoded into a local variable, so that *out is unchanged if decoding fails. */
@@ -233,6 +246,7 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
         *out = frame;
         out->record.ops = out->ops;
         out->record.name = out->name;
+        out->record.moment = out->record.kind == ST_RECORD_MOMENT ? out->name : NULL;
     }
     return status;
 }

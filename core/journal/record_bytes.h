@@ -1,19 +1,23 @@
 /* record_bytes.h - writes records (changes of meshes) as bytes that every later release can read.
  *
- * FRAME, version 1, little-endian; varints as in stored.h:
+ * FRAME, version 1 or 2, little-endian; varints as in stored.h:
  *     4          CRC-32C of all that follows
  *     1, 1, 2    version; kind (st_record_kind); flags (below)
  *     8, 8       number; revision
  *     8          the chain
  *     8          time, a double
- *     varints    counter of metadata; revision that is undone or redone; how many revisions the
- *                history reaches back; ids ever issued of vertices, edges and faces; live vertices,
- *                edges and faces; boundary half-edges; bytes of the mesh in memory
+ *     varints    counter of metadata; revision that is undone, redone or named; how many revisions
+ *                the history reaches back; ids ever issued of vertices, edges and faces; live
+ *                vertices, edges and faces; boundary half-edges; bytes of the mesh in memory
  *     text       ops: length (varint) and UTF-8
- *     text       the mesh's name; only in records of a content or a rename
+ *     text       the mesh's name; only in records of a content or a rename. In records that name a
+ *                revision: the name of that revision
  *     9 varints  with the flag TALLY: created, deleted, modified vertices, edges and faces
  *     the rest   the body; with the flag PARTS there is none, and the content is stored in rows
  *                of its own, in parts; with PARTS and EDIT those are parts of the encoded edit
+ *
+ * Version 2 has the kind ST_RECORD_MOMENT, and only records of this kind are written as version 2:
+ * a release that reads only version 1 refuses them as written by a newer release.
  *
  * THE CHAIN is a hash that connects a record to all before it. The chain of the first record is the
  * hash of its mesh's origin (a number that no other mesh has). The chain of each later record is
@@ -31,7 +35,7 @@
 #include <stddef.h>
 
 enum {
-    ST_FRAME_VERSION = 1,
+    ST_FRAME_VERSION = 2,
     ST_FRAME_OPS = 255, /* most bytes of `ops`, the names of operations; a longer text is cut */
     /* The most bytes of a frame (an encoded record) without its body. */
     ST_FRAME_HEAD = 40 + 4 * 10 + 7 * 5 + (2 + ST_FRAME_OPS) + (2 + ST_MESH_NAME) + 9 * 5

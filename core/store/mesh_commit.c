@@ -1,8 +1,9 @@
 /* mesh_commit.c - the kinds of commit: an edit of the mesh, or of the copy on which a long edit
- * works; undo and redo; replacement of the mesh data; rename; removal. Each change is put into the
- * history, then appended to the journal and sent to listeners. */
+ * works; undo and redo; replacement of the mesh data; rename; name of a revision; removal. Each
+ * change is put into the history, then appended to the journal and sent to listeners. */
 #include "store/mesh_commit.h"
 
+#include "store/revision_name.h"
 #include "system/clock.h"
 #include "system/lock.h"
 
@@ -129,6 +130,28 @@ static void commit_facts(st_write *w)
                   .booking = &w->booking, .records = records, .changes = changes, .count = count});
 }
 
+/* Commits the name of a revision. The oldest entries of the history may be dropped to make room for
+ * it, but not the entry that gets the name (st_log_can_name). */
+static void commit_moment(st_write *w)
+{
+    st_mesh *mesh = w->mesh;
+    st_log_name(&mesh->log, w->named, w->moment);
+    w->moment = NULL;
+    st_log_settle(&mesh->log);
+    mesh->info.metadata++;
+    mesh->info.modified = st_clock_utc();
+    st_record record = st_mesh_record(mesh, ST_RECORD_MOMENT, &w->cause);
+    record.named = w->named;
+    record.moment = st_log_name_of(&mesh->log, w->named);
+    const st_change change = {.action = ST_EDIT,
+                              .content = mesh->content,
+                              .named = record.named,
+                              .moment = record.moment};
+    st_mesh_publish(
+        mesh,
+        &(st_group){.booking = &w->booking, .records = &record, .changes = &change, .count = 1});
+}
+
 /* Puts the new mesh data into the mesh. Returns the old data, which the caller frees, or NULL if
  * nothing was exchanged. */
 static he_mesh *exchange_content(st_write *w)
@@ -172,6 +195,7 @@ static st_status book(st_write *w)
         need.freeing = true;
         break;
     case ST_WRITE_RENAME:
+    case ST_WRITE_MOMENT:
         break;
     }
     return st_book(journal, &need, &w->booking);
@@ -206,7 +230,7 @@ static st_status get_ready(st_write *w)
             status = info->lost ? ST_LOST : ST_ABSENT;
         }
     }
-    const bool grows = w->kind != ST_WRITE_RENAME && w->kind != ST_WRITE_REMOVE;
+    const bool grows = w->kind <= ST_WRITE_REPLACE;
     if (status == ST_OK && grows) {
         status = st_mesh_grow(w->mesh, he_mesh_bytes(w->content));
     }
@@ -234,6 +258,9 @@ st_status st_write_commit(st_write *w, const char *ops)
         break;
     case ST_WRITE_STEP:
         commit_steps(w);
+        break;
+    case ST_WRITE_MOMENT:
+        commit_moment(w);
         break;
     case ST_WRITE_REPLACE:
     case ST_WRITE_RENAME:

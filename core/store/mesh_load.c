@@ -2,6 +2,7 @@
 
 #include "mesh/check.h"
 #include "mesh/write.h"
+#include "store/revision_name.h"
 #include "store/table.h"
 #include "stored/stored.h"
 #include "system/memory.h"
@@ -322,6 +323,27 @@ static st_status take_step(load *l, const st_record *record)
     return status_of(l, status, record->number, &err);
 }
 
+/* Names a revision. A revision that the log has no entry of was not after the base, and the base
+ * replaced its entry; then the name is gone, too. */
+static st_status take_moment(load *l, const st_record *record)
+{
+    st_revision_log *log = &l->mesh->log;
+    const st_status status = st_log_can_name(log, record->named, 0);
+    if (status == ST_AHEAD || record->named == 0) {
+        return damaged(l, "record %llu names revision %llu, which the mesh does not have",
+                       (unsigned long long)record->number, (unsigned long long)record->named);
+    }
+    if (status == ST_GONE) {
+        return ST_OK;
+    }
+    char *name = st_log_name_new(record->moment);
+    if (name == NULL) {
+        return no_memory();
+    }
+    st_log_name(log, record->named, name);
+    return ST_OK;
+}
+
 /* Checks that a record is the next record of this mesh. */
 static st_status check_record(load *l, const st_record *record)
 {
@@ -361,6 +383,8 @@ static st_status take_record(load *l, const st_piece *piece)
     case ST_RECORD_RENAME:
         /* nothing is to be done, because the name of the mesh is taken from its card */
         return ST_OK;
+    case ST_RECORD_MOMENT:
+        return take_moment(l, record);
     case ST_RECORD_REMOVE:
         break;
     }

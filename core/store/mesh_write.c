@@ -2,6 +2,7 @@
  * aborts the write. */
 #include "store/mesh_commit.h"
 
+#include "store/revision_name.h"
 #include "store/table.h"
 #include "system/lock.h"
 
@@ -280,7 +281,7 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     return ST_OK;
 }
 
-/* --- replace, rename, remove, end --- */
+/* --- replace, names, remove, end --- */
 
 void st_write_replace(st_write *w, he_mesh *takes, st_stage *stage)
 {
@@ -302,6 +303,22 @@ void st_write_rename(st_write *w, const char *name)
     w->name = name;
 }
 
+st_status st_write_moment(st_write *w, uint64_t revision, const char *name)
+{
+    assert(w->kind == ST_WRITE_EDIT && !w->claimed);
+    const st_status status =
+        st_log_can_name(&w->mesh->log, revision, strnlen(name, ST_MOMENT_NAME));
+    char *copy = status == ST_OK ? st_log_name_new(name) : NULL;
+    if (copy == NULL) {
+        return status == ST_OK ? ST_NO_MEMORY : status;
+    }
+    roll_back(w);
+    w->kind = ST_WRITE_MOMENT;
+    w->named = revision;
+    w->moment = copy;
+    return ST_OK;
+}
+
 void st_write_remove(st_write *w)
 {
     assert(w->kind == ST_WRITE_EDIT && !w->claimed);
@@ -320,6 +337,8 @@ void st_write_end(st_write *w, he_mesh *discard)
 {
     st_mesh *mesh = w->mesh;
     free_steps(w);
+    he_mem_free(w->moment);
+    w->moment = NULL;
     he_changes_clear(&w->changes);
     st_booking_leave(mesh->journal, &w->booking);
     w->mesh = NULL;

@@ -1,5 +1,5 @@
-/* revision_entry.h - the entries and steps of a revision log. Only revision_log.c and
- * revision_walk.c use it. */
+/* revision_entry.h - the entries and steps of a revision log. Only revision_log.c, revision_name.c
+ * and revision_walk.c use it. */
 #ifndef HE_STORE_REVISION_ENTRY_H
 #define HE_STORE_REVISION_ENTRY_H
 
@@ -34,7 +34,8 @@ struct st_revision {
     /* True if the delta was applied forwards: the entry is an edit or a redo, not an undo. */
     bool forward;
     size_t delta_bytes;
-    size_t size; /* bytes that the entry and its slot in the ring take */
+    size_t size; /* bytes that the entry, its name and its slot in the ring take */
+    char *name;  /* `name` is the name of the revision; NULL: it has none */
     /* the step with the delta that led to the revision; NULL if the delta is not kept */
     st_step *step;
     st_revision *next; /* the next entry in the list of reserved entries */

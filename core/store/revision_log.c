@@ -1,6 +1,7 @@
 #include "store/revision_log.h"
 
 #include "store/revision_entry.h"
+#include "store/revision_name.h"
 
 #include <assert.h>
 #include <string.h>
@@ -28,6 +29,12 @@ void st_log_init(st_revision_log *log, uint64_t budget, const st_point *begin,
                              .oldest = begin->revision,
                              .bottom = begin->state};
     note_marks(&log->before, content);
+}
+
+static void free_entry(st_revision *entry)
+{
+    he_mem_free(entry->name);
+    he_mem_free(entry);
 }
 
 static void release_step(st_revision_log *log, st_step *step)
@@ -108,7 +115,7 @@ static st_step *pop_redo(st_revision_log *log)
     step->stack = ST_ON_NEITHER;
     if (step->kept != NULL) {
         log->bytes -= step->kept->size;
-        he_mem_free(step->kept);
+        free_entry(step->kept);
         step->kept = NULL;
     }
     return step;
@@ -198,10 +205,11 @@ static void drop_oldest(st_revision_log *log)
         log->oldest = entry->point.revision;
     }
     if (keeps) {
+        st_log_unname(log, entry);
         step->kept = entry;
     } else {
         log->bytes -= entry->size;
-        he_mem_free(entry);
+        free_entry(entry);
     }
     log->first = (log->first + 1) & (log->capacity - 1);
     log->count--;
@@ -529,6 +537,7 @@ bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out)
     *out = (st_entry){
         .revision = entry->point.revision,
         .inverts = entry->inverts,
+        .state = entry->point.state,
         .action = entry->action,
         .undoable = entry->step != NULL && entry->step->stack == ST_ON_UNDO &&
                     entry->step->applied == entry->point.revision,
@@ -537,6 +546,7 @@ bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out)
         .tally = entry->tally,
     };
     memcpy(out->ops, entry->ops, strlen(entry->ops) + 1);
+    st_copy_text(out->name, entry->name == NULL ? "" : entry->name, ST_MOMENT_NAME);
     return true;
 }
 

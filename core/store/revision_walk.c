@@ -51,6 +51,7 @@ void st_log_fill_record(const st_revision_log *log, st_record *record)
         break;
     case ST_RECORD_RENAME:
     case ST_RECORD_REMOVE:
+    case ST_RECORD_MOMENT:
         break;
     }
 }

@@ -69,7 +69,8 @@ typedef struct st_mesh_info {
     char name[ST_MESH_NAME + 1]; /* UTF-8, may be empty */
     /* random number, which differs for each mesh that was created with this id */
     uint64_t incarnation;
-    uint64_t metadata; /* counter of the changes of the mesh's name and metadata, from 1 */
+    /* counter of the changes of names, of the mesh and of its revisions, from 1 */
+    uint64_t metadata;
     uint64_t revision; /* counter of the changes of the mesh's content, from 1 */
     /* Counter of all changes of the mesh: of its content, its metadata, and the removal. */
     uint64_t record;
@@ -87,16 +88,21 @@ typedef struct st_mesh_info {
     char job[ST_JOB_ID + 1]; /* id of the job whose long edit has claimed the mesh, or "" */
 } st_mesh_info;
 
-/* A change about which listeners of a mesh are informed: a new revision, a rename or a removal. */
+/* A change about which listeners of a mesh are informed: a new revision, a rename, the name of a
+ * revision or a removal. */
 typedef struct st_change {
     st_action action; /* ST_REPLACE if the whole content was replaced */
-    /* delta: what was changed; NULL if the action is ST_REPLACE, and for a rename. */
+    /* delta: what was changed; NULL if the action is ST_REPLACE, and for names. */
     const he_delta *delta;
     bool undone; /* the delta was applied backwards */
     /* `changes` are the net changes of the delta; NULL: they were not computed */
     const he_changes *changes;
     const he_mesh *content; /* the mesh after the change */
     bool removed;           /* true if the mesh was deleted; no further change follows */
+    /* `named` is the revision that got the name `moment`, or lost its name if that is ""; 0: the
+     * change names no revision. */
+    uint64_t named;
+    const char *moment;
 } st_change;
 
 /* A function that renders a change as a message for listeners of the mesh. `bytes` is allocated by
@@ -468,9 +474,13 @@ enum { ST_ENTRY_OPS = 256 };
 typedef struct st_entry {
     uint64_t revision;
     uint64_t inverts; /* the revision that this revision undid or redid; 0 for an edit */
+    /* The newest edit that was not undone at this revision: the mesh has equal contents at revisions
+     * of equal state. */
+    uint64_t state;
     st_action action;
     /* Names of the operations, joined by ','; a long list is cut and ends with "...". */
     char ops[ST_ENTRY_OPS];
+    char name[ST_MOMENT_NAME + 1]; /* the name of the revision, UTF-8; "": it has none */
     bool undoable;
     size_t bytes;
     double time;

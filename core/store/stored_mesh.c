@@ -258,7 +258,7 @@ static void count_held(st_mesh *mesh, const st_record *record)
 
 static bool is_revision(st_record_kind kind)
 {
-    return kind != ST_RECORD_RENAME && kind != ST_RECORD_REMOVE;
+    return kind <= ST_RECORD_CONTENT;
 }
 
 static void count_revisions(st_mesh *mesh, const st_record *records, size_t count)

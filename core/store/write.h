@@ -3,6 +3,7 @@
  *     st_write_begin --+-- the content is changed, st_write_changes ---+
  *     (the lock)       +-- st_write_step: undo, redo                   +-- st_write_commit
  *                      +-- st_write_replace, st_write_rename, or both  |   or
+ *                      +-- st_write_moment                             |
  *                      +-- st_write_remove ----------------------------+   st_write_abort
  *     st_write_claim --- st_write_copy, st_write_changes --------------+
  *     (no lock)
@@ -28,6 +29,7 @@ typedef enum st_write_kind {
     ST_WRITE_STEP,
     ST_WRITE_REPLACE,
     ST_WRITE_RENAME,
+    ST_WRITE_MOMENT,
     ST_WRITE_REMOVE
 } st_write_kind;
 
@@ -52,6 +54,8 @@ typedef struct st_write {
     st_cause cause;
     he_savepoint mark; /* position in `delta` at which the changes of this write begin */
     const char *name;  /* `name` is the new name, if the write is a rename */
+    uint64_t named;    /* the revision that the write names, and its name; used only then */
+    char *moment;
     /* ST_UNDO or ST_REDO, if the write undoes or redoes steps; the next four members are used only
      * then. */
     st_action which;
@@ -109,6 +113,13 @@ void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
 /* Makes the write rename the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME
  * bytes. */
 void st_write_rename(st_write *write, const char *name);
+/* Makes the write give a revision the name `name`, at most ST_MOMENT_NAME bytes of UTF-8; "" takes
+ * its name away. The history keeps the name with the entry of the revision.
+ * Returns ST_AHEAD if the revision does not exist yet.
+ * Returns ST_GONE if the history has no entry of the revision.
+ * Returns ST_TOO_LARGE if the undo budget has no room for the name.
+ * Returns ST_NO_MEMORY if memory is out. */
+st_status st_write_moment(st_write *write, uint64_t revision, const char *name);
 void st_write_remove(st_write *write);
 
 /* Commits the write and ends it: its member `info` then has the new facts of the mesh. `ops` names

@@ -436,6 +436,9 @@ static void fill_piece(st_reader *reader, st_piece_kind kind, st_piece *out)
     st_record *record = &out->record;
     record->ops = reader->frame.ops;
     record->name = reader->frame.name;
+    if (record->kind == ST_RECORD_MOMENT) {
+        record->moment = reader->frame.name;
+    }
     if (record->kind != ST_RECORD_RENAME && record->kind != ST_RECORD_CONTENT) {
         record->name = card->name;
     }
