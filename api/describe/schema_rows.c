@@ -10,6 +10,7 @@
 #include "api/json/attribute_value.h"
 #include "api/json/material_value.h"
 #include "api/json/problem.h"
+#include "api/presence/presences.h"
 #include "api/read/records.h"
 
 #include <stddef.h>
@@ -42,6 +43,11 @@ static const api_record *const records[] = {
     &api_history_record,
     &api_metadata_record,
     &api_moment_record,
+    &api_presence_record,
+    &api_presence_selection_record,
+    &api_presence_camera_record,
+    &api_presences_record,
+    &api_presence_news_record,
     &api_resync_record,
     &api_bye_record,
     &api_attribute_read_record,
@@ -464,6 +470,16 @@ const api_member api_answer_members[] = {
 
     {"moment", NULL, NULL, REQUIRED, NULL},
 
+    {"presence", NULL, NULL, REQUIRED, NULL},
+
+    {"presence_selection", NULL, NULL, REQUIRED, NULL},
+
+    {"presence_camera", NULL, NULL, REQUIRED, NULL},
+
+    {"presences", NULL, NULL, REQUIRED, NULL},
+
+    {"presence_news", NULL, NULL, REQUIRED, NULL},
+
     {"resync", NULL, NULL, REQUIRED, NULL},
 
     {"bye", NULL, NULL, REQUIRED, NULL},
@@ -481,6 +497,11 @@ const api_member api_answer_members[] = {
 
     {"mesh_event_moment", "event", "=moment", REQUIRED, NULL},
     {"mesh_event_moment", "data", "#moment", REQUIRED, "A revision was named."},
+
+    {"mesh_event_presence", "event", "=presence", REQUIRED, NULL},
+    {"mesh_event_presence", "data", "#presence_news", REQUIRED,
+     "Clients came, left, or show something else. The first event of a stream lists all that are "
+     "there."},
 
     {"mesh_event_job", "event", "=job", REQUIRED, NULL},
     {"mesh_event_job", "data", "#job_state_told", REQUIRED, "A job on this mesh started or ended."},
@@ -591,6 +612,24 @@ const api_member api_request_members[] = {
 
     {"moment_patch", "name", "text?", OPTIONAL,
      "The new name of the revision, at most 200 bytes of UTF-8; null takes the name away."},
+
+    {"presence_put", "client", "text", REQUIRED,
+     "An id that the client chooses for itself, at random: 1 to 40 letters, digits, '.', '_' and "
+     "'-'."},
+    {"presence_put", "name", "text?", OPTIONAL,
+     "The name to show, at most 64 bytes of UTF-8. If the request has a token, the token's name is "
+     "shown instead."},
+    {"presence_put", "selection", "#shown_selection?", OPTIONAL,
+     "The selected elements of one kind; null: none."},
+    {"presence_put", "camera", "#presence_camera?", OPTIONAL, "Where the client looks from."},
+    {"presence_put", "leaves", "flag", OPTIONAL,
+     "If true, the client leaves: it is forgotten at once. Default: false."},
+
+    {"shown_selection", "kind", "#presence_kind", REQUIRED, NULL},
+    {"shown_selection", "ids", "*id", REQUIRED,
+     "At most 256 ids: the selected elements, or the first of them."},
+    {"shown_selection", "count", "count", OPTIONAL,
+     "How many elements are selected. Default: the number of ids."},
 
     {"ticket_asked", "path", "text", REQUIRED,
      "The path and query of the GET that the ticket is for, exactly as in its URL."},

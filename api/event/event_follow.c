@@ -39,6 +39,9 @@ typedef struct stream {
     st_listener listener;
     bool listens;
     uint64_t incarnation;
+    api_presences *presences;
+    /* the moment up to which presences were sent (api_presences_news) */
+    uint64_t seen;
     api_backfill *missed; /* makes the missed events; NULL if there are none, or all were sent */
     uint64_t caught_up;   /* the revision of the last of the missed events */
     api_text text;        /* text that is sent before anything else */
@@ -98,6 +101,9 @@ static int64_t read_queue(stream *s, char *buffer, size_t size)
         return (int64_t)got;
     case ST_QUEUE_WAIT:
         return API_READ_WAIT;
+    case ST_QUEUE_NUDGED:
+        api_presences_news(s->presences, s->incarnation, &s->seen, &s->text);
+        return IN_TEXT;
     case ST_QUEUE_ENDED:
         return 0;
     case ST_QUEUE_LOST:
@@ -166,15 +172,17 @@ static void begin_with_history(stream *s, const st_mesh_info *info, uint64_t sin
 }
 
 static void begin(stream *s, const st_mesh_info *info, const st_since *since, st_missed missed,
-                  api_backfills *backfills)
+                  const api_event_shared *shared)
 {
     s->incarnation = info->incarnation;
+    s->presences = shared->presences;
     api_event_begin(&s->text, info, !since->given);
+    api_presences_news(s->presences, s->incarnation, &s->seen, &s->text);
     switch (missed) {
     case ST_MISSED_NOTHING:
         break;
     case ST_MISSED_HISTORY:
-        begin_with_history(s, info, since->revision, backfills);
+        begin_with_history(s, info, since->revision, shared->backfills);
         break;
     case ST_MISSED_FOREIGN:
         api_event_resync(&s->text, info->incarnation, info->revision, "incarnation");
@@ -185,7 +193,7 @@ static void begin(stream *s, const st_mesh_info *info, const st_since *since, st
     }
 }
 
-st_status api_event_follow(st_mesh *mesh, const st_since *since, api_backfills *backfills,
+st_status api_event_follow(st_mesh *mesh, const st_since *since, const api_event_shared *shared,
                            st_mesh_info *info, api_source *out)
 {
     stream *s = he_mem_zero(1, sizeof *s);
@@ -197,7 +205,7 @@ st_status api_event_follow(st_mesh *mesh, const st_since *since, api_backfills *
     st_status status = st_follow(mesh, &s->listener, since, &missed, info);
     s->listens = status == ST_OK;
     if (s->listens) {
-        begin(s, info, since, missed, backfills);
+        begin(s, info, since, missed, shared);
         status = s->text.failed ? ST_NO_MEMORY : ST_OK;
     }
     if (status != ST_OK) {

@@ -5,6 +5,7 @@
  *     edit     a change and the values it wrote: event_values.h        the new revision
  *     metadata {"name":"..."}                                          (none)
  *     moment   {"revision":n,"name":"..."}: the name of a revision     (none)
+ *     presence {"clients":["id",...],"changed":[...]}: who is there    (none)
  *     resync   {"revision":n,"reason":"..."}: fetch the mesh anew      present revision
  *     job      the body of GET /v1/jobs/{job}; on the stream of a mesh only
  *              {"id":"...","state":"...","progress":n}, when a job starts or ends  (none)

@@ -130,6 +130,9 @@
     X(IDEMPOTENCY_BUSY, "idempotency_in_progress", 409, "The same request is in progress",         \
       "A request with this Idempotency-Key is in progress. Send it again after Retry-After "       \
       "seconds to get its answer.")                                                                \
+    X(CLIENT_TAKEN, "client_taken", 409, "Another client has this id",                             \
+      "A client with another token shows itself at the mesh with this id. Choose another one, at " \
+      "random.")                                                                                   \
     X(BACKUP_KEPT, "backup_kept", 409, "Another backup is being made or kept",                     \
       "The server keeps only one backup at a time, because a backup takes as much room as the "    \
       "store. Fetch the backup from its job and then DELETE the job; if the job still runs, wait " \
@@ -212,6 +215,10 @@
       "All reads of a whole mesh accept this header.")                                             \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
+    X(TOO_MANY_PRESENT, "too_many_present", 503, "Too many clients show themselves",               \
+      "The server limits the number of clients that show themselves to others at one mesh, and "   \
+      "at all meshes together. A client is forgotten half a minute after it was last heard of. "   \
+      "Try again after Retry-After seconds.")                                                      \
     X(TOO_MANY_TICKETS, "too_many_tickets", 503, "Too many tickets are waiting to be used",        \
       "A ticket is valid for a minute or until it is used, and the server limits the number of "   \
       "valid tickets. Try again after Retry-After seconds.")                                       \

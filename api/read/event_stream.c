@@ -30,7 +30,8 @@ void api_events_get(api_exchange *x)
     if (!read_since(x, &since)) {
         return;
     }
-    st_status status = api_event_follow(x->mesh, &since, &x->service->backfills, &x->info, &source);
+    const api_event_shared shared = {&x->service->backfills, x->service->presences};
+    st_status status = api_event_follow(x->mesh, &since, &shared, &x->info, &source);
     if (status != ST_OK) {
         api_fail_store(x, status);
         return;

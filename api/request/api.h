@@ -219,6 +219,9 @@ bool api_service_apply_quotas(api_service *service);
 /* Returns the counters of refusals by client limits (api/limit/limit.h), to which the server adds
  * the refusals that it makes before an exchange has begun. */
 api_limited *api_service_limited(api_service *service);
+/* Returns the table of the clients that show themselves to others, whose work the server does on a
+ * thread of its own (api_presences_run). */
+struct api_presences *api_service_presences(const api_service *service);
 void api_free(api_exchange *exchange);
 /* Sets the route and the problem code in `served`, for metrics, from an exchange that ended. If
  * `exchange` is NULL, sets API_NO_ROUTE and leaves the problem code as it is. */

@@ -33,6 +33,7 @@
 #include "api/json/json_in.h"
 #include "api/json/json_out.h"
 #include "api/limits.h"
+#include "api/presence/presences.h"
 #include "api/request/api.h"
 #include "api/request/route.h"
 #include "api/token/tickets.h"
@@ -48,6 +49,7 @@ struct api_service {
     api_route_tree *routes; /* `table` as a tree of path segments */
     api_options options;
     api_backfills backfills;
+    api_presences *presences;
     api_tickets *tickets;
     /* The token buckets that limit the requests of each access token and of each address; NULL: no
      * client is limited. */

@@ -55,6 +55,12 @@ bool api_progressive_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_mesh_copy(api_exchange *x);
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
+/* The clients that show themselves at a mesh (presence.c). */
+void api_clients_list(api_exchange *x);
+void api_clients_list_cold(api_exchange *x, st_cold *cold);
+void api_client_put(api_exchange *x);
+void api_client_put_cold(api_exchange *x, st_cold *cold);
+
 /* Elements of a mesh. These handlers use x->kind, x->id, and the route's relation. */
 void api_elements_list(api_exchange *x);
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);

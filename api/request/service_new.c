@@ -21,9 +21,11 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
         service->routes = api_route_tree_new(routes);
         service->tickets = api_tickets_new();
         service->metrics = api_metrics_new(routes.count);
+        service->presences = api_presences_new(store);
     }
     if (service != NULL && !(service->routes != NULL && service->tickets != NULL &&
-                             service->metrics != NULL && make_rates(service, options))) {
+                             service->metrics != NULL && service->presences != NULL &&
+                             make_rates(service, options))) {
         api_service_free(service);
         service = NULL;
     }
@@ -54,11 +56,17 @@ void api_service_free(api_service *service)
         api_kept_free(service->openapi);
         api_route_tree_free(service->routes);
         api_tickets_free(service->tickets);
+        api_presences_free(service->presences);
         api_rates_free(service->token_rates);
         api_rates_free(service->address_rates);
         api_metrics_free(service->metrics);
     }
     he_mem_free(service);
+}
+
+api_presences *api_service_presences(const api_service *service)
+{
+    return service->presences;
 }
 
 api_limited *api_service_limited(api_service *service)

@@ -104,6 +104,14 @@ void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length)
     allow(mesh);
 }
 
+void st_follow_nudge(st_mesh *mesh, uint64_t incarnation)
+{
+    /* The incarnation of a mesh never changes, so it is read without the lock. */
+    if (mesh->info.incarnation == incarnation) {
+        st_queue_nudge(&mesh->queue);
+    }
+}
+
 /* Makes a listener begin with the messages after the revision `since`, or after the present
  * revision if `since` is NULL. The caller holds the mesh's lock. */
 static st_missed begin(st_listener *listener, const st_since *since, const st_mesh_info *info)

@@ -43,6 +43,9 @@ bool st_is_followed(st_mesh *mesh);
  * needs no lock. If the bytes are NULL, every listener that has not read all earlier messages by
  * now is told that it is behind and must fetch the mesh again. */
 void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length);
+/* Wakes the listeners of the mesh if it has this incarnation, because something that is no message
+ * has changed for them: their next read returns ST_QUEUE_NUDGED. The caller needs no lock. */
+void st_follow_nudge(st_mesh *mesh, uint64_t incarnation);
 /* Returns the number of present listeners of all meshes of the store. */
 size_t st_listeners(st_store *store);
 

@@ -1,6 +1,7 @@
 #include "server/boot/daemon.h"
 
 #include "server/boot/parts.h"
+#include "server/boot/present.h"
 #include "server/boot/reload.h"
 #include "server/boot/resources.h"
 #include "server/boot/signals.h"
@@ -73,6 +74,7 @@ static bool stop(srv_parts *parts, const siginfo_t *reason)
 
 static void close_parts(srv_parts *parts)
 {
+    srv_present_close(parts);
     st_pool_free(parts->pool);
     st_pool_free(parts->makers);
     st_parallel_free(parts->parallel);
@@ -102,7 +104,8 @@ int srv_daemon_run(const srv_started *started)
     srv_tell_budget(parts.log, started->config, &limit);
 
     bool open = srv_open_tokens(&parts) && srv_open_certificates(&parts) &&
-                srv_open_store(&parts) && srv_open_service(&parts) && srv_open_http(&parts);
+                srv_open_store(&parts) && srv_open_service(&parts) && srv_present_open(&parts) &&
+                srv_open_http(&parts);
     if (open) {
         siginfo_t reason;
         srv_watch_announce(&parts);

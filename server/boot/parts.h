@@ -33,6 +33,9 @@ typedef struct srv_parts {
     api_job_table *job_table;
     srv_backups backups;
     api_service *service;
+    /* The thread of present.h; `has_present` says whether it was started. */
+    pthread_t present;
+    bool has_present;
     srv_policy policy;
     char own_host[SRV_ADDRESS_TEXT];
     /* Path of the Unix socket's file, if the daemon listens on a Unix socket. */

@@ -224,6 +224,14 @@ void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length)
     pthread_mutex_unlock(&queue->lock);
 }
 
+void st_queue_nudge(st_queue *queue)
+{
+    pthread_mutex_lock(&queue->lock);
+    queue->nudges++;
+    wake_all(queue);
+    pthread_mutex_unlock(&queue->lock);
+}
+
 uint64_t st_queue_newest(st_queue *queue)
 {
     pthread_mutex_lock(&queue->lock);
@@ -274,7 +282,8 @@ bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most)
     pthread_mutex_lock(&queue->lock);
     bool room = queue->listeners < most;
     if (room) {
-        *listener = (st_listener){.queue = queue, .number = newest_number(queue)};
+        *listener = (st_listener){
+            .queue = queue, .number = newest_number(queue), .nudges = queue->nudges};
         queue->listeners++;
     }
     pthread_mutex_unlock(&queue->lock);
@@ -377,6 +386,9 @@ st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, 
         count(&queue->counts->behind, 1);
     } else if (step == ST_QUEUE_WAIT && queue->lost) {
         step = ST_QUEUE_LOST;
+    } else if (step == ST_QUEUE_WAIT && listener->nudges != queue->nudges) {
+        listener->nudges = queue->nudges;
+        step = ST_QUEUE_NUDGED;
     } else if (step == ST_QUEUE_WAIT) {
         begin_waiting(queue, listener);
     }

@@ -49,6 +49,7 @@ typedef struct st_listener {
     void (*wake)(void *context);
     void *context;
     bool waiting; /* true if the listener is in the list of listeners to wake */
+    uint64_t nudges; /* the number of nudges that the listener knows of */
     struct st_listener *next, *previous;
 } st_listener;
 
@@ -77,6 +78,7 @@ typedef struct st_queue {
     /* true if messages with stamps above `allowed` will never be allowed, because their changes are
      * lost */
     bool lost;
+    uint64_t nudges; /* how often st_queue_nudge was called */
     size_t listeners;
     uint64_t left; /* time when the last listener left; 0: the queue never had a listener */
     st_listener *waiting;
@@ -98,6 +100,9 @@ void st_queue_add(st_queue *queue, st_place place, const char *bytes, size_t len
 /* Adds a message that gets the place (stamp and key) of the newest message. Does nothing after
  * st_queue_end. */
 void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length);
+/* Makes the next read of each listener that has nothing to read return ST_QUEUE_NUDGED once, and
+ * wakes the listeners that wait: something that is no message has changed for them. */
+void st_queue_nudge(st_queue *queue);
 /* Returns the stamp of the newest message. */
 uint64_t st_queue_newest(st_queue *queue);
 /* Allows listeners to read messages with stamps up to `stamp`, and wakes the listeners that wait
@@ -126,6 +131,8 @@ void st_queue_leave(st_listener *listener);
 typedef enum st_queue_result {
     ST_QUEUE_GOT,  /* *got bytes of a message were copied to the reader */
     ST_QUEUE_WAIT, /* the listener has nothing to read now; its function `wake` will be called */
+    /* the listener has nothing to read now, and was nudged (st_queue_nudge) since it last waited */
+    ST_QUEUE_NUDGED,
     ST_QUEUE_BEHIND,
     /* the listener may never read the next message, because the change of that message is lost */
     ST_QUEUE_LOST,
