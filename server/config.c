@@ -66,6 +66,9 @@ const srv_option srv_options[] = {
     {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
      "origin (https://name) whose web pages may read and change meshes; may be repeated, or be a "
      "list with commas"},
+    {"allow-frame", SRV_LIST, MEMBER(frames), "", "ORIGIN", 0, 0,
+     "origin (https://name) whose web pages may show the viewer in a frame; may be repeated, or be "
+     "a list with commas"},
     {"trusted-proxy", SRV_LIST, MEMBER(trusted_proxies), "", "ADDRESS", 0, 0,
      "reverse proxy whose headers Forwarded, X-Forwarded-For and X-Forwarded-Proto are trusted: an "
      "IP address, a network (10.0.0.0/8), or unix for all clients of the Unix socket; may be "
@@ -459,6 +462,34 @@ static bool check_listen(const srv_config *config, srv_address *address, char *m
     return true;
 }
 
+/* Returns true if the text is the origin of a page: http:// or https://, a name or an address, and
+ * perhaps a port. Anything else could add words to the policy of the viewer, where it is written. */
+static bool is_origin(const char *text)
+{
+    static const char allowed[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]";
+    const size_t scheme = strncmp(text, "https://", 8) == 0  ? 8
+                          : strncmp(text, "http://", 7) == 0 ? 7
+                                                             : 0;
+    const char *name = text + scheme;
+    return scheme > 0 && name[0] != '\0' && name[0] != ':' && strlen(text) <= SRV_MAX_ORIGIN &&
+           strspn(name, allowed) == strlen(name);
+}
+
+static bool check_frames(const srv_config *config, char *message, size_t size)
+{
+    for (size_t i = 0; i < config->frames.count; i++) {
+        if (!is_origin(config->frames.items[i])) {
+            snprintf(message, size,
+                     "--allow-frame takes the origin of a page such as https://example.org, not "
+                     "\"%.200s\"",
+                     config->frames.items[i]);
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool check(const srv_config *config, char *message, size_t size)
 {
     srv_address address;
@@ -467,7 +498,7 @@ static bool check(const srv_config *config, char *message, size_t size)
         snprintf(message, size, "--store takes memory or sqlite:DIR, not \"%s\"", config->store);
         return false;
     }
-    if (!check_listen(config, &address, message, size)) {
+    if (!check_listen(config, &address, message, size) || !check_frames(config, message, size)) {
         return false;
     }
     const bool serves = !config->healthcheck && !config->print_config && !config->verify &&

@@ -14,7 +14,8 @@
 #include <stdio.h>
 
 /* The largest number of values that all options of the kind list may get together. */
-enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
+enum { SRV_MAX_ORIGIN = 255 }; /* characters of an origin of --allow-frame */
+enum { SRV_MAX_LISTS = 4 * SRV_MAX_NAMES };
 
 /* The values of the options --log and --log-format, in the order in which the table of options
  * lists the words that these options allow. SRV_LOG_AUTO logs requests unless stderr is a terminal,
@@ -33,6 +34,7 @@ typedef struct srv_config {
     /* Rules for the requests that browsers send; its list of proxies is made from
      * `trusted_proxies`. */
     srv_policy policy;
+    srv_names frames; /* origins whose pages may show the viewer in a frame */
     srv_names trusted_proxies;
     const char *web; /* folder of the page; "": the folder is searched beside the executable */
     /* Where meshes are kept: "memory", or "sqlite:" and a folder; see srv_config_folder. */

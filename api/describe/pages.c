@@ -8,11 +8,11 @@
 #include <string.h>
 
 /* The Content-Security-Policy of the viewer page, which may run its own scripts and connect to its
- * own server only. */
+ * own server only. The names of those that may show it in a frame follow. */
 static const char viewer_policy[] =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
-    "require-trusted-types-for 'script'; trusted-types 'none'";
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; "
+    "require-trusted-types-for 'script'; trusted-types 'none'; frame-ancestors";
 static const char text_policy[] =
     "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -166,6 +166,26 @@ void api_index_get(api_exchange *x)
                           .docs = "/docs"});
 }
 
+/* Sets the policy of a page; only the viewer itself, and not the manual, may be shown in frames. */
+static void set_policy(api_exchange *x)
+{
+    const api_options *options = &x->service->options;
+    const bool framed = options->frame_count > 0 && strcmp(x->request.path, "/") == 0;
+    api_text policy = {0};
+    api_text_add_string(&policy, viewer_policy);
+    for (size_t i = 0; framed && i < options->frame_count; i++) {
+        api_text_add_format(&policy, " %s", options->frames[i]);
+    }
+    api_text_add_string(&policy, framed ? "" : " 'none'");
+    api_text_add_char(&policy, '\0');
+    if (policy.failed) {
+        (void)api_fail_memory(x);
+    } else {
+        api_answer_header(x, "Content-Security-Policy", policy.bytes);
+    }
+    api_text_clear(&policy);
+}
+
 /* Returns the file of the pages that is served under a path, or NULL. */
 static const api_asset *find_asset(const api_exchange *x, const char *path)
 {
@@ -175,7 +195,7 @@ static const api_asset *find_asset(const api_exchange *x, const char *path)
 
 static void put_page_headers(api_exchange *x)
 {
-    api_answer_header(x, "Content-Security-Policy", viewer_policy);
+    set_policy(x);
     api_answer_header(x, "Referrer-Policy", "no-referrer");
 }
 

@@ -168,8 +168,8 @@ static const api_route routes[] = {
      .cost = api_geometry_cost,
      .flags = API_EXPENSIVE | API_LONG,
      .produces = octets,
-     .parameters = {&api_parameter_drawn, &api_parameter_layout},
-     .statuses = {200, 202, 304},
+     .parameters = {&api_parameter_revision, &api_parameter_drawn, &api_parameter_layout},
+     .statuses = {200, 202, 304, 410},
      .summary = "Arrays for drawing a mesh",
      .doc =
          "Little-endian. First a header of 96 bytes: \"HEDG\", u32 version 2, u64 revision, u64 "
@@ -184,7 +184,8 @@ static const api_route routes[] = {
          "numbers, zeros up to a multiple of 16 bytes, and the rows. The client first extends its "
          "arrays with zeros to the numbers of vertices and triangles in the header. A base of 0 "
          "means that all rows are sent and replace the client's arrays: the server may answer so "
-         "at any time, and does if the layout has changed."},
+         "at any time, and does if the layout has changed. The arrays of an earlier `revision` are "
+         "sent as a whole."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/progressive",
      .name = "get_progressive_mesh",

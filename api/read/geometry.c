@@ -4,7 +4,7 @@
  * A slot is the row of a triangle in the array of triangles. The slots of a mesh are computed when
  * they are first needed and are then kept with the mesh; a later request brings them up to date. A
  * few changed rows are written while the mesh is locked for reading; many or all rows are written
- * from a snapshot. */
+ * from a snapshot. The slots of an earlier revision are made for one answer. */
 #include "api/request/handlers.h"
 
 #include "api/read/geometry_rows.h"
@@ -81,6 +81,10 @@ static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, cons
 }
 
 enum { REPRESENTATION = 64 };
+
+/* The layout in answers with an earlier revision. Those of meshes are odd, so a request for the
+ * changes since then is answered with all rows. */
+enum { EARLIER = 2 };
 
 static void name_representation(const he_draw_slots *slots, uint64_t base, char out[REPRESENTATION])
 {
@@ -297,10 +301,38 @@ bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
     (void)out; /* the cost is not estimated: it is not known before the kept slots are examined */
+    if (api_param_text(x, "since") != NULL && api_param_text(x, "revision") != NULL) {
+        return api_fail(x, API_BAD_PARAMETER,
+                        "\"since\" cannot be given with \"revision\": the arrays of an earlier "
+                        "revision are sent as a whole");
+    }
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
         return api_fail(x, API_BAD_PARAMETER, "\"since\" and \"layout\" must be given together");
     }
     return !api_wants_job(x, 0) || name_kept(x);
+}
+
+/* Answers with all rows of an earlier revision, whose copy the exchange has. */
+static void answer_earlier(api_exchange *x, geometry *g)
+{
+    he_error err = {0};
+    he_draw_slots *slots = NULL;
+    if (api_not_modified(x, "geometry-earlier")) {
+        free_geometry(g);
+        return;
+    }
+    x->keeps = true;
+    he_status status = he_draw_slots_new(x->content, EARLIER, x->info.revision, &slots, &err);
+    if (status == HE_OK) {
+        status = api_rows_take_all(&g->rows, slots, &err);
+        he_draw_slots_free(slots);
+    }
+    if (status == HE_OK) {
+        answer_stream(x, g);
+    } else {
+        free_geometry(g);
+        api_fail_core(x, &err);
+    }
 }
 
 void api_geometry_get(api_exchange *x)
@@ -311,6 +343,10 @@ void api_geometry_get(api_exchange *x)
         return;
     }
     g->x = x;
+    if (x->snapshot != NULL) {
+        answer_earlier(x, g);
+        return;
+    }
     geometry_step outcome = answer_or_take(g);
     if (outcome == TAKEN) {
         answer_stream(x, g);

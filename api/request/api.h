@@ -116,6 +116,9 @@ typedef struct api_options {
      * the service, or returns NULL. */
     const api_asset *(*asset)(void *context, const char *path);
     void *asset_context;
+    /* The origins whose pages may show the viewer in a frame. */
+    const char *const *frames;
+    size_t frame_count;
     /* Returns true if /readyz shall answer that the server is ready; NULL: always. */
     bool (*ready)(void *context);
     /* Returns true if memory is short and no mesh can be evicted; /readyz then answers that the

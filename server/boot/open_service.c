@@ -74,6 +74,8 @@ static bool open_service(srv_parts *parts)
                             .version = SRV_VERSION,
                             .asset = srv_assets_find,
                             .asset_context = parts->assets,
+                            .frames = parts->config->frames.items,
+                            .frame_count = parts->config->frames.count,
                             .ready = is_ready,
                             .is_full = is_full,
                             .ready_context = parts,

@@ -129,6 +129,7 @@ static const struct {
 } variables[] = {{"{id}", "0"},
                  {"{domain}", "faces"},
                  {"{name}", "a"},
+                 {"{revision}", "2"},
                  {"{asset}", "x.js"},
                  {"{code}", "closed_fan"}};
 
@@ -165,6 +166,8 @@ static const char *body_of(const api_route *route)
                   {"replace_attribute", "{\"type\":\"bool\"}"},
                   {"update_attribute", "{\"ids\":\"all\",\"value\":true}"},
                   {"update_mesh", "{\"name\":\"new\"}"},
+                  {"name_revision", "{\"name\":\"new\"}"},
+                  {"put_presence", "{\"client\":\"gate\"}"},
                   {"replace_mesh", "{\"shape\":\"cube\"}"},
                   {"create_mesh", "{\"shape\":\"cube\"}"}};
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {

@@ -518,6 +518,28 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
     bench_free(b);
 }
 
+static void a_name_of_a_revision_is_told(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    put_mesh(b);
+    assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}"),
+                     200);
+    listener *l = stream_open(b, "/v1/meshes/m/events", "", NULL);
+    assert_int_equal(send(b, "PATCH", "/v1/meshes/m/edits/2", "{\"name\":\"poked\"}"), 200);
+    assert_string_equal(stream_next(l, false), "moment");
+    assert_int_equal(stream_number(l, "revision"), 2);
+    assert_string_equal(stream_text(l, "name"), "poked");
+    /* A name that is the present one already is no change. */
+    assert_int_equal(send(b, "PATCH", "/v1/meshes/m/edits/2", "{\"name\":\"poked\"}"), 200);
+    assert_int_equal(send(b, "PATCH", "/v1/meshes/m/edits/2", "{\"name\":null}"), 200);
+    assert_string_equal(stream_next(l, false), "moment");
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(l->data, "name")));
+    assert_string_equal(stream_next(l, false), "");
+    stream_close(l);
+    bench_free(b);
+}
+
 static void too_many_listeners_are_503(void **state)
 {
     (void)state;
@@ -638,6 +660,7 @@ int main(void)
         cmocka_unit_test(who_is_far_behind_is_told_from_the_history),
         cmocka_unit_test(what_cannot_be_told_is_one_resync),
         cmocka_unit_test(a_slow_listener_is_told_to_fetch_anew),
+        cmocka_unit_test(a_name_of_a_revision_is_told),
         cmocka_unit_test(too_many_listeners_are_503),
         cmocka_unit_test(a_failed_allocation_loses_no_listener),
         cmocka_unit_test(a_failed_allocation_in_the_history_is_a_resync),

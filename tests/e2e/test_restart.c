@@ -129,6 +129,10 @@ static void make_history(void)
     send("POST", "/v1/meshes/m/undo", "{\"steps\":3}", 200);
     send("POST", "/v1/meshes/m/redo", "{}", 200);
     send("PATCH", "/v1/meshes/m", "{\"name\":\"second\"}", 200);
+    send("PATCH", "/v1/meshes/m/edits/2", "{\"name\":\"poked\"}", 200);
+    send("PATCH", "/v1/meshes/m/edits/5", "{\"name\":\"for a while\"}", 200);
+    send("PATCH", "/v1/meshes/m/edits/8", "{\"name\":\"an undo\"}", 200);
+    send("PATCH", "/v1/meshes/m/edits/5", "{\"name\":null}", 200);
     send("DELETE", "/v1/meshes/gone", "", 204);
     send("PUT", "/v1/meshes/n?name=replaced", "{\"shape\":\"tetrahedron\"}", 200);
     send("POST", "/v1/meshes/n/edits", "{\"op\":\"face_delete\",\"face\":0}", 200);

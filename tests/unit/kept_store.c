@@ -49,6 +49,8 @@ static void expect_entries(st_mesh *was, st_mesh *is)
         assert_int_equal(x.inverts, y.inverts);
         assert_int_equal(x.action, y.action);
         assert_string_equal(x.ops, y.ops);
+        assert_string_equal(x.name, y.name);
+        assert_int_equal(x.state, y.state);
         assert_int_equal(x.undoable, y.undoable);
         assert_true(x.time == y.time);
         assert_memory_equal(&x.tally, &y.tally, sizeof x.tally);

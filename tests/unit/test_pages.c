@@ -79,6 +79,7 @@ static void pages_carry_a_strict_policy(void **state)
         assert_non_null(policy);
         assert_ptr_equal(strstr(policy, "default-src 'none'"), policy);
         assert_null(strstr(policy, "unsafe"));
+        assert_non_null(strstr(policy, "frame-ancestors 'none'"));
         api_free(x);
     }
 }

@@ -155,6 +155,39 @@ static void what_is_beside_a_message_comes_after_it(void **state)
     st_queue_leave(&late);
 }
 
+static void a_nudge_is_noticed_once_and_after_all_messages(void **state)
+{
+    (void)state;
+    st_listener listener, late;
+    unsigned wakes = 0, late_wakes = 0;
+    join(&listener, &wakes);
+    assert_step(&listener, ST_QUEUE_WAIT);
+    st_queue_nudge(&feed);
+    st_queue_nudge(&feed);
+    assert_int_equal(wakes, 1);
+    assert_step(&listener, ST_QUEUE_NUDGED);
+    assert_step(&listener, ST_QUEUE_WAIT);
+    /* A listener that does not wait is not woken, but learns of the nudge when it would wait. */
+    st_queue_allow(&feed, 7);
+    add(8, 4);
+    st_queue_allow(&feed, 8);
+    assert_int_equal(wakes, 2);
+    st_queue_nudge(&feed);
+    assert_int_equal(wakes, 2);
+    char text[8];
+    size_t got;
+    assert_int_equal(st_queue_read(&listener, text, sizeof text, &got), ST_QUEUE_GOT);
+    assert_step(&listener, ST_QUEUE_NUDGED);
+    assert_step(&listener, ST_QUEUE_WAIT);
+    join(&late, &late_wakes);
+    assert_step(&late, ST_QUEUE_WAIT);
+    st_queue_end(&feed);
+    st_queue_nudge(&feed);
+    assert_step(&listener, ST_QUEUE_ENDED);
+    st_queue_leave(&listener);
+    st_queue_leave(&late);
+}
+
 static void who_is_slow_is_behind_once(void **state)
 {
     (void)state;
@@ -384,6 +417,7 @@ int main(void)
         TEST(everybody_reads_everything_once),
         TEST(what_is_not_allowed_is_not_read),
         TEST(what_is_beside_a_message_comes_after_it),
+        TEST(a_nudge_is_noticed_once_and_after_all_messages),
         TEST(who_is_slow_is_behind_once),
         TEST(bytes_are_bounded_too),
         TEST(a_listener_goes_back_to_a_key),

@@ -288,6 +288,24 @@ static void a_file_weighs_less_than_variables_and_flags(void **state)
     variables = NULL;
 }
 
+static void a_frame_is_allowed_by_an_origin_and_nothing_else(void **state)
+{
+    (void)state;
+    srv_config config;
+    assert_true(READ(&config, "--allow-frame", "https://a.example,http://localhost:8000",
+                     "--allow-frame=https://[::1]:9"));
+    assert_int_equal(config.frames.count, 3);
+    assert_string_equal(config.frames.items[2], "https://[::1]:9");
+    srv_config_clear(&config);
+    static const char *const wrong[] = {"a.example", "https://",    "https://:8",  "ftp://a",
+                                        "https://a/", "https://a b", "https://a;x", "https://*",
+                                        "'self'"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        assert_false(READ(&config, "--allow-frame", wrong[i]));
+        assert_non_null(strstr(message, "--allow-frame takes the origin"));
+    }
+}
+
 static void a_line_that_is_wrong_is_named(void **state)
 {
     (void)state;
@@ -402,6 +420,7 @@ int main(void)
         cmocka_unit_test(printed_settings_read_back_the_same_and_help_names_them_all),
         cmocka_unit_test(addresses_are_parsed_and_shown_or_refused),
         cmocka_unit_test(a_file_weighs_less_than_variables_and_flags),
+        cmocka_unit_test(a_frame_is_allowed_by_an_origin_and_nothing_else),
         cmocka_unit_test(a_line_that_is_wrong_is_named),
         cmocka_unit_test(a_choice_is_one_of_its_words),
         cmocka_unit_test(the_format_of_the_log_outlives_a_refusal),

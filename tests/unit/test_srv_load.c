@@ -90,6 +90,21 @@ static void edit(st_mesh *mesh, md_random *random, unsigned serial)
     }
 }
 
+/* Names a random revision, if the history still has its entry and room for the name. */
+static void name_moment(st_mesh *mesh, md_random *random, unsigned serial)
+{
+    char name[ST_MOMENT_NAME + 1];
+    st_write w;
+    assert_non_null(writing_begin(mesh, &w));
+    snprintf(name, sizeof name, "%.*u", (int)md_below(random, ST_MOMENT_NAME), serial);
+    const uint64_t revision = md_from(random, 1, (uint32_t)w.info.revision);
+    if (st_write_moment(&w, revision, md_chance(random, 20) ? "" : name) == ST_OK) {
+        assert_int_equal(st_write_commit(&w, NULL), ST_OK);
+    } else {
+        st_write_abort(&w);
+    }
+}
+
 static void change(st_mesh *mesh, md_random *random, unsigned serial)
 {
     char name[32];
@@ -117,6 +132,10 @@ static void change(st_mesh *mesh, md_random *random, unsigned serial)
     case 8:
     case 9:
         (void)writing_step(mesh, ST_REDO, md_from(random, 1, 3));
+        break;
+    case 10:
+    case 11:
+        name_moment(mesh, random, serial);
         break;
     default:
         edit(mesh, random, serial);

@@ -165,6 +165,11 @@ static void a_mesh_can_be_made_again_from_its_records(void **state)
     st_write_rename(&w, "third");
     assert_int_equal(st_write_commit(&w, NULL), ST_OK);
     assert_null(expect(ST_RECORD_RENAME, false, "", 0)->body);
+    assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
+    assert_int_equal(st_write_moment(&w, w.info.revision, "now"), ST_OK);
+    assert_int_equal(st_write_commit(&w, NULL), ST_OK);
+    assert_null(expect(ST_RECORD_MOMENT, false, "", 0)->body);
+    assert_int_equal(journal.record.named, journal.record.revision);
     assert_int_equal(writing_remove(mesh), ST_OK);
     assert_null(expect(ST_RECORD_REMOVE, false, "", 0)->body);
 }
