@@ -463,7 +463,8 @@ static bool check_listen(const srv_config *config, srv_address *address, char *m
 }
 
 /* Returns true if the text is the origin of a page: http:// or https://, a name or an address, and
- * perhaps a port. Anything else could add words to the policy of the viewer, where it is written. */
+ * perhaps a port. Anything else could add words to the policy of the viewer, where it is written.
+ */
 static bool is_origin(const char *text)
 {
     static const char allowed[] =

@@ -114,8 +114,7 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/attribute_values\"},"
                    "{\"$ref\":\"#/components/schemas/document\"}]}"},
     {"role_name", "{\"type\":\"string\",\"enum\":[\"read\",\"write\",\"admin\",\"metrics\"]}"},
-    {"presence_kind",
-     "{\"type\":\"string\",\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]}"},
+    {"presence_kind", "{\"type\":\"string\",\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]}"},
     {"health_name", "{\"type\":\"string\",\"enum\":[\"alive\",\"ready\"]}"},
     {"memory_name", "{\"type\":\"string\",\"enum\":[\"free\",\"full\"]}"},
     {"store_name", "{\"type\":\"string\",\"enum\":[\"writable\",\"full\"]}"},
@@ -444,7 +443,8 @@ static void write_unions(api_out *out)
 {
     static const char *const walks[] = {"path",          "loop",      "rings",     "breadth_first",
                                         "shortest_path", "edge_loop", "edge_ring", NULL};
-    static const char *const mesh_events[] = {"edit", "metadata", "moment", "presence", "job", "resync", "bye", NULL};
+    static const char *const mesh_events[] = {"edit", "metadata", "moment", "presence",
+                                              "job",  "resync",   "bye",    NULL};
     static const char *const job_events[] = {"job", "bye", NULL};
     api_schema_union(out, "walk", "walk", "walk", walks);
     api_schema_union(out, "walked", "walk", "walked", walks);

@@ -155,8 +155,7 @@ static const api_field selection_fields[] = {
     API_FIELD("count", "count", api_presence, selection.count, .required = true,
               .doc = "How many elements are selected."),
 };
-const api_record api_presence_selection_record =
-    API_RECORD("presence_selection", selection_fields);
+const api_record api_presence_selection_record = API_RECORD("presence_selection", selection_fields);
 
 static const api_field camera_fields[] = {
     API_FIELD("position", "point", api_presence, camera.position, .required = true),

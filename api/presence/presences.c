@@ -128,8 +128,8 @@ static bool is_client(const present *client, const char *id)
     return client != NULL && strcmp(client->presence.client, id) == 0;
 }
 
-/* Notes that a presence of the mesh has changed. Returns true if the listeners of the mesh are to be
- * woken now; otherwise they are woken later, by api_presences_work. */
+/* Notes that a presence of the mesh has changed. Returns true if the listeners of the mesh are to
+ * be woken now; otherwise they are woken later, by api_presences_work. */
 static bool note(api_presences *p, place *mesh, uint64_t now)
 {
     mesh->moment = ++p->moment;
@@ -326,8 +326,7 @@ static uint64_t work_in(api_presences *p, place **bucket, uint64_t now, due list
             list[*count].incarnation = mesh->incarnation;
             memcpy(list[(*count)++].id, mesh->id, sizeof mesh->id);
         }
-        if (mesh->count == 0 && !mesh->due && !wakes &&
-            now >= mesh->woken + API_PRESENCE_MICROS) {
+        if (mesh->count == 0 && !mesh->due && !wakes && now >= mesh->woken + API_PRESENCE_MICROS) {
             *at = mesh->next;
             p->meshes--;
             he_mem_free(mesh);

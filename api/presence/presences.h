@@ -44,7 +44,8 @@ void api_presences_leave(api_presences *presences, const st_mesh_info *mesh, con
 void api_presences_write(api_presences *presences, uint64_t incarnation, api_out *out);
 
 /* Appends an event `presence` to `text` if presences of the mesh have changed since the moment
- * *seen, which becomes the present moment. At first, *seen is 0: a listener that has seen nobody. */
+ * *seen, which becomes the present moment. At first, *seen is 0: a listener that has seen nobody.
+ */
 void api_presences_news(api_presences *presences, uint64_t incarnation, uint64_t *seen,
                         api_text *text);
 /* Returns the number of present clients of all meshes. */

@@ -258,8 +258,8 @@ static bool find_mesh(api_exchange *x)
 
 bool api_answer_from_card(api_exchange *x)
 {
-    const bool may = (x->route->flags & API_WRITES) || x->route->reads == API_READS_CARD || x->head ||
-                     x->request.headers[API_HEADER_IF_NONE_MATCH] != NULL;
+    const bool may = (x->route->flags & API_WRITES) || x->route->reads == API_READS_CARD ||
+                     x->head || x->request.headers[API_HEADER_IF_NONE_MATCH] != NULL;
     st_mesh *mesh = NULL;
     st_cold cold;
     if (x->route->cold == NULL || !may) {

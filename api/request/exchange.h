@@ -77,7 +77,7 @@ struct api_exchange {
     bool head;              /* true if the method is HEAD: the server sends no body */
     const char *mesh_id;    /* id of the mesh in the path, well formed; NULL: none */
     he_kind kind; /* kind of element that {domain} in the path names, or that the route is about */
-    uint32_t id;           /* {id} in the path */
+    uint32_t id;  /* {id} in the path */
     uint64_t revision;     /* {revision} in the path */
     const char *code;      /* {code} in the path */
     const char *attribute; /* {name} in the path */

@@ -8,7 +8,8 @@
  *
  * The path of a row is a template of literal segments and variables. {mesh} matches a mesh id, {id}
  * an element id, {domain} one of vertices, halfedges, edges, faces and mesh, {revision} a revision,
- * {name} the name of an attribute, {code} and {job} any segment, and {asset} the rest of the path. */
+ * {name} the name of an attribute, {code} and {job} any segment, and {asset} the rest of the path.
+ */
 #ifndef HE_API_REQUEST_ROUTE_H
 #define HE_API_REQUEST_ROUTE_H
 

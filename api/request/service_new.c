@@ -23,9 +23,9 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
         service->metrics = api_metrics_new(routes.count);
         service->presences = api_presences_new(store);
     }
-    if (service != NULL && !(service->routes != NULL && service->tickets != NULL &&
-                             service->metrics != NULL && service->presences != NULL &&
-                             make_rates(service, options))) {
+    if (service != NULL &&
+        !(service->routes != NULL && service->tickets != NULL && service->metrics != NULL &&
+          service->presences != NULL && make_rates(service, options))) {
         api_service_free(service);
         service = NULL;
     }

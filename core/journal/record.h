@@ -1,10 +1,10 @@
 /* record.h - the data that the store gives to the journal, and gets back from it.
  *
- * A RECORD is one change of one mesh: a revision, a rename, the name of a revision or the removal. A CONTENT is the whole
- * data of a mesh: its elements and attributes. A CARD is a short description of a mesh, without its
- * content. A PIECE is what one step of loading a mesh reads: first parts of its base, a content,
- * then the records after the base in order. A NOTE is stored beside the records: a job, or the key
- * of a request that changed nothing.
+ * A RECORD is one change of one mesh: a revision, a rename, the name of a revision or the removal.
+ * A CONTENT is the whole data of a mesh: its elements and attributes. A CARD is a short description
+ * of a mesh, without its content. A PIECE is what one step of loading a mesh reads: first parts of
+ * its base, a content, then the records after the base in order. A NOTE is stored beside the
+ * records: a job, or the key of a request that changed nothing.
  *
  * Bodies and contents are bytes as core/stored writes them; the journal never reads them. */
 #ifndef HE_JOURNAL_RECORD_H

@@ -231,9 +231,10 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
     if (*c.at == 0 || *c.at > ST_FRAME_VERSION) {
         return *c.at == 0
                    ? he_refuse_at(&c, err, "the record declares a version that no release wrote")
-                   : he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, AT_VERSION,
-                                "the record has version %u, and this release reads up to version %d",
-                                *c.at, ST_FRAME_VERSION);
+                   : he_fail_at(
+                         err, HE_UNSUPPORTED, HE_PLACE_BYTE, AT_VERSION,
+                         "the record has version %u, and this release reads up to version %d",
+                         *c.at, ST_FRAME_VERSION);
     }
     /* The frame is decoded into a local variable, so that *out is unchanged if decoding fails. */
     st_frame frame = {.record = {.ops = ""}};

@@ -21,8 +21,8 @@ static bool has_entry(const st_revision_log *log, uint64_t revision)
 }
 
 /* Returns how many bytes are freed when the entry is dropped after all entries before it. Its step
- * is freed with it if no later entry applied the step and the step cannot be redone; a step that can
- * be redone keeps its entry without the name. */
+ * is freed with it if no later entry applied the step and the step cannot be redone; a step that
+ * can be redone keeps its entry without the name. */
 static size_t freed_with(const st_revision *entry)
 {
     const st_step *step = entry->step;

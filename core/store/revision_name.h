@@ -1,7 +1,7 @@
 /* revision_name.h - names of revisions, which the entries of a revision log keep.
  *
- * A name counts against the undo budget of the log, and goes with the entry when that is dropped. So
- * a revision without an entry has no name: the first revision of a mesh, and dropped ones. */
+ * A name counts against the undo budget of the log, and goes with the entry when that is dropped.
+ * So a revision without an entry has no name: the first revision of a mesh, and dropped ones. */
 #ifndef HE_STORE_REVISION_NAME_H
 #define HE_STORE_REVISION_NAME_H
 

@@ -474,8 +474,8 @@ enum { ST_ENTRY_OPS = 256 };
 typedef struct st_entry {
     uint64_t revision;
     uint64_t inverts; /* the revision that this revision undid or redid; 0 for an edit */
-    /* The newest edit that was not undone at this revision: the mesh has equal contents at revisions
-     * of equal state. */
+    /* The newest edit that was not undone at this revision: the mesh has equal contents at
+     * revisions of equal state. */
     uint64_t state;
     st_action action;
     /* Names of the operations, joined by ','; a long list is cut and ends with "...". */

@@ -126,12 +126,8 @@ static const char *code_of(const bench_reply *r)
 
 static const struct {
     const char *name, *value;
-} variables[] = {{"{id}", "0"},
-                 {"{domain}", "faces"},
-                 {"{name}", "a"},
-                 {"{revision}", "2"},
-                 {"{asset}", "x.js"},
-                 {"{code}", "closed_fan"}};
+} variables[] = {{"{id}", "0"},       {"{domain}", "faces"}, {"{name}", "a"},
+                 {"{revision}", "2"}, {"{asset}", "x.js"},   {"{code}", "closed_fan"}};
 
 static void replace(char text[TARGET], const char *what, const char *by)
 {

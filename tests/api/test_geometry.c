@@ -225,15 +225,15 @@ static void an_undo_brings_back_the_same_rows(void **state)
     bench_free(b);
 }
 
-/* The arrays of an earlier revision are those that were sent at that revision, but for the number of
- * their layout. */
+/* The arrays of an earlier revision are those that were sent at that revision, but for the number
+ * of their layout. */
 static void an_earlier_revision_is_sent_as_it_was(void **state)
 {
     (void)state;
     enum { EDITS = 5, AT_LAYOUT = 80 };
     api_bench *b = bench_new();
-    bench_done(bench_expect(
-        201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     char *was[EDITS + 1] = {NULL};
     size_t length[EDITS + 1];
     for (unsigned i = 0; i <= EDITS; i++) {
@@ -261,8 +261,7 @@ static void an_earlier_revision_is_sent_as_it_was(void **state)
         }
         assert_int_equal(u32_at(r.body + 44), u32_at(was[i] + 44));
         assert_memory_equal(r.body + 48, was[i] + 48, 32);
-        assert_memory_equal(r.body + HEADER, was[i] + HEADER,
-                            ROW * (size_t)u32_at(was[i] + 40));
+        assert_memory_equal(r.body + HEADER, was[i] + HEADER, ROW * (size_t)u32_at(was[i] + 40));
         bench_done(r);
         const char *const headers[] = {"If-None-Match", tag, NULL};
         bench_done(bench_expect(304, bench_send(b, "GET", target, headers, NULL)));

@@ -40,8 +40,8 @@ static uint64_t pass(api_bench *b, uint64_t micros)
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
-    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                            "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     return b;
 }
 
@@ -66,10 +66,12 @@ static void expect_news(listener *l, const char *clients, const char *faces)
     char ids[400] = "", selected[400] = "";
     const cJSON *item;
     assert_string_equal(stream_next(l, false), "presence");
-    cJSON_ArrayForEach (item, cJSON_GetObjectItem(l->data, "clients")) {
-        strcat(strcat(ids, item->valuestring), ",");
+    cJSON_ArrayForEach(item, cJSON_GetObjectItem(l->data, "clients"))
+    {
+        snprintf(ids + strlen(ids), sizeof ids - strlen(ids), "%s,", item->valuestring);
     }
-    cJSON_ArrayForEach (item, cJSON_GetObjectItem(l->data, "changed")) {
+    cJSON_ArrayForEach(item, cJSON_GetObjectItem(l->data, "changed"))
+    {
         const cJSON *list = cJSON_GetObjectItem(cJSON_GetObjectItem(item, "selection"), "ids");
         snprintf(selected + strlen(selected), 20, "%d,", cJSON_GetArrayItem(list, 0)->valueint);
     }
@@ -153,8 +155,8 @@ static void the_mesh_and_the_journal_know_nothing_of_it(void **state)
     kept_journal *journal = kept_journal_new();
     const st_journal lent = kept_journal_open(journal);
     api_bench *b = bench_new_over(&lent);
-    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                            "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     bench_reply before = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     const kept_facts kept = kept_journal_facts(journal, "m");
     show(b, "ada", 1);
@@ -169,8 +171,8 @@ static void the_mesh_and_the_journal_know_nothing_of_it(void **state)
     /* Another mesh with the same id has other clients. */
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     bench_done(bench_expect(404, bench_get(b, PATH)));
-    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                            "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     bench_reply none = bench_expect(200, bench_get(b, PATH));
     assert_string_equal(none.body, "{\"clients\":[]}");
     bench_done(none);
@@ -193,8 +195,7 @@ static void what_a_client_shows_is_listed(void **state)
     bench_done(r);
     bench_done(bench_expect(200, put(b, "{\"client\":\"b\",\"selection\":null,\"camera\":null}")));
     r = bench_expect(200, bench_get(b, PATH));
-    snprintf(expected, sizeof expected,
-             "{\"clients\":[%s,{\"client\":\"b\",\"name\":\"\"}]}", all);
+    snprintf(expected, sizeof expected, "{\"clients\":[%s,{\"client\":\"b\",\"name\":\"\"}]}", all);
     assert_string_equal(r.body, expected);
     bench_done(r);
     bench_free(b);
@@ -218,12 +219,13 @@ static void what_is_wrong_is_refused_and_named(void **state)
         {"{\"client\":\"a\",\"selection\":{\"ids\":[]}}", 400, "kind"},
         {"{\"client\":\"a\",\"selection\":{\"kind\":\"face\"}}", 400, "ids"},
         {"{\"client\":\"a\",\"selection\":{\"kind\":\"mesh\",\"ids\":[]}}", 400, "/selection/kind"},
-        {"{\"client\":\"a\",\"selection\":{\"kind\":\"face\",\"ids\":[-1]}}", 400, "/selection/ids/0"},
+        {"{\"client\":\"a\",\"selection\":{\"kind\":\"face\",\"ids\":[-1]}}", 400,
+         "/selection/ids/0"},
         {"{\"client\":\"a\",\"selection\":{\"kind\":\"face\",\"ids\":[1,2],\"count\":1}}", 400,
          "/selection/count"},
         {"{\"client\":\"a\",\"camera\":{\"position\":[0,0,0],\"target\":[0,0,0]}}", 400, "up"},
-        {"{\"client\":\"a\",\"camera\":{\"position\":[0,0],\"target\":[0,0,0],\"up\":[0,0,1]}}", 400,
-         "/camera/position"},
+        {"{\"client\":\"a\",\"camera\":{\"position\":[0,0],\"target\":[0,0,0],\"up\":[0,0,1]}}",
+         400, "/camera/position"},
         {"{\"client\":\"a\",\"leaves\":1}", 400, "/leaves"},
     };
     api_bench *b = begin();
@@ -234,14 +236,15 @@ static void what_is_wrong_is_refused_and_named(void **state)
         }
         bench_done(r);
     }
-    char large[API_MAX_PRESENCE + 100], many[4 * API_PRESENCE_IDS + 100] = "";
+    char large[API_MAX_PRESENCE + 100], many[4 * API_PRESENCE_IDS + 100];
     snprintf(large, sizeof large, "{\"client\":\"a\"%*s}", API_MAX_PRESENCE, "");
     bench_done(bench_expect(413, put(b, large)));
-    snprintf(many, sizeof many, "{\"client\":\"a\",\"selection\":{\"kind\":\"face\",\"ids\":[0");
+    int used = snprintf(many, sizeof many,
+                        "{\"client\":\"a\",\"selection\":{\"kind\":\"face\",\"ids\":[0");
     for (unsigned i = 0; i < API_PRESENCE_IDS; i++) {
-        strcat(many, ",0");
+        used += snprintf(many + used, sizeof many - (size_t)used, ",0");
     }
-    strcat(many, "]}}");
+    snprintf(many + used, sizeof many - (size_t)used, "]}}");
     bench_done(bench_expect(400, put(b, many)));
     bench_reply none = bench_expect(200, bench_get(b, PATH));
     assert_string_equal(none.body, "{\"clients\":[]}");
@@ -274,13 +277,13 @@ static void so_many_clients_may_be_there(void **state)
             total++;
         }
     }
-    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/last", NULL,
-                                            "{\"shape\":\"cube\"}")));
-    bench_done(bench_expect(503, bench_send(b, "PUT", "/v1/meshes/last/presence", NULL,
-                                            "{\"client\":\"a\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/last", NULL, "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(
+        503, bench_send(b, "PUT", "/v1/meshes/last/presence", NULL, "{\"client\":\"a\"}")));
     (void)pass(b, (uint64_t)API_PRESENCE_SECONDS * 1000000);
-    bench_done(bench_expect(200, bench_send(b, "PUT", "/v1/meshes/last/presence", NULL,
-                                            "{\"client\":\"a\"}")));
+    bench_done(bench_expect(
+        200, bench_send(b, "PUT", "/v1/meshes/last/presence", NULL, "{\"client\":\"a\"}")));
     bench_free(b);
 }
 
@@ -289,8 +292,8 @@ static void with_tokens_the_name_is_the_tokens(void **state)
     (void)state;
     api_bench *b = bench_new_guarded("alice admin " TEST "\nbob read " PRUEBA "\n");
     bench_use_token(b, "test");
-    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL,
-                                            "{\"shape\":\"cube\"}")));
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     bench_done(bench_expect(200, put(b, "{\"client\":\"a\",\"name\":\"bob\"}")));
     bench_use_token(b, "prueba");
     bench_reply r = bench_expect(200, put(b, "{\"client\":\"b\",\"name\":\"alice\"}"));

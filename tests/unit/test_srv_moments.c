@@ -154,7 +154,9 @@ static void names_count_and_go_with_their_entries(void **state)
         (void)st_read_card(mesh, &info);
         const uint64_t back = md_below(&random, 120);
         const uint64_t revision = info.revision > back ? info.revision - back : 1;
-        snprintf(text, sizeof text, "%0*u", 1 + (int)md_below(&random, ST_MOMENT_NAME), i);
+        const size_t length = 1 + md_below(&random, ST_MOMENT_NAME);
+        memset(text, 'a' + (int)(i % 26), length);
+        text[length] = '\0';
         const bool was = find(mesh, revision, &entry);
         const uint64_t bytes = bytes_of(mesh);
         const st_status status = name(mesh, revision, text);

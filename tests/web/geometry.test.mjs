@@ -23,7 +23,10 @@ import {
     trianglesOfFace,
     unpack,
 } from '../../web/src/geometry/geometry.js';
+import { changedFaces, meanOf, placementOf, shapeOfFaces } from '../../web/src/geometry/changed.js';
 import { formatLink, parseLink } from '../../web/src/open/link.js';
+import { Others } from '../../web/src/open/others.js';
+import { Share } from '../../web/src/open/share.js';
 import { choose, readSquare } from '../../web/src/geometry/pick.js';
 import {
     distanceToPoint,
@@ -225,10 +228,17 @@ test('a link says what is shown and is read back', () => {
     const camera = [1.5, -2, 0.000001, 0, 0, 0.123456];
     for (const [shown, text] of [
         [
-            { mesh: 'm1', kind: 'face', id: 3, camera },
+            { mesh: 'm1', kind: 'face', ids: [3], camera, parts: {} },
             '#mesh=m1&face=3&camera=1.5,-2,0.000001,0,0,0.123456',
         ],
-        [{ mesh: 'a&b=c', kind: null, id: null, camera: null }, '#mesh=a%26b%3Dc'],
+        [
+            { mesh: 'm1', kind: 'edge', ids: [3, 0], camera: null, parts: { look: 'a,b&c' } },
+            '#mesh=m1&edge=3,0&look=a,b%26c',
+        ],
+        [
+            { mesh: 'a&b=c', kind: null, ids: [], camera: null, parts: {} },
+            '#mesh=a%26b%3Dc',
+        ],
     ]) {
         assert.equal(formatLink(shown), text);
         assert.deepEqual(parseLink(text), shown);
@@ -236,11 +246,84 @@ test('a link says what is shown and is read back', () => {
 });
 
 test('what a link says wrongly is passed over', () => {
-    const nothing = { mesh: null, kind: null, id: null, camera: null };
+    const nothing = { mesh: null, kind: null, ids: [], camera: null, parts: {} };
     for (const text of ['', '#', '#face=-1', '#vertex=1e3', '#camera=1,2,3', '#camera=1,2,3,4,5,x',
-        '#camera=1,2,,4,5,6', '#edge=12345678901', '#%%%']) {
+        '#camera=1,2,,4,5,6', '#edge=12345678901', '#face=1,,2', '#face=1,']) {
         assert.deepEqual(parseLink(text), nothing, text);
     }
+});
+
+test('registered parts of the page join a link', async () => {
+    const share = new Share();
+    let look = 'flat';
+    const seen = [];
+    share.register('look', { get: () => look, set: (text) => seen.push(text) });
+    share.register('colour', { get: () => null, set: (text) => seen.push(text) });
+    assert.deepEqual(share.parts, { look: 'flat' });
+    await share.show({ colour: 'area', other: 'x' });
+    assert.deepEqual(seen, [null, 'area']);
+    look = null;
+    assert.deepEqual(share.parts, {});
+});
+
+// --- changes ---
+
+// Returns the arrays of two triangles with a common edge; `y` moves a vertex.
+function pairOf({ y = 0, faces = [0, 1], scale = 1 } = {}) {
+    const points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1 + y, 0]].map((point) =>
+        point.map((value) => value * scale),
+    );
+    const all = [[0, 1, 2, (0x20000000 | 0x40000000 | faces[0]) >>> 0], [1, 3, 2, (0x60000000 | faces[1]) >>> 0]];
+    const triangles = Uint32Array.from(all.flat());
+    const firstOf = new Uint32Array(8);
+    faces.forEach((face, i) => {
+        firstOf[face] = i + 1;
+    });
+    return {
+        vertices: Float32Array.from(points.flatMap((point) => [...point, 1])),
+        triangles,
+        triangleCount: 2,
+        firstOf,
+        frame: { origin: [0, 0, 0], scale },
+    };
+}
+
+test('faces that differ between two revisions are found', () => {
+    const none = { gone: [], made: [], moved: [] };
+    assert.deepEqual(changedFaces(pairOf(), pairOf()), none);
+    assert.deepEqual(changedFaces(pairOf(), pairOf({ scale: 0.25 })), none);
+    assert.deepEqual(changedFaces(pairOf(), pairOf({ y: 0.5 })), { ...none, moved: [1] });
+    assert.deepEqual(changedFaces(pairOf(), pairOf({ faces: [0, 5] })), {
+        gone: [1],
+        made: [5],
+        moved: [],
+    });
+});
+
+test('view coordinates of one revision are placed in those of another', () => {
+    const from = { frame: { origin: [1, 2, 3], scale: 2 } };
+    const to = { frame: { origin: [0, 0, 1], scale: 0.5 } };
+    const { scale, offset } = placementOf(from, to);
+    // The point (3, 2, 4) of the mesh is (4, 0, 2) in the first and (1.5, 1, 1.5) in the second.
+    assert.deepEqual([4, 0, 2].map((value, i) => value * scale + offset[i]), [1.5, 1, 1.5]);
+});
+
+test('the shape of a face is its triangles and its edges', () => {
+    const { triangles, lines } = shapeOfFaces(pairOf(), [1]);
+    assert.deepEqual([...triangles], [1, 0, 0, 1, 1, 0, 0, 1, 0]);
+    assert.equal(lines.length, 2 * 2 * 3);
+    assert.deepEqual(meanOf([0, 0, 0, 2, 4, 6]), [1, 2, 3]);
+    assert.equal(meanOf([]), null);
+});
+
+test('other clients come, change and go as events tell', () => {
+    const others = new Others();
+    others.note({ clients: ['a', 'b'], changed: [{ client: 'b', name: 'B' }, { client: 'a', name: 'A' }] });
+    others.note({ clients: ['b', 'me'], changed: [{ client: 'me', name: '' }, { client: 'b', name: 'C' }] });
+    const [only, ...rest] = others.besides('me');
+    assert.deepEqual(rest, []);
+    assert.equal(only.name, 'C');
+    assert.match(only.color, /^#[0-9a-f]{6}$/);
 });
 
 // --- picking ---

@@ -1,6 +1,7 @@
 // main.js - builds the page: makes the session, the panels and the 3D view, and connects them.
 
 import { Address } from './open/address.js';
+import { Share } from './open/share.js';
 import * as api from './wire/api.js';
 import { isReady, showName, showState } from './stage/bar.js';
 import { Colouring } from './colour/colouring.js';
@@ -33,8 +34,15 @@ import { Stage } from './stage/stage.js';
 import { Guide } from './teach/guide.js';
 import { Offering } from './teach/offering.js';
 import { Statistics } from './panels/statistics.js';
+import { Time } from './time/time.js';
 import { Toasts } from './kit/toast.js';
 import { onUnit } from './kit/units.js';
+import { embed, isEmbedded } from './together/embed.js';
+import { Flash } from './together/flash.js';
+import { People } from './together/people.js';
+import { Presence } from './together/presence.js';
+import { Selections } from './together/selections.js';
+import { unpack } from './geometry/geometry.js';
 import { Uploads } from './meshes/upload.js';
 import { Work } from './kit/work.js';
 
@@ -80,6 +88,9 @@ const history = new History(
     {
         readPage: (cursor) => api.getHistory(session.mesh, cursor),
         onUndo: (revision) => session.undo(revision).catch(fail),
+        onReturn: (entry) => session.returnTo(entry).catch(fail),
+        onLook: (revision) => time.look(revision),
+        onName: (revision, name) => session.nameRevision(revision, name),
         onError: fail,
     },
 );
@@ -156,10 +167,14 @@ const stage = new Stage(
         onMode: (kind) => {
             byId('goto-kind').value = kind;
         },
-        onRest: () => address.write(),
+        onRest: () => {
+            address.write();
+            presence.soon();
+        },
         onFrame: () => {
             look.frameDrawn();
             measuring.place();
+            selections.place();
         },
         onSlow: () => look.slow(),
         onBroken: (reason) => look.broken(reason),
@@ -294,7 +309,59 @@ const guide = new Guide(
     session,
     { onMade: openNew, onRun: (operations) => session.run(operations), onError: fail },
 );
-const address = new Address(session, stage);
+const share = new Share();
+const address = new Address(session, stage, share);
+const presence = new Presence(session, { camera: () => stage.camera, onChange: showPeople });
+const selections = new Selections(byId('others'), stage, fail);
+const flash = new Flash(stage);
+const people = new People(
+    {
+        section: byId('people-section'),
+        list: byId('people'),
+        said: byId('people-said'),
+        name: byId('own-name'),
+        label: byId('own-name-label'),
+    },
+    {
+        onLook: ({ camera }) => {
+            stage.camera = [...camera.position, ...camera.target];
+        },
+        onName: (name) => {
+            presence.name = name;
+            presence.soon();
+        },
+    },
+);
+presence.name = people.name;
+const time = new Time(
+    {
+        box: byId('time'),
+        slider: byId('time-slider'),
+        at: byId('time-at'),
+        note: byId('past-note'),
+        said: byId('past-said'),
+        compare: byId('past-compare'),
+        wipe: byId('past-wipe'),
+        line: byId('wiper'),
+        undo: byId('past-undo'),
+        done: byId('past-done'),
+    },
+    stage,
+    {
+        read: async (mesh, revision, signal) =>
+            unpack(await api.getEarlierGeometry(mesh, revision, signal)),
+        label,
+        onChange: () => {
+            if (time.isOn) {
+                editing.stopPicking();
+                endRefining();
+            }
+            showWhatMayBeDone();
+        },
+        onUndo: (revision) => session.undo(revision).catch(fail),
+        onError: fail,
+    },
+);
 const refining = new Refining(
     {
         button: byId('progressive'),
@@ -338,10 +405,14 @@ function update(what, change) {
         stage.setBoundary(session.shown.boundary);
         showFacts();
     }
-    if (isChanged) {
+    if (isChanged || what === 'history') {
         history.show(session.shown.history);
+    }
+    if (isChanged) {
         comparing.forget();
     }
+    time.follow(what, session.shown);
+    followOthers(what, change);
     if (isNew || what === 'name') {
         showName(session.shown);
         list.update(session.shown.summary);
@@ -381,6 +452,48 @@ onUnit(() => {
     }
 });
 
+// Shows what other clients do, and this page to them.
+function followOthers(what, change) {
+    const isChanged = what === 'mesh' || what === 'content' || what === 'change';
+    if (what === 'mesh') {
+        flash.reset();
+    }
+    if (what === 'told') {
+        flash.note(change);
+    }
+    flash.follow(session);
+    if (isChanged || what === 'others') {
+        showPeople();
+        selections.show(session.shown, session.others.besides(presence.client));
+    }
+    if (!isEmbedded && (isChanged || what === 'selection')) {
+        presence.soon();
+    }
+}
+
+function showPeople() {
+    if (session.mesh !== null) {
+        const others = session.others.besides(presence.client);
+        people.show(others, signIn.name, presence.isRefused);
+    }
+}
+
+async function copyLink() {
+    await navigator.clipboard.writeText(address.link);
+    toasts.tell('Link copied', 'It shows this mesh as you see it now.');
+}
+
+// Shows the link itself, because the browser does not let the page copy it.
+function tellLink() {
+    toasts.tell('Copy this link', address.link);
+}
+
+function endRefining() {
+    if (refining.isWanted) {
+        refining.end();
+    }
+}
+
 // Returns a label that says what the next frame will show.
 function label() {
     const { mesh, shown: content, selection } = session;
@@ -395,6 +508,7 @@ function label() {
               selection: selection.name,
               materials: session.materials.revision,
               colour: colouring.label,
+              past: time.revision ?? undefined,
           };
 }
 
@@ -443,7 +557,7 @@ function showFacts() {
 }
 
 function showWhatMayBeDone() {
-    const ready = isReady(session, signIn.mayEdit) && !refining.isOn;
+    const ready = isReady(session, signIn.mayEdit) && !refining.isOn && !time.isOn;
     showState(session, ready, stage.isThere);
     editing.setEnabled(ready);
     measuring.setEnabled(session.mesh !== null && !refining.isOn);
@@ -577,6 +691,7 @@ byId('keys').append(...keyList());
 byId('help-button').addEventListener('click', () => byId('help').showModal());
 byId('help-close').addEventListener('click', () => byId('help').close());
 byId('screenshot').addEventListener('click', () => saveScreenshot().catch(fail));
+byId('share').addEventListener('click', () => copyLink().catch(tellLink));
 byId('export').addEventListener('click', () => askExport(session.shown, toasts).catch(fail));
 byId('goto').addEventListener('submit', (event) => goTo(event).catch(fail));
 byId('mesh-menu').addEventListener('click', () => {
@@ -607,6 +722,9 @@ new Palette({
     operations: () => (signIn.mayEdit && session.mesh !== null ? editing.operations : []),
     onOpen: (name) => editing.openForm(name),
 });
+if (isEmbedded) {
+    embed(() => address.link);
+}
 showWhatMayBeDone();
 inspector.show(session.selection);
 api.getOperations()

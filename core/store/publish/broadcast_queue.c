@@ -282,8 +282,8 @@ bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most)
     pthread_mutex_lock(&queue->lock);
     bool room = queue->listeners < most;
     if (room) {
-        *listener = (st_listener){
-            .queue = queue, .number = newest_number(queue), .nudges = queue->nudges};
+        *listener =
+            (st_listener){.queue = queue, .number = newest_number(queue), .nudges = queue->nudges};
         queue->listeners++;
     }
     pthread_mutex_unlock(&queue->lock);

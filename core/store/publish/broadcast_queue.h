@@ -48,7 +48,7 @@ typedef struct st_listener {
     size_t sent;            /* bytes of `message` that were read */
     void (*wake)(void *context);
     void *context;
-    bool waiting; /* true if the listener is in the list of listeners to wake */
+    bool waiting;    /* true if the listener is in the list of listeners to wake */
     uint64_t nudges; /* the number of nudges that the listener knows of */
     struct st_listener *next, *previous;
 } st_listener;

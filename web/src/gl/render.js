@@ -8,6 +8,8 @@
 //   rulers.js    lines that measure
 //   many.js      a selection of many elements
 //   ids.js       which element is visible at a pixel
+//   tints.js     elements in other colours: what changed, what other clients have selected
+//   past.js      an earlier revision in a part of the picture
 //   camera.js    the position of the camera
 //
 // A frame is drawn only after a change. After each frame `onFrame` is called with a label that says
@@ -26,7 +28,9 @@ import { Many } from './many.js';
 import { Marks } from './marks.js';
 import { Motion } from './motion.js';
 import { Rulers } from './rulers.js';
+import { Past } from './past.js';
 import { Surface } from './surface.js';
+import { Tints } from './tints.js';
 
 export class NoWebGL extends Error {}
 
@@ -45,6 +49,8 @@ export class Renderer {
     #rulers = new Rulers();
     #many;
     #ids;
+    #tints = new Tints();
+    #past;
     #scene = new Scene();
     #pickScene = new Scene();
     #geometry = null;
@@ -87,6 +93,7 @@ export class Renderer {
         this.#ids = new Ids(this.#renderer, this.#pickScene, this.#camera, () => this.#colors.paper);
         const { fill, proxy, dots, pickFill, pickDots } = this.#surface;
         const { mask, face, outline } = this.#cut;
+        this.#past = new Past(this.#renderer.capabilities.maxTextureSize);
         const { chosen, boundary, arrows, hiddenLines, lines, vertices } = this.#marks;
         const { fieldLines, fieldVertices, preview } = this.#marks;
         add(this.#pickScene, [pickFill, pickDots]);
@@ -113,12 +120,14 @@ export class Renderer {
             preview,
             ...this.#rulers.objects,
         ]);
+        this.#scene.add(this.#tints.group);
         this.setColors('dark');
         this.show(null, null);
         this.fit();
         canvas.addEventListener('webglcontextlost', () => {
             this.#surface.forget();
             this.#ids.forget();
+            this.#past.forget();
             onLost(true);
         });
         canvas.addEventListener('webglcontextrestored', () => {
@@ -231,6 +240,26 @@ export class Renderer {
     // Draws lines and points over everything, see Rulers.show().
     rule(lines, points) {
         this.#rulers.show(lines, points);
+        this.#draw();
+    }
+
+    // Draws some shapes in other colours, in place of those with the same name, see Tints.set().
+    tint(name, shapes) {
+        this.#tints.set(name, shapes);
+        this.#draw();
+    }
+
+    // Shows an earlier revision, or none (null), see Past.show(); `tints` are shapes to draw on it.
+    showPast(geometry, placement, tints, label) {
+        this.#past.show(geometry, placement);
+        this.#past.tints.set('changed', tints);
+        this.#label = label;
+        this.#draw();
+    }
+
+    // Shows the earlier revision in this part of the picture's width, 0 to 1.
+    wipe(part) {
+        this.#past.part = part;
         this.#draw();
     }
 
@@ -412,6 +441,8 @@ export class Renderer {
         this.#cut.setPixelRatio(ratio);
         this.#rulers.setScreen(ratio);
         this.#many.setPixelRatio(ratio);
+        this.#tints.setPixelRatio(ratio);
+        this.#past.setPixelRatio(ratio);
         this.#draw();
     }
 
@@ -445,7 +476,13 @@ export class Renderer {
         this.#marks.raise(this.#camera.three.position);
         this.#cut.raise(this.#camera.three.position);
         this.#many.raise(this.#camera.three.position);
-        this.#renderer.render(this.#scene, this.#camera.three);
+        if (this.#past.isShown) {
+            const { clientWidth, clientHeight } = this.#canvas;
+            const size = [clientWidth, clientHeight];
+            this.#past.render(this.#renderer, this.#scene, this.#camera.three, size);
+        } else {
+            this.#renderer.render(this.#scene, this.#camera.three);
+        }
     }
 }
 

@@ -296,6 +296,17 @@ export class Surface {
         this.#isColored.value = isColored;
     }
 
+    // Frees the graphics memory; the surface must not be used any more.
+    dispose() {
+        [this.#textures, this.#looks]
+            .flatMap((textures) => Object.values(textures))
+            .forEach(({ value }) => value.dispose());
+        for (const object of [this.fill, this.dots, this.pickFill, this.pickDots]) {
+            object.geometry.dispose();
+            object.material.dispose();
+        }
+    }
+
     // Called when the contents of the graphics memory are lost: all textures are uploaded again.
     forget() {
         [this.#textures, this.#looks]

@@ -1,31 +1,42 @@
-// address.js - writes the open mesh, the selection and the camera into the page's address, and
-// shows the mesh, selection and camera that an address names; see link.js.
+// address.js - writes the open mesh, the selection, the camera and the parts of share.js into the
+// page's address, and shows what an address names; see link.js.
 
 import { formatLink, parseLink } from './link.js';
 
 export class Address {
     #session;
     #stage;
+    #share;
 
-    constructor(session, stage) {
+    constructor(session, stage, share) {
         this.#session = session;
         this.#stage = stage;
+        this.#share = share;
     }
 
-    // Writes the open mesh, the selection and the camera into the page's address. It replaces the
+    // Writes the open mesh, the selection, the camera and all parts into the page's address. It replaces the
     // newest entry of the browser's history, so that moving the camera does not fill the history.
     write() {
         const { mesh, selection } = this.#session;
         if (mesh !== null) {
-            const { kind, id } = selection.last ?? {};
-            const link = formatLink({ mesh, kind, id, camera: this.#stage.camera });
+            const kind = selection.last?.kind;
+            const ids = selection.chosen.map(({ id }) => id);
+            const { camera } = this.#stage;
+            const link = formatLink({ mesh, kind, ids, camera, parts: this.#share.parts });
             window.history.replaceState(null, '', link);
         }
     }
 
-    // Shows the mesh, the selection and the camera's position that are in the page's address.
+    // Returns the whole address of what is shown now.
+    get link() {
+        this.write();
+        return window.location.href;
+    }
+
+    // Shows the mesh, the selection, the camera's position and the parts that are in the page's
+    // address.
     async follow() {
-        const { mesh, kind, id, camera } = parseLink(window.location.hash);
+        const { mesh, kind, ids, camera, parts } = parseLink(window.location.hash);
         const session = this.#session;
         if (mesh === null) {
             return;
@@ -36,8 +47,13 @@ export class Address {
         if (session.mesh === mesh && camera !== null) {
             this.#stage.camera = camera;
         }
-        if (session.mesh === mesh && kind !== null) {
-            await session.selection.select(kind, id);
+        if (session.mesh === mesh && ids.length > 1) {
+            await session.selection.selectAll(kind, ids);
+        } else if (session.mesh === mesh && kind !== null) {
+            await session.selection.select(kind, ids[0]);
+        }
+        if (session.mesh === mesh) {
+            await this.#share.show(parts);
         }
     }
 }

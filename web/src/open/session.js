@@ -11,6 +11,7 @@ import { wordsOf } from './entry.js';
 import { Lineage } from './lineage.js';
 import { Live } from '../wire/live.js';
 import { Materials } from './materials.js';
+import { Others } from './others.js';
 import { Content } from './revision.js';
 import { Selection } from './selection.js';
 
@@ -23,6 +24,7 @@ export class Session {
     selection;
     loading = null; // fraction of a mesh to open that has been read, 0 to 1; null if none is opened
     busy = false; // whether an edit of this page is in progress
+    own = 0; // the newest revision that an edit of this page has made
 
     #onChange;
     #onError;
@@ -43,7 +45,11 @@ export class Session {
     //   'change'      the arrays have changed; `change` is the result of applyDelta()
     //   'facts'       the summary or the boundary loops have changed
     //   'name'        the name of the mesh has changed
+    //   'history'     names of revisions have changed
     //   'selection'   other elements are selected
+    //   'told'        an event told of an edit; `change` is its data
+    //   'moment'      a revision has another name; `change` is the data of the event
+    //   'others'      other clients came, left, or show something else
     //   'materials'   `change` is the result of Materials.note(), or null if any may have changed
     //   'gone'        the mesh was deleted
     //   'state'       `loading`, `busy` or `connection` has changed
@@ -66,6 +72,11 @@ export class Session {
     // The Materials of the open mesh, or null.
     get materials() {
         return this.#followed?.materials ?? null;
+    }
+
+    // The Others that are at the open mesh, or null.
+    get others() {
+        return this.#followed?.others ?? null;
     }
 
     // 'on', 'lost' or 'gone', see live.js; null if no mesh is open.
@@ -110,7 +121,13 @@ export class Session {
     }
 
     #follow(mesh) {
-        const followed = { latest: 0, hasMissed: false, lineage: new Lineage(), materials: new Materials(mesh) };
+        const followed = {
+            latest: 0,
+            hasMissed: false,
+            lineage: new Lineage(),
+            materials: new Materials(mesh),
+            others: new Others(),
+        };
         followed.live = new Live(mesh, {
             event: (name, data) => this.#receive(followed, name, data),
             state: (state) => {
@@ -151,6 +168,31 @@ export class Session {
         } else if (name === 'metadata' && followed === this.#followed) {
             Object.assign(this.shown.summary, data);
             this.#onChange('name');
+        }
+        this.#receiveOfOthers(followed, name, data);
+    }
+
+    // Receives what an event tells of other clients, and of names of revisions.
+    #receiveOfOthers(followed, name, data) {
+        if (name === 'presence') {
+            followed.others.note(data);
+        }
+        const what = { edit: 'told', moment: 'moment', presence: 'others' }[name];
+        if (what !== undefined && followed === this.#followed) {
+            this.#onChange(what, data);
+        }
+        if (name === 'moment' && followed === this.#followed) {
+            this.#readHistory().catch((error) => error.status !== 0 && this.#onError(error));
+        }
+    }
+
+    // Reads the history again, because the name of a revision has changed.
+    async #readHistory() {
+        const { shown } = this;
+        const put = await shown.readHistory();
+        if (this.shown === shown) {
+            put();
+            this.#onChange('history');
         }
     }
 
@@ -325,8 +367,21 @@ export class Session {
         return this.#edit(() => api.deleteSet(this.mesh, set));
     }
 
-    redo() {
-        return this.#edit((revision) => api.redo(this.mesh, revision));
+    // Redoes the step undone last, or as many as lead to the content of the revision `to`.
+    redo(to = undefined) {
+        return this.#edit((revision) => api.redo(this.mesh, revision, to));
+    }
+
+    // Undoes or redoes as many steps as lead to the content of an entry of the history.
+    returnTo({ revision, state }) {
+        const present = this.shown.history.entries[0]?.state ?? 0;
+        return state < present ? this.undo(revision) : this.redo(revision);
+    }
+
+    // Names a revision; null takes its name away.
+    async nameRevision(revision, name) {
+        await api.nameRevision(this.mesh, revision, name);
+        await this.#readHistory();
     }
 
     async #edit(send) {
@@ -341,6 +396,7 @@ export class Session {
             if (answer !== null) {
                 followed.lineage.note(answer);
                 followed.latest = Math.max(followed.latest, answer.revision);
+                this.own = answer.revision;
             }
             if (followed === this.#followed) {
                 await this.#fetch({});

@@ -1,8 +1,9 @@
 // history.js - the list of the open mesh's revisions, newest first; a click on a revision undoes
-// all edits since.
+// all edits since. Each revision can be looked at and named.
 
 import { formatCount, make } from '../kit/dom.js';
 import { wordsOf } from '../open/entry.js';
+import { momentButtons } from '../time/moments.js';
 
 const KINDS = ['vertices', 'edges', 'faces'];
 
@@ -11,7 +12,8 @@ export class History {
     #more;
     #readPage;
     #onUndo;
-    #onError;
+    #onReturn;
+    #acts;
     #shown = null; // the history whose entries are in the list
     #isEnabled = true;
     #hasFocus = false; // a button of the list was pressed, so the list keeps the focus
@@ -19,13 +21,15 @@ export class History {
     #isTopShown = false; // whether the row of the present state is in the list
 
     // `readPage(cursor)` reads the next page of the history; `onUndo(revision)` is called when the
-    // user chooses the revision to go back to.
-    constructor({ list, more }, { readPage, onUndo, onError }) {
+    // user chooses the revision to go back to, `onReturn(entry)` if it is one with a name that was
+    // left by an undo. `onLook` and `onName` are as in momentButtons().
+    constructor({ list, more }, { readPage, onUndo, onReturn, onLook, onName, onError }) {
         this.#list = list;
         this.#more = more;
         this.#readPage = readPage;
         this.#onUndo = onUndo;
-        this.#onError = onError;
+        this.#onReturn = onReturn;
+        this.#acts = { onLook, onName, onError };
         more.addEventListener('click', () => this.#readOn().catch(onError));
     }
 
@@ -44,7 +48,7 @@ export class History {
 
     setEnabled(enabled) {
         this.#isEnabled = enabled;
-        for (const button of this.#list.querySelectorAll('button')) {
+        for (const button of this.#list.querySelectorAll('button.entry, .moment button.edits')) {
             button.disabled = !enabled;
         }
     }
@@ -60,12 +64,18 @@ export class History {
     }
 
     #append({ entries, next, undo }) {
-        const rows = entries.map((entry) => this.#row(entry));
+        const rows = entries.map((entry) => {
+            const row = this.#row(entry);
+            row.append(momentButtons(entry, this.#acts, this.#isEnabled));
+            return row;
+        });
         const first = entries.findLast((entry) => entry.undoable);
         this.#beginning = first === undefined ? this.#beginning : first.revision - 1;
+        const words = [make('span', { className: 'ops' }, 'original')];
         if (next === null && undo > 0) {
-            const words = [make('span', { className: 'ops' }, 'original')];
             rows.push(this.#goBack(this.#beginning, words));
+        } else if (next === null && entries.length > 0 && !this.#isTopShown) {
+            rows.push(this.#present(this.#shown.entries[0].state, words));
         }
         this.#list.append(...rows);
         this.#more.dataset.cursor = next ?? '';
@@ -73,37 +83,62 @@ export class History {
     }
 
     // Returns the row of an entry. The newest entry that can be undone is the present state, which
-    // is marked; the undoable entries before it are buttons; other entries cannot be undone.
+    // is marked; the undoable entries before it are buttons, and so are entries with a name; other
+    // entries cannot be undone.
     #row(entry) {
-        const { undoable } = entry;
+        const { revision, undoable, name } = entry;
         const words = [
-            make('span', { className: 'ops' }, wordsOf(entry)),
+            make(
+                'span',
+                { className: 'ops', title: wordsOf(entry) },
+                ...(name === undefined ? [] : [make('bdi', { className: 'named' }, name), ' ']),
+                wordsOf(entry),
+            ),
             make('span', { className: 'small', title: tallyOf(entry) }, sumOf(entry)),
         ];
-        if (undoable && this.#isTopShown) {
-            return this.#goBack(entry.revision, words);
+        if (undoable && !this.#isTopShown) {
+            return this.#present(revision, words);
         }
-        const row = make('li', { className: undoable ? 'entry' : 'entry passed' });
-        row.append(make('span', { className: 'number' }, `${entry.revision}`), ...words);
-        row.dataset.revision = entry.revision;
         if (undoable) {
-            this.#isTopShown = true;
-            row.setAttribute('aria-current', 'step');
+            return this.#goBack(revision, words);
         }
+        if (name !== undefined && entry.state !== this.#shown.entries[0].state) {
+            const title = `Go to the content of revision ${revision}`;
+            return this.#button(revision, words, title, () => this.#onReturn(entry));
+        }
+        const number = make('span', { className: 'number' }, `${revision}`);
+        const row = make('li', {}, make('div', { className: 'entry passed' }, number, ...words));
+        row.dataset.revision = revision;
+        return row;
+    }
+
+    // Returns the row of the state that the mesh has now.
+    #present(revision, [words, ...others]) {
+        this.#isTopShown = true;
+        words.append(make('span', { className: 'now' }, ' (now)'));
+        const number = make('span', { className: 'number' }, `${revision}`);
+        const row = make('li', {}, make('div', { className: 'entry' }, number, words, ...others));
+        row.dataset.revision = revision;
+        row.setAttribute('aria-current', 'step');
         return row;
     }
 
     #goBack(revision, words) {
+        const title = `Undo all edits since revision ${revision}`;
+        return this.#button(revision, words, title, () => this.#onUndo(revision));
+    }
+
+    #button(revision, words, title, onclick) {
         const button = make(
             'button',
             {
                 type: 'button',
                 className: 'entry',
-                title: `Undo all edits since revision ${revision}`,
+                title,
                 disabled: !this.#isEnabled,
                 onclick: () => {
                     this.#hasFocus = true;
-                    this.#onUndo(revision);
+                    onclick();
                 },
             },
             make('span', { className: 'number' }, `${revision}`),

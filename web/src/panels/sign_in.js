@@ -8,6 +8,7 @@ const ROLES = { read: 'may view', write: 'may edit', admin: 'may do everything' 
 
 export class SignIn {
     mayEdit = true; // until the server says otherwise
+    name = null; // the name of the token, which others see; null: there is none
 
     // `onChange()` is called when the server has said what the token allows.
     constructor(onChange) {
@@ -24,6 +25,7 @@ export class SignIn {
     async start() {
         const { name, role, prefixes } = await api.getToken();
         this.mayEdit = role !== 'read';
+        this.name = name;
         const who = byId('who');
         who.hidden = name === null;
         who.textContent = `${name} (${role})`;

@@ -40,6 +40,7 @@ export function showState(session, ready, isDrawn) {
     enable(byId('undo'), ready && steps.undo > 0);
     enable(byId('redo'), ready && steps.redo > 0);
     enable(byId('export'), mesh !== null);
+    enable(byId('share'), mesh !== null);
     enable(byId('mesh-menu'), mesh !== null && session.connection !== 'gone');
     enable(byId('fit'), mesh !== null && isDrawn);
     enable(byId('progressive'), mesh !== null && isDrawn);

@@ -18,6 +18,7 @@ export class Stage {
     #contentNow;
     #renderer = null;
     #isLevel = false; // a level of detail is shown, which has no ids
+    #isPast = false; // an earlier revision is shown, in which nothing can be picked
     #acts;
     #timer = 0;
     #followers = [];
@@ -99,9 +100,8 @@ export class Stage {
     // Writes what the frame shows into data attributes of the canvas, so that tests can wait for a
     // certain frame.
     #markFrame(label) {
-        this.#acts.onFrame();
         this.#followers.forEach((follow) => follow());
-        for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces', 'colour']) {
+        for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces', 'colour', 'past']) {
             if (label?.[name] === undefined) {
                 delete this.#canvas.dataset[name];
             } else {
@@ -173,6 +173,23 @@ export class Stage {
         this.#renderer?.rule(lines, points);
     }
 
+    // Draws some shapes in other colours over the mesh, see Renderer.tint().
+    tint(name, shapes) {
+        this.#renderer?.tint(name, shapes);
+    }
+
+    // Shows an earlier revision over the present one, or none (null), see Renderer.showPast().
+    // Meanwhile nothing can be picked. Throws a RangeError if it is too large.
+    showPast(geometry, placement, tints, label) {
+        this.#renderer?.showPast(geometry, placement, tints, label);
+        this.#isPast = geometry !== null;
+    }
+
+    // Shows the earlier revision in this part of the picture's width, 0 to 1.
+    wipe(part) {
+        this.#renderer?.wipe(part);
+    }
+
     capture() {
         return this.#renderer.capture();
     }
@@ -215,9 +232,10 @@ export class Stage {
         return this.#renderer.view;
     }
 
-    // The matrix that maps view coordinates to clip coordinates, column-major.
+    // The matrix that maps view coordinates to clip coordinates, column-major; undefined without a
+    // renderer.
     get matrix() {
-        return this.#renderer.matrix;
+        return this.#renderer?.matrix;
     }
 
     // The size of the canvas in CSS pixels, {width, height}.
@@ -271,7 +289,7 @@ export class Stage {
             const { clientX: x, clientY: y } = event;
             const isClick =
                 down !== null && Math.hypot(x - down.clientX, y - down.clientY) <= CLICK_PIXELS;
-            if (isClick && this.#marked !== null && this.#contentNow() !== null) {
+            if (isClick && !this.#isPast && this.#marked !== null && this.#contentNow() !== null) {
                 if (event.altKey) {
                     this.#acts.onLine(event);
                 } else {
@@ -302,7 +320,7 @@ export class Stage {
     // true, it is found in a kept image, which is for pointers that move.
     elementAt(clientX, clientY, kind = this.pickMode, isKept = false) {
         const content = this.#contentNow();
-        if (this.#marked === null || content === null) {
+        if (this.#isPast || this.#marked === null || content === null) {
             return null;
         }
         const screen = this.#screenAt(clientX, clientY);

@@ -207,6 +207,26 @@ export function rename(mesh, name) {
     });
 }
 
+// Names a revision of a mesh; null takes its name away.
+export function nameRevision(mesh, revision, name) {
+    return request(`${meshPath(mesh)}/edits/${revision}`, {
+        method: 'PATCH',
+        headers: { 'Content-Type': 'application/merge-patch+json', Prefer: 'return=minimal' },
+        body: JSON.stringify({ name }),
+    });
+}
+
+// Shows something of this page to the other clients of a mesh: {client, name, selection, camera,
+// leaves}. `isLeaving` says that the page is being left, and that the request must outlive it.
+export function putPresence(mesh, presence, isLeaving = false) {
+    return request(`${meshPath(mesh)}/presence`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json', Prefer: 'return=minimal' },
+        body: JSON.stringify(presence),
+        keepalive: isLeaving,
+    });
+}
+
 // Makes a copy of a mesh and returns its summary; `work` is as in edit().
 export function copy(mesh, name, work) {
     return postJson(`${meshPath(mesh)}/copy`, { name }, work);
@@ -450,6 +470,11 @@ export function getGeometry(mesh, onProgress, signal) {
     return readArrays(`${meshPath(mesh)}/geometry`, onProgress, signal);
 }
 
+// Returns the arrays of an earlier revision of a mesh.
+export function getEarlierGeometry(mesh, revision, signal) {
+    return readArrays(`${meshPath(mesh)}/geometry?revision=${revision}`, () => {}, signal);
+}
+
 // Returns the changes of the arrays of getGeometry() since this revision and layout, or the
 // complete arrays if the server cannot tell the changes: see geometry_delta.js.
 export function getGeometryChanges(mesh, { revision, layout }) {
@@ -630,8 +655,10 @@ export function undo(mesh, revision, to = undefined) {
     return postJson(`${meshPath(mesh)}/undo`, body);
 }
 
-export function redo(mesh, revision) {
-    return postJson(`${meshPath(mesh)}/redo`, { expected_revision: revision });
+// Redoes the step undone last, or as many as lead to the content of the revision `to`.
+export function redo(mesh, revision, to = undefined) {
+    const body = { expected_revision: revision, to_revision: to };
+    return postJson(`${meshPath(mesh)}/redo`, body);
 }
 
 // --- jobs ---

@@ -1,0 +1,209 @@
+// Tests of looking at earlier revisions: the slider, the curtain with changed faces in colours, names
+// of revisions, and the way back to a named moment.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+
+import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
+import { get, post } from './daemon.mjs';
+import { goTo } from './page.mjs';
+import { openMesh } from './visit.mjs';
+
+const GRID = { name: 'grid', shape: 'grid', columns: 4, rows: 4 };
+const edit = (daemon, mesh, operation) => post(daemon, `/${mesh}/edits`, operation);
+const row = (page, revision) => page.locator(`#history li[data-revision="${revision}"]`);
+const slider = (page) => page.getByRole('slider', { name: 'Look at revision' });
+const note = (page) => page.getByRole('group', { name: 'An earlier revision' });
+
+// Whether a pixel is tinted in the colour of faces that are gone, new or moved.
+const isGone = ([r, g, b]) => r > 120 && r > g + 45 && r > b + 45;
+const isMade = ([r, g, b]) => g > 100 && g > r + 30 && g > b + 15;
+const isMoved = ([r, g, b]) => r > 130 && g > 110 && r > b + 40 && g > b + 25;
+
+// Waits until the page shows an earlier revision, or the present one (null).
+function waitForPast(page, past) {
+    return page.waitForFunction(
+        (wanted) => (document.querySelector('#canvas').dataset.past ?? null) === wanted,
+        past === null ? null : `${past}`,
+    );
+}
+
+// Opens a grid with three edits: a face is deleted, one is poked, and a vertex is moved.
+async function openEdited(t, options) {
+    const opened = await openMesh(t, GRID, options);
+    const { daemon, mesh, page } = opened;
+    await edit(daemon, mesh, { op: 'face_delete', face: 0 });
+    await edit(daemon, mesh, { op: 'face_poke', face: 15 });
+    await edit(daemon, mesh, { op: 'vertex_move', vertex: 12, by: [0, 0, 0.1] });
+    await waitForFrame(page, { revision: 4 });
+    return opened;
+}
+
+// Returns which of the colours a part of the canvas has, from `from` to `to` of its width.
+async function tintsIn(page, from, to) {
+    await page.locator('#canvas').blur();
+    const { width, height, colour } = await readCanvas(page);
+    const found = { gone: 0, made: 0, moved: 0, plain: 0 };
+    for (let y = 0; y < height; y += 2) {
+        for (let x = Math.ceil(from * width); x < to * width; x += 2) {
+            const pixel = colour(x, y);
+            found.gone += isGone(pixel);
+            found.made += isMade(pixel);
+            found.moved += isMoved(pixel);
+            found.plain += isSurface(pixel);
+        }
+    }
+    return found;
+}
+
+test('any revision is looked at without a change of the mesh', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    const before = await get(daemon, `/${mesh}`);
+    const present = await page.locator('#canvas').screenshot();
+    assert.equal(await slider(page).getAttribute('min'), '1');
+    assert.equal(await slider(page).getAttribute('max'), '4');
+    await slider(page).focus();
+    await page.keyboard.press('Home');
+    await waitForPast(page, 1);
+    await note(page).getByText('You are looking at revision 1 of 4.').waitFor();
+    await checkAccessible(page, 'an earlier revision');
+    assert.notDeepEqual(await page.locator('#canvas').screenshot(), present);
+    // Nothing can be edited or picked meanwhile.
+    assert.ok(await page.getByRole('button', { name: 'Undo', exact: true }).isDisabled());
+    await page.locator('#canvas').click({ position: { x: 200, y: 200 } });
+    await page.keyboard.press('Escape');
+    await slider(page).focus();
+    await page.keyboard.press('ArrowRight');
+    await waitForPast(page, 2);
+    assert.equal(await page.locator('#time-at').textContent(), '2 of 4');
+    await page.getByRole('button', { name: 'Back to the present' }).click();
+    await waitForPast(page, null);
+    assert.ok(await note(page).isHidden());
+    await page.locator('#canvas').blur();
+    await waitForFrame(page, { revision: 4, selection: '' });
+    assert.deepEqual(await get(daemon, `/${mesh}`), before);
+});
+
+test('before and now are beside each other, with changes in colours', async (t) => {
+    const { page } = await openEdited(t);
+    await row(page, 4).waitFor();
+    await slider(page).focus();
+    await page.keyboard.press('Home');
+    await waitForPast(page, 1);
+    const whole = await tintsIn(page, 0, 1);
+    assert.equal(whole.gone + whole.made, 0);
+    await page.getByRole('checkbox', { name: 'Compare with the present' }).check();
+    await note(page).getByText('1 face gone, 3 faces new').waitFor();
+    await checkAccessible(page, 'before and now');
+    const wipe = page.getByRole('slider', { name: 'Where before ends and now begins' });
+    // All is before: the deleted face is there, the faces of the poke are not.
+    await wipe.focus();
+    await page.keyboard.press('End');
+    const past = await tintsIn(page, 0, 1);
+    assert.ok(past.gone > 20, JSON.stringify(past));
+    assert.ok(past.moved > 20, JSON.stringify(past));
+    assert.equal(past.made, 0);
+    // All is now.
+    await page.keyboard.press('Home');
+    const now = await tintsIn(page, 0, 1);
+    assert.ok(now.made > 20, JSON.stringify(now));
+    assert.ok(now.moved > 20, JSON.stringify(now));
+    assert.equal(now.gone, 0);
+    // The line is dragged to the middle: what is new is right of it only, what is gone left of it.
+    const box = await page.locator('#canvas').boundingBox();
+    const middle = box.x + box.width / 2;
+    await page.mouse.move(box.x + 3, box.y + 80);
+    await page.mouse.down();
+    await page.mouse.move(middle, box.y + 80);
+    await page.mouse.up();
+    assert.equal(await wipe.inputValue(), '50');
+    const left = await tintsIn(page, 0, 0.49);
+    const right = await tintsIn(page, 0.51, 1);
+    assert.equal(left.made, 0);
+    assert.equal(right.gone, 0);
+    assert.ok(left.plain > 100 && right.plain > 100);
+    await page.getByRole('button', { name: 'Back to the present' }).click();
+    await waitForPast(page, null);
+    const after = await tintsIn(page, 0, 1);
+    assert.equal(after.gone + after.made, 0);
+});
+
+test('an edit by another client keeps the earlier revision in sight', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    await row(page, 2).getByRole('button', { name: 'Look at revision 2' }).click();
+    await waitForPast(page, 2);
+    await page.getByRole('checkbox', { name: 'Compare with the present' }).check();
+    await edit(daemon, mesh, { op: 'face_poke', face: 5 });
+    await waitForFrame(page, { revision: 5 });
+    await note(page).getByText('You are looking at revision 2 of 5.').waitFor();
+    await note(page).getByText('6 faces new').waitFor();
+    await page.getByRole('button', { name: 'Undo to here' }).click();
+    await waitForPast(page, null);
+    await waitForFrame(page, { revision: 8 });
+    assert.equal((await get(daemon, `/${mesh}`)).counts.faces, 15);
+});
+
+test('a revision is named in place, found again and gone back to with a click', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    await row(page, 3).getByRole('button', { name: 'Name revision 3' }).click();
+    const field = page.getByRole('textbox', { name: 'Name of revision 3' });
+    await field.fill('before <b>the</b> move');
+    await checkAccessible(page, 'a name is written', '#details');
+    await field.press('Enter');
+    await row(page, 3).getByText('before <b>the</b> move').waitFor();
+    const named = async (revision) =>
+        (await get(daemon, `/${mesh}/edits`)).entries.find((one) => one.revision === revision).name;
+    assert.equal(await named(3), 'before <b>the</b> move');
+    // Names that others give appear, too.
+    await fetch(`${daemon.url}/v1/meshes/${mesh}/edits/4`, {
+        method: 'PATCH',
+        headers: { 'Content-Type': 'application/merge-patch+json' },
+        body: JSON.stringify({ name: 'moved' }),
+    });
+    await row(page, 4).getByText('moved', { exact: true }).waitFor();
+    assert.equal(await row(page, 4).getAttribute('aria-current'), 'step');
+    await row(page, 3).getByRole('button', { name: 'before' }).click();
+    await waitForFrame(page, { revision: 5 });
+    assert.equal(await row(page, 3).getAttribute('aria-current'), 'step');
+    await row(page, 3).getByText('(now)').waitFor();
+    // The moment that was left by the undo is reached by a click as well.
+    await row(page, 4).getByRole('button', { name: 'moved' }).click();
+    await waitForFrame(page, { revision: 6 });
+    assert.equal((await get(daemon, `/${mesh}/edits`)).entries[0].state, 4);
+    await row(page, 3).getByRole('button', { name: 'Name revision 3' }).click();
+    await page.getByRole('textbox', { name: 'Name of revision 3' }).fill('');
+    await page.keyboard.press('Enter');
+    await row(page, 3).locator('.named').waitFor({ state: 'detached' });
+    assert.equal(await named(3), undefined);
+    await checkAccessible(page, 'names in the history', '#details');
+});
+
+test('a name that is too long is refused where it is written', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    await row(page, 2).getByRole('button', { name: 'Name revision 2' }).click();
+    const field = page.getByRole('textbox', { name: 'Name of revision 2' });
+    await field.fill('\u00e9'.repeat(101));
+    assert.equal(await field.evaluate((one) => one.validationMessage), 'A name has at most 200 bytes.');
+    await field.press('Enter');
+    assert.ok(await field.isVisible());
+    await field.press('Escape');
+    await goTo(page, 'face', 3);
+    const { entries } = await get(daemon, `/${mesh}/edits`);
+    assert.ok(entries.every(({ name }) => name === undefined));
+});
+
+test('after a replacement there is no way back to earlier revisions', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    await slider(page).focus();
+    await page.keyboard.press('Home');
+    await waitForPast(page, 1);
+    await fetch(`${daemon.url}/v1/meshes/${mesh}`, {
+        method: 'PUT',
+        headers: { 'Content-Type': 'application/json' },
+        body: JSON.stringify({ shape: 'cube' }),
+    });
+    await waitForPast(page, null);
+    await waitForFrame(page, { revision: 5 });
+    assert.ok(await note(page).isHidden());
+    assert.ok(await page.locator('#time').isHidden());
+});

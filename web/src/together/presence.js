@@ -1,0 +1,121 @@
+// presence.js - shows what is selected on this page to the other clients of the open mesh. The
+// server forgets a client that it has not heard of for half a minute, so the page repeats itself.
+
+import * as api from '../wire/api.js';
+
+// Milliseconds after which changes are sent: a short while, because a selection often changes
+// several times, and again if nothing has changed.
+const SOON = 120;
+const AGAIN = 12000;
+
+// The most ids that the server takes.
+const MOST_IDS = 256;
+
+export class Presence {
+    // The id of this page among the clients of a mesh, chosen at random.
+    client = [...crypto.getRandomValues(new Uint8Array(9))]
+        .map((byte) => byte.toString(16).padStart(2, '0'))
+        .join('');
+    name = '';
+    isRefused = false; // the server does not show this page to others now
+
+    #session;
+    #cameraNow;
+    #onChange;
+    #mesh = null; // the mesh at which this page has shown itself
+    #sent = ''; // what was sent last
+    #timer = 0;
+
+    // `camera()` returns the numbers of the camera, see Stage.camera. `onChange()` is called when
+    // `isRefused` has changed.
+    constructor(session, { camera, onChange }) {
+        this.#session = session;
+        this.#cameraNow = camera;
+        this.#onChange = onChange;
+        window.addEventListener('pagehide', () => this.#leave(true));
+        document.addEventListener('visibilitychange', () => this.soon());
+    }
+
+    // Called when something that is shown to others may have changed.
+    soon() {
+        clearTimeout(this.#timer);
+        this.#timer = setTimeout(() => this.#send(), SOON);
+    }
+
+    async #send() {
+        const { mesh, connection } = this.#session;
+        if (mesh !== this.#mesh) {
+            this.#leave(false);
+        }
+        if (mesh === null || connection === 'gone') {
+            return;
+        }
+        clearTimeout(this.#timer);
+        this.#timer = setTimeout(() => this.#repeat(), AGAIN);
+        const shown = this.#shown();
+        const text = JSON.stringify(shown);
+        if (text !== this.#sent) {
+            await this.#put(mesh, shown, text);
+        }
+    }
+
+    // Tells the server again that the page is there, unless nobody looks at it.
+    #repeat() {
+        this.#sent = '';
+        if (document.visibilityState === 'visible') {
+            this.#send();
+        }
+    }
+
+    async #put(mesh, shown, text) {
+        this.#mesh = mesh;
+        this.#sent = text;
+        try {
+            await api.putPresence(mesh, shown);
+            this.#setRefused(false);
+        } catch {
+            // The page works without others; the list of people says that it is not shown. The next
+            // change, or repetition, tries again.
+            this.#sent = '';
+            this.#setRefused(true);
+        }
+    }
+
+    #setRefused(isRefused) {
+        if (this.isRefused !== isRefused) {
+            this.isRefused = isRefused;
+            this.#onChange();
+        }
+    }
+
+    #leave(isLeaving) {
+        if (this.#mesh !== null) {
+            api.putPresence(this.#mesh, { client: this.client, leaves: true }, isLeaving).catch(
+                () => {}, // the server forgets this page anyway
+            );
+            this.#mesh = null;
+            this.#sent = '';
+        }
+    }
+
+    #shown() {
+        const { chosen, last } = this.#session.selection;
+        const camera = this.#cameraNow();
+        return {
+            client: this.client,
+            name: this.name,
+            selection:
+                last === undefined
+                    ? null
+                    : {
+                          kind: last.kind,
+                          ids: chosen.slice(-MOST_IDS).map(({ id }) => id),
+                          count: chosen.length,
+                      },
+            camera:
+                camera === undefined
+                    ? null
+                    : { position: camera.slice(0, 3), target: camera.slice(3), up: [0, 0, 1] },
+        };
+    }
+}
