@@ -76,6 +76,8 @@
       "Event streams that are open, by their subject: mesh or job.")                               \
     X(STREAM_LIMIT, "hedge_event_streams_limit", GAUGE, "about",                                   \
       "The number of event streams that may be open.")                                             \
+    X(PRESENT, "hedge_clients_present", GAUGE, "",                                                 \
+      "Clients that show themselves to the other clients of a mesh.")                              \
     X(EVENTS, "hedge_events_total", COUNTER, "",                                                   \
       "Events about meshes that were written for event streams.")                                  \
     X(EVENT_LAG, "hedge_event_lag_seconds", HISTOGRAM, "",                                         \

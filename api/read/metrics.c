@@ -351,6 +351,9 @@ static void put_family(sources *s, api_metric_id id)
         put_of(s, "mesh", (double)s->store.most_listeners);
         put_of(s, "job", (double)s->jobs.most_listeners);
         break;
+    case API_METRIC_ID_PRESENT:
+        put_count(s, api_presences_count(s->service->presences));
+        break;
     case API_METRIC_ID_EVENTS:
         put_count(s, s->store.events);
         break;

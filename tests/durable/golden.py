@@ -3,7 +3,7 @@
     python3 tests/durable/golden.py --hedged build/hedged     makes tests/golden/NAME.db.gz
 
 This is a compressed store with every kind of record; NAME.json says what is in it. NAME is the
-version of the program and that of its tables. Every later program must open, verify, load, undo,
+version of the program, that of its tables, and that of its records if it is not 1. Every later program must open, verify, load, undo,
 dump and edit each of these stores.
 """
 import argparse
@@ -31,7 +31,10 @@ def facts(client, mesh):
     base = f'/v1/meshes/{mesh}'
     one = client.get(base).json()
     document = client.get(base + '/content').json()
+    entries = client.get(base + '/edits?limit=1000').json()['entries']
+    moments = {str(entry['revision']): entry['name'] for entry in entries if 'name' in entry}
     return {
+        **({'moments': moments} if moments else {}),
         'name': one['name'], 'revision': one['revision'],
         'positions': document['vertices'][:50], 'faces': document['faces'][:50],
         'counts': [len(document['vertices']), len(document['faces'])],
@@ -63,6 +66,9 @@ def write(client):
                                                  {'op': 'face_poke', 'face': 2}]})
     ask('POST', '/edited/edits', {'op': 'vertex_move', 'vertex': 2, 'to': [2, 0.1, -3]})
     ask('PATCH', '/edited', {'name': 'edited \u00e9'})
+    ask('PATCH', '/edited/edits/2', {'name': 'split \u00e9'})
+    ask('PATCH', '/edited/edits/4', {'name': 'for a while'})
+    ask('PATCH', '/edited/edits/4', {'name': None})
     ask('POST', '/edited/undo', {'steps': 2})
     ask('POST', '/edited/redo', {})
     ask('PUT', '/edited/attributes/faces/kind', {'type': 'int32', 'default': 7}, 201)
@@ -111,8 +117,11 @@ def make(program):
         daemon.kill()
         database = sqlite3.connect(os.path.join(folder, 'golden.db'))
         tables = database.execute('PRAGMA user_version').fetchone()[0]
+        records = int(database.execute('SELECT max(hex(substr(bytes, 5, 1))) FROM record')
+                      .fetchone()[0], 16)
         database.close()
-        name = os.path.join(FOLDER, f'{version}-tables-{tables}')
+        suffix = '' if records == 1 else f'-records-{records}'
+        name = os.path.join(FOLDER, f'{version}-tables-{tables}{suffix}')
         with open(os.path.join(folder, 'golden.db'), 'rb') as file:
             packed = gzip.compress(file.read(), 9, mtime=0)
         assert len(packed) <= MOST, len(packed)
