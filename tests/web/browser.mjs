@@ -74,6 +74,8 @@ export async function openPageIn(
     const context = await browser.newContext({
         viewport: { width: 1280, height: 800 },
         colorScheme: 'dark', // that of the colours below
+        // Changes by others are not marked for a moment, so that pictures depend on no time.
+        reducedMotion: 'reduce',
         ...options,
     });
     const page = await context.newPage();

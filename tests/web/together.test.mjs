@@ -106,14 +106,8 @@ test('one sees what another looks at', async (t) => {
 });
 
 test('a change by another client is marked for a moment, an own one is not', async (t) => {
-    const { daemon, mesh, page } = await openMesh(t, GRID);
-    await page.evaluate(() => {
-        window.brightest = [];
-        const canvas = document.querySelector('#canvas');
-        new MutationObserver(() => window.brightest.push(canvas.dataset.revision)).observe(canvas, {
-            attributes: true,
-        });
-    });
+    const options = { reducedMotion: 'no-preference' };
+    const { daemon, mesh, page } = await openMesh(t, GRID, options);
     const isMark = [244, 246, 250];
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 5 });
     await waitForFrame(page, { revision: 2 });

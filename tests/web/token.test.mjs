@@ -96,7 +96,8 @@ test('who may look sees no buttons that edit', async (t) => {
     const { status } = await ask(alice, '/v1/meshes/box/edits', 'POST', { op: 'face_poke', face: 0 });
     assert.equal(status, 200);
     await waitForFrame(page, { revision: 2 });
-    assert.equal(await page.locator('#history button:visible').count(), 0);
+    assert.equal(await page.locator('#history button.entry:visible').count(), 0);
+    assert.equal(await page.locator('#history button.edits:visible').count(), 0);
     await checkAccessible(page, 'looking only');
 
     // The user must be able to change to another token.

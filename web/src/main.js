@@ -358,7 +358,7 @@ const time = new Time(
             }
             showWhatMayBeDone();
         },
-        onUndo: (revision) => session.undo(revision).catch(fail),
+        onUndo: (revision) => goBack(revision).catch(fail),
         onError: fail,
     },
 );
@@ -466,7 +466,7 @@ function followOthers(what, change) {
         showPeople();
         selections.show(session.shown, session.others.besides(presence.client));
     }
-    if (!isEmbedded && (isChanged || what === 'selection')) {
+    if (!isEmbedded && (isChanged || what === 'selection' || what === 'state')) {
         presence.soon();
     }
 }
@@ -476,6 +476,13 @@ function showPeople() {
         const others = session.others.besides(presence.client);
         people.show(others, signIn.name, presence.isRefused);
     }
+}
+
+// Undoes, or redoes, as many edits as lead to the content of a revision.
+function goBack(revision) {
+    const { entries } = session.shown.history;
+    const entry = entries.find((one) => one.revision === revision);
+    return entry === undefined ? session.undo(revision) : session.returnTo(entry);
 }
 
 async function copyLink() {
@@ -608,7 +615,9 @@ async function openNew({ id }) {
 
 // Handles the Esc key: ends what is going on in the view, or else clears the selection.
 function giveUp() {
-    if (refining.isWanted) {
+    if (time.isOn) {
+        time.end();
+    } else if (refining.isWanted) {
         refining.end();
     } else if (measuring.isOn) {
         measuring.giveUp();
@@ -647,6 +656,7 @@ function toggleLevels() {
     if (refining.isWanted) {
         refining.end();
     } else {
+        time.end();
         refining.begin(session.shown).catch(fail);
     }
 }

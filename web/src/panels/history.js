@@ -75,16 +75,16 @@ export class History {
         if (next === null && undo > 0) {
             rows.push(this.#goBack(this.#beginning, words));
         } else if (next === null && entries.length > 0 && !this.#isTopShown) {
-            rows.push(this.#present(this.#shown.entries[0].state, words));
+            rows.push(this.#present(this.#shown.entries[0].state, [...words, make('span', {})]));
         }
         this.#list.append(...rows);
         this.#more.dataset.cursor = next ?? '';
         this.#more.hidden = next === null;
     }
 
-    // Returns the row of an entry. The newest entry that can be undone is the present state, which
-    // is marked; the undoable entries before it are buttons, and so are entries with a name; other
-    // entries cannot be undone.
+    // Returns the row of an entry. The present state is marked: the newest entry that can be undone,
+    // or the change after which there is none. The undoable entries before it are buttons, and so
+    // are entries with a name; other entries cannot be undone.
     #row(entry) {
         const { revision, undoable, name } = entry;
         const words = [
@@ -96,7 +96,8 @@ export class History {
             ),
             make('span', { className: 'small', title: tallyOf(entry) }, sumOf(entry)),
         ];
-        if (undoable && !this.#isTopShown) {
+        const isPresent = undoable || revision === this.#shown.entries[0].state;
+        if (isPresent && !this.#isTopShown) {
             return this.#present(revision, words);
         }
         if (undoable) {
@@ -113,11 +114,11 @@ export class History {
     }
 
     // Returns the row of the state that the mesh has now.
-    #present(revision, [words, ...others]) {
+    #present(revision, [words, sum]) {
         this.#isTopShown = true;
-        words.append(make('span', { className: 'now' }, ' (now)'));
+        sum.prepend(make('span', { className: 'now' }, 'now '));
         const number = make('span', { className: 'number' }, `${revision}`);
-        const row = make('li', {}, make('div', { className: 'entry' }, number, words, ...others));
+        const row = make('li', {}, make('div', { className: 'entry' }, number, words, sum));
         row.dataset.revision = revision;
         row.setAttribute('aria-current', 'step');
         return row;

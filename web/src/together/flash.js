@@ -2,6 +2,9 @@
 
 import { shapeOfFaces } from '../geometry/changed.js';
 
+// Whether the user has asked for a page without motion.
+const wantsRest = window.matchMedia('(prefers-reduced-motion: reduce)');
+
 const COLOR = 0xf4f6fa;
 const MILLIS = 900;
 const MOST_FACES = 20000; // a change of more faces is seen without a mark
@@ -18,7 +21,7 @@ export class Flash {
     // Called when an event told of an edit.
     note({ revision, created, modified }) {
         const faces = [...(created?.faces ?? []), ...(modified?.faces ?? [])];
-        if (faces.length > 0 && faces.length <= MOST_FACES) {
+        if (faces.length > 0 && faces.length <= MOST_FACES && !wantsRest.matches) {
             this.#told.push({ revision, faces });
         }
     }

@@ -23,7 +23,8 @@ export class Presence {
     #cameraNow;
     #onChange;
     #mesh = null; // the mesh at which this page has shown itself
-    #sent = ''; // what was sent last
+    #sent = ''; // what was sent last, and when
+    #time = -Infinity;
     #timer = 0;
 
     // `camera()` returns the numbers of the camera, see Stage.camera. `onChange()` is called when
@@ -47,29 +48,23 @@ export class Presence {
         if (mesh !== this.#mesh) {
             this.#leave(false);
         }
-        if (mesh === null || connection === 'gone') {
+        clearTimeout(this.#timer);
+        // While nobody looks at the page, it does not repeat itself, and is forgotten.
+        if (mesh === null || connection !== 'on' || document.visibilityState !== 'visible') {
             return;
         }
-        clearTimeout(this.#timer);
-        this.#timer = setTimeout(() => this.#repeat(), AGAIN);
+        this.#timer = setTimeout(() => this.#send(), AGAIN);
         const shown = this.#shown();
         const text = JSON.stringify(shown);
-        if (text !== this.#sent) {
+        if (text !== this.#sent || performance.now() - this.#time >= AGAIN - SOON) {
             await this.#put(mesh, shown, text);
-        }
-    }
-
-    // Tells the server again that the page is there, unless nobody looks at it.
-    #repeat() {
-        this.#sent = '';
-        if (document.visibilityState === 'visible') {
-            this.#send();
         }
     }
 
     async #put(mesh, shown, text) {
         this.#mesh = mesh;
         this.#sent = text;
+        this.#time = performance.now();
         try {
             await api.putPresence(mesh, shown);
             this.#setRefused(false);
