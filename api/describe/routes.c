@@ -734,11 +734,13 @@ static const api_route routes[] = {
      .name = "get_viewer",
      .run = api_page_get,
      .role = API_ROLE_OPEN,
-     .flags = API_FIXED,
+     .flags = API_FIXED | API_OWN_QUERY,
      .produces = html,
      .statuses = {200, 304},
      .summary = "The viewer",
-     .doc = "A page to view, inspect and edit meshes."},
+     .doc = "A page to view, inspect and edit meshes. With the query `embed` it has only the view, "
+            "for "
+            "frames of other pages, which the option --allow-frame permits."},
     {.method = "GET",
      .path = "/docs",
      .name = "get_docs",

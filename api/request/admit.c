@@ -85,6 +85,9 @@ static bool refuse_unknown(api_exchange *x, const char *name)
 
 static bool check_query(api_exchange *x)
 {
+    if (x->route->flags & API_OWN_QUERY) {
+        return true;
+    }
     if (!api_query_split(x->request.query, &x->arena, &x->query, &x->problem)) {
         return false;
     }

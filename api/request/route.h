@@ -112,6 +112,8 @@ enum {
     API_MISSING_PAGE = 16384,
     /* The answer is the result of another request (a job), whose answer may have had no ETag. */
     API_TAG_OF_OTHERS = 4096,
+    /* The query belongs to the page that the route answers with; the server does not read it. */
+    API_OWN_QUERY = 16384,
     /* Answers of the route show nothing from the store, so they are sent without waiting for the
      * journal, like answers of routes with API_FIXED. */
     API_STORELESS = 2048,

@@ -478,6 +478,24 @@ static void take_keyed_edits(api_bench *b)
         snprintf(path, sizeof path, "/v1/meshes/k/%s", steps_of_keyed[i]);
         take_keyed(b, "POST", path, bodies[i]);
     }
+    take_keyed(b, "PATCH", "/v1/meshes/k/edits/2", "{\"name\":\"z\"}");
+}
+
+/* A client with another token has the id that a client wants to show itself with (409). */
+static void take_other_client(void)
+{
+    /* the SHA-256 hashes of the tokens "test" and "prueba" */
+    api_bench *b = bench_new_guarded(
+        "alice admin sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08\n"
+        "bob read sha256:655e786674d9d3e77bc05ed1de37b4b6bc89f788829f9f3c679e7687b410c89b\n");
+    static const char client[] = "{\"client\":\"a\"}";
+    const bench_request request = {"PUT", "/v1/meshes/m/presence", NULL, client, sizeof client - 1};
+    bench_use_token(b, "test");
+    take(b, 201, &(bench_request){"PUT", "/v1/meshes/m", NULL, CUBE, sizeof CUBE - 1});
+    take(b, 200, &request);
+    bench_use_token(b, "prueba");
+    take(b, 409, &request);
+    bench_free(b);
 }
 
 static void take_job(api_bench *b)
@@ -543,6 +561,7 @@ static void routes_answer_each_status_they_declare_and_no_other(void **state)
          &(bench_request){"PUT", "/v1/meshes/m/attributes/faces/a", NULL, flag, sizeof flag - 1});
     take_keyed(b, "PATCH", "/v1/meshes/m/attributes/faces/a", "{\"ids\":[0],\"value\":true}");
     take_keyed_edits(b);
+    take_other_client();
     take_job(b);
     take_result(b);
     take_costly_check(b);

@@ -139,7 +139,8 @@ static const struct specimen {
       .issued = {[HE_VERTEX] = 9, [HE_HALFEDGE] = 400, [HE_EDGE] = 200, [HE_FACE] = 11},
       .counts = {8, 200, 10, 0},
       .bytes = 70000},
-     "?"},
+     "310e718b020700000b000000000000000700000000000000efcdab89674523010000c040fc54d941"
+     "03050509c8010b08c8010a00f0a204000f6265666f7265207468652063c3bc74"},
 };
 enum { SPECIMENS = sizeof specimens / sizeof *specimens, ROOM = ST_FRAME_HEAD + 64 };
 

@@ -240,6 +240,8 @@ export function readPicture(png) {
     };
     return {
         count,
+        width,
+        height: count / width,
         colour(x, y) {
             return colourOf(Math.round(y) * width + Math.round(x));
         },
