@@ -582,7 +582,7 @@ export function listen(mesh, since, { onOpen, onEvent, onError }) {
     return { close: () => closing.abort() };
 }
 
-const HEARD = ['edit', 'metadata', 'resync', 'bye'];
+const HEARD = ['edit', 'metadata', 'moment', 'presence', 'resync', 'bye'];
 
 async function follow(path, since, { onOpen, onEvent }, signal) {
     const headers = { Accept: 'text/event-stream' };
