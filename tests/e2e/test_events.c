@@ -309,6 +309,45 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
 
 /* The history has a budget of 0 and keeps nothing, so an event that was dropped from the listener's
  * queue cannot be sent again. */
+/* Presences that are put faster than listeners may be told of them are collected; the newest one is
+ * told although nothing follows it. */
+static void the_newest_presence_is_told_and_not_each_one(void **state)
+{
+    (void)state;
+    enum { PUTS = 60 };
+    char body[100];
+    unsigned told = 0;
+    double face = -1;
+    daemon_process *d = daemon_start(NULL);
+    client *c = client_new(d);
+    put_mesh(c, GRID);
+    listener *l = listener_open(d, EVENTS, NULL, 0);
+    for (unsigned i = 0; i < PUTS; i++) {
+        (void)snprintf(body, sizeof body,
+                       "{\"client\":\"a\",\"selection\":{\"kind\":\"face\",\"ids\":[%u]}}", i);
+        reply r = client_send(c, "PUT", "/v1/meshes/m/presence", NULL, body);
+        assert_int_equal(r.status, 200);
+        reply_free(&r);
+    }
+    for (; face < PUTS - 1; told++) {
+        assert_string_equal(listener_next(l, true), "presence");
+        const cJSON *changed = cJSON_GetArrayItem(cJSON_GetObjectItem(l->data, "changed"), 0);
+        const cJSON *ids = cJSON_GetObjectItem(cJSON_GetObjectItem(changed, "selection"), "ids");
+        assert_true(cJSON_GetArrayItem(ids, 0)->valuedouble > face);
+        face = cJSON_GetArrayItem(ids, 0)->valuedouble;
+    }
+    assert_true(told <= PUTS);
+    printf("note: %d presences were told in %u events\n", PUTS, told);
+    reply r =
+        client_send(c, "PUT", "/v1/meshes/m/presence", NULL, "{\"client\":\"a\",\"leaves\":true}");
+    reply_free(&r);
+    assert_string_equal(listener_next(l, true), "presence");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(l->data, "clients")), 0);
+    listener_close(l);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
 static void a_gap_in_the_history_is_a_resync(void **state)
 {
     (void)state;
@@ -532,6 +571,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_copy_stays_equal_through_random_edits),
         cmocka_unit_test(an_id_of_another_incarnation_is_a_resync),
+        cmocka_unit_test(the_newest_presence_is_told_and_not_each_one),
         cmocka_unit_test(a_gap_in_the_history_is_a_resync),
         cmocka_unit_test(who_reads_nothing_is_sent_to_fetch_anew),
         cmocka_unit_test(a_dead_client_makes_room),
