@@ -42,6 +42,13 @@ const api_parameter api_parameter_contains = {
 const api_parameter api_parameter_revision = {
     "revision", API_PARAM_U64, 1,
     0x1p53,     NULL,          "An earlier revision that the history still holds."};
+const api_parameter api_parameter_embed = {
+    "embed",
+    API_PARAM_TEXT,
+    0,
+    API_MAX_URI,
+    NULL,
+    "The page shows only the view, for a frame of another page. The value may be left out."};
 const api_parameter api_parameter_since = {
     "since", API_PARAM_U64, 1, 0x1p53, NULL, "Only changes after this revision."};
 const api_parameter api_parameter_drawn = {

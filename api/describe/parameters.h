@@ -16,6 +16,6 @@ extern const api_parameter api_parameter_limit, api_parameter_cursor, api_parame
     api_parameter_ids, api_parameter_type, api_parameter_type_out, api_parameter_type_in,
     api_parameter_components, api_parameter_meets, api_parameter_merge, api_parameter_flat,
     api_parameter_sort, api_parameter_contains, api_parameter_small, api_parameter_dry_run,
-    api_parameter_rule;
+    api_parameter_rule, api_parameter_embed;
 
 #endif

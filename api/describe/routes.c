@@ -736,6 +736,7 @@ static const api_route routes[] = {
      .role = API_ROLE_OPEN,
      .flags = API_FIXED | API_OWN_QUERY,
      .produces = html,
+     .parameters = {&api_parameter_embed},
      .statuses = {200, 304},
      .summary = "The viewer",
      .doc = "A page to view, inspect and edit meshes. With the query `embed` it has only the view, "
