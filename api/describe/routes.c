@@ -739,9 +739,9 @@ static const api_route routes[] = {
      .parameters = {&api_parameter_embed},
      .statuses = {200, 304},
      .summary = "The viewer",
-     .doc = "A page to view, inspect and edit meshes. With the query `embed` it has only the view, "
-            "for "
-            "frames of other pages, which the option --allow-frame permits."},
+     .doc =
+         "A page to view, inspect and edit meshes. The option --allow-frame says whose pages may "
+         "show it in frames."},
     {.method = "GET",
      .path = "/docs",
      .name = "get_docs",
