@@ -55,6 +55,8 @@ static void let_things_happen(client *c)
     reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/undo", "{}")));
     reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/redo", "{}")));
     reply_done(reply_expect(409, client_post(c, "/v1/meshes/m/redo", "{}")));
+    reply_done(reply_expect(
+        200, client_send(c, "PUT", "/v1/meshes/m/presence", NULL, "{\"client\":\"a\"}")));
     reply_done(reply_expect(404, client_get(c, "/v1/meshes/none")));
     reply_done(reply_expect(404, client_get(c, "/nowhere/at/all")));
     reply_done(reply_expect(405, client_send(c, "BREW", "/v1/meshes", NULL, NULL)));
@@ -97,6 +99,7 @@ static const char *const moved[] = {
     "hedge_memory_bytes{holder=\"content\"}",
     "hedge_memory_bytes{holder=\"history\"}",
     "hedge_event_streams{about=\"mesh\"}",
+    "hedge_clients_present",
     "hedge_events_total",
     "hedge_event_lag_seconds_count",
     "hedge_jobs{state=\"done\"}",
