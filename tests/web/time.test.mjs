@@ -16,9 +16,9 @@ const slider = (page) => page.getByRole('slider', { name: 'Look at revision' });
 const note = (page) => page.getByRole('group', { name: 'An earlier revision' });
 
 // Whether a pixel is tinted in the colour of faces that are gone, new or moved.
-const isGone = ([r, g, b]) => r > 120 && r > g + 45 && r > b + 45;
+const isGone = ([r, g, b]) => r > 120 && r > g + 45 && Math.abs(g - b) < 40;
 const isMade = ([r, g, b]) => g > 100 && g > r + 30 && g > b + 15;
-const isMoved = ([r, g, b]) => r > 130 && g > 110 && r > b + 40 && g > b + 25;
+const isMoved = ([r, g, b]) => g > 110 && r > b + 40 && g > b + 25 && g > 0.77 * r;
 
 // Waits until the page shows an earlier revision, or the present one (null).
 function waitForPast(page, past) {
@@ -39,13 +39,26 @@ async function openEdited(t, options) {
     return opened;
 }
 
-// Returns which of the colours a part of the canvas has, from `from` to `to` of its width.
+// Returns which of the colours a part of the canvas has, from `from` to `to` of its width; what lies
+// over the canvas does not count.
 async function tintsIn(page, from, to) {
     await page.locator('#canvas').blur();
+    const canvas = await page.locator('#canvas').boundingBox();
+    const over = await Promise.all(
+        ['#past-note', '#wiper'].map((one) => page.locator(one).boundingBox()),
+    );
+    const isOver = (x, y) =>
+        over.some((box) => {
+            const [left, top] = [x + canvas.x - (box?.x ?? 0), y + canvas.y - (box?.y ?? 0)];
+            return box !== null && left >= 0 && top >= 0 && left <= box.width && top <= box.height;
+        });
     const { width, height, colour } = await readCanvas(page);
     const found = { gone: 0, made: 0, moved: 0, plain: 0 };
     for (let y = 0; y < height; y += 2) {
         for (let x = Math.ceil(from * width); x < to * width; x += 2) {
+            if (isOver(x, y)) {
+                continue;
+            }
             const pixel = colour(x, y);
             found.gone += isGone(pixel);
             found.made += isMade(pixel);

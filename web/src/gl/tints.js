@@ -29,9 +29,10 @@ export class Tints {
     // Each is {color, triangles, lines, dots}: three numbers for each point, see changed.js.
     set(name, shapes) {
         this.#remove(name);
-        if (shapes.length > 0) {
+        const objects = shapes.flatMap((shape) => this.#objectsOf(shape));
+        if (objects.length > 0) {
             const group = new Group();
-            group.add(...shapes.flatMap((shape) => this.#objectsOf(shape)));
+            group.add(...objects);
             this.#named.set(name, group);
             this.group.add(group);
         }
