@@ -311,7 +311,10 @@ const guide = new Guide(
 );
 const share = new Share();
 const address = new Address(session, stage, share);
-const presence = new Presence(session, { camera: () => stage.camera, onChange: showPeople });
+const presence = new Presence(session, isEmbedded, {
+    camera: () => stage.camera,
+    onChange: showPeople,
+});
 const selections = new Selections(byId('others'), stage, fail);
 const flash = new Flash(stage);
 const people = new People(
@@ -466,7 +469,7 @@ function followOthers(what, change) {
         showPeople();
         selections.show(session.shown, session.others.besides(presence.client));
     }
-    if (!isEmbedded && (isChanged || what === 'selection' || what === 'state')) {
+    if (isChanged || what === 'selection' || what === 'state') {
         presence.soon();
     }
 }

@@ -3,7 +3,7 @@
 
 // The colours of other clients, as text and as a number. They differ from those of the selection,
 // of boundary loops and of changes.
-const COLORS = ['#c77dff', '#5ad1c8', '#ff8fa3', '#8ecae6', '#b5e48c', '#f4a261', '#90a8ff', '#e5989b'];
+const COLORS = ['#c77dff', '#5ad1c8', '#ff8fa3', '#8ecae6', '#b5e48c', '#f78fd6', '#90a8ff', '#d4b8ff'];
 
 export class Others {
     #clients = new Map();

@@ -20,6 +20,7 @@ export class Presence {
     isRefused = false; // the server does not show this page to others now
 
     #session;
+    #isSilent;
     #cameraNow;
     #onChange;
     #mesh = null; // the mesh at which this page has shown itself
@@ -28,9 +29,10 @@ export class Presence {
     #timer = 0;
 
     // `camera()` returns the numbers of the camera, see Stage.camera. `onChange()` is called when
-    // `isRefused` has changed.
-    constructor(session, { camera, onChange }) {
+    // `isRefused` has changed. If `isSilent` is true, the page never shows itself.
+    constructor(session, isSilent, { camera, onChange }) {
         this.#session = session;
+        this.#isSilent = isSilent;
         this.#cameraNow = camera;
         this.#onChange = onChange;
         window.addEventListener('pagehide', () => this.#leave(true));
@@ -39,6 +41,9 @@ export class Presence {
 
     // Called when something that is shown to others may have changed.
     soon() {
+        if (this.#isSilent) {
+            return;
+        }
         clearTimeout(this.#timer);
         this.#timer = setTimeout(() => this.#send(), SOON);
     }
