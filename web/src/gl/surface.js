@@ -305,6 +305,7 @@ export class Surface {
             object.geometry.dispose();
             object.material.dispose();
         }
+        Object.values(this.#ways).forEach((material) => material.dispose());
     }
 
     // Called when the contents of the graphics memory are lost: all textures are uploaded again.
