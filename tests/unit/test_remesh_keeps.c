@@ -173,7 +173,7 @@ static double side_of(const he_mesh *m, uint32_t face)
     for (unsigned i = 0; i < 3; i++) {
         sum += dense_corner(m, face, i).x;
     }
-    return sum / 3 > SIDE / 2 ? 1 : 0;
+    return sum / 3 > 0.5 * SIDE ? 1 : 0;
 }
 
 static void values_stay_on_their_side_of_a_line(void **state)
