@@ -21,8 +21,7 @@ export const fill = ['natural', 'shuffled'].map((order) => ({
         target: [['cgal', 3]],
         why:
             'the patch is bent twice, coarse and fine, for half of the time, and has a quarter more ' +
-            'vertices and half of the distance from the surface; a fifth is the growth of the arrays ' +
-            'of the mesh around the hole',
+            'vertices; a fifth is the growth of the arrays of the mesh around the hole',
         errors: [{
             by: 'fill_error',
             rows: [{
