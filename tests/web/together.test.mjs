@@ -139,6 +139,32 @@ test('a link shows another what one sees', async (t) => {
     assert.equal(await cameraOf(other), camera);
 });
 
+test('a link shows the look, the section and the colours, too', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, GRID);
+    await page.getByRole('button', { name: 'View', exact: true }).click();
+    await page.getByRole('radio', { name: 'X-ray' }).check();
+    await page.locator('#section-axes').getByRole('radio', { name: 'X', exact: true }).check();
+    await page.getByLabel('Exact position of the section').fill('0.25');
+    await page.locator('#colour-by').focus();
+    await page.locator('#colour-by option[value="measure/faces/area"]').waitFor({ state: 'attached' });
+    await page.locator('#colour-by').selectOption('measure/faces/area');
+    await page.locator('#canvas[data-colour^="measure/faces/area"]').waitFor();
+    const shown = await page.evaluate(() => new URLSearchParams(location.hash.slice(1)).get('mesh'));
+    assert.equal(shown, mesh);
+    await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+    await page.getByRole('button', { name: 'Share' }).click();
+    await page.getByText('Link copied').waitFor();
+    const link = await page.evaluate(() => navigator.clipboard.readText());
+    const other = await openPage(t, daemon, { path: link.slice(daemon.url.length) });
+    await other.locator('#canvas[data-colour^="measure/faces/area"]').waitFor();
+    await other.getByRole('button', { name: 'View', exact: true }).click();
+    assert.ok(await other.getByRole('radio', { name: 'X-ray' }).isChecked());
+    assert.equal(await other.getByLabel('Exact position of the section').inputValue(), '0.25');
+    // A link of another origin may say anything.
+    const wrong = await openPage(t, daemon, { path: `/#mesh=${mesh}&look={"way":7&colour=x~y~z~1` });
+    await waitForFrame(wrong, { mesh, revision: 1 });
+});
+
 test('a link with several elements selects them all', async (t) => {
     const { daemon, mesh } = await openMesh(t, GRID);
     const page = await openPage(t, daemon, { path: `/#mesh=${mesh}&face=3,7,1&unknown=part` });

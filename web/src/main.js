@@ -21,6 +21,7 @@ import { keyList, listenToKeys } from './stage/keys.js';
 import { Legend } from './stage/legend.js';
 import { Lens } from './lens/lens.js';
 import { Look } from './look/look.js';
+import { linkOf, stateOfLink } from './look/state.js';
 import { MeshList } from './meshes/list.js';
 import { Measuring } from './measure/measuring.js';
 import { MeshActs } from './meshes/acts.js';
@@ -310,6 +311,16 @@ const guide = new Guide(
     { onMade: openNew, onRun: (operations) => session.run(operations), onError: fail },
 );
 const share = new Share();
+share.register('look', {
+    get: () => linkOf(look.state),
+    set: (text) => {
+        const state = text === null ? null : stateOfLink(text);
+        if (state !== null) {
+            look.state = { ...state, hurry: look.state.hurry };
+        }
+    },
+});
+share.register('colour', { get: () => colouring.shared, set: (text) => colouring.show(text) });
 const address = new Address(session, stage, share);
 const presence = new Presence(session, isEmbedded, {
     camera: () => stage.camera,

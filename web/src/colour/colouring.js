@@ -116,6 +116,33 @@ export class Colouring {
         this.#elements.select.scrollIntoView({ block: 'nearest' });
     }
 
+    // What the colours show as the text of a link, or null if they show nothing: the choice, its part, the
+    // colour map and the range.
+    get shared() {
+        if (this.#source === null) {
+            return null;
+        }
+        return [this.#source.key, this.#part ?? '', this.#map ?? '', ...(this.#range ?? [])].join('~');
+    }
+
+    // Shows what the text of a link says; null is nothing. What the mesh does not have is passed over.
+    async show(text) {
+        if (text === this.shared) {
+            return;
+        }
+        const [key, part, map, ...range] = (text ?? '').split('~');
+        await this.#readSources();
+        await this.#choose(key);
+        if (this.#read !== null) {
+            const parts = partsOf(this.#source).map(([value]) => value);
+            this.#part = parts.includes(part) ? part : this.#part;
+            this.#map = map || null;
+            const [low, high] = range.map((value) => Number(value || NaN));
+            this.#range = low <= high && Number.isFinite(high - low) ? [low, high] : null;
+            this.#show();
+        }
+    }
+
     // Takes the colours away.
     clear() {
         this.#reset();

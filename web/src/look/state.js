@@ -112,3 +112,21 @@ export function rangeOf(normal, { low, high }, { origin, scale }) {
         }, 0);
     return [sum(0), sum(1)];
 }
+
+// Returns a look as the text of a link, or null if it is the look of the first visit: what differs from
+// that, as JSON. What is drawn while the camera moves is left to each visitor.
+export function linkOf(state) {
+    const differs = Object.entries(state).filter(
+        ([name, value]) => name !== 'hurry' && JSON.stringify(value) !== JSON.stringify(FIRST[name]),
+    );
+    return differs.length === 0 ? null : JSON.stringify(Object.fromEntries(differs));
+}
+
+// Returns the look that the text of a link says, or null if it says none.
+export function stateOfLink(text) {
+    try {
+        return toState(JSON.parse(text));
+    } catch {
+        return null;
+    }
+}
