@@ -465,6 +465,7 @@ static bool hear(st_listener *listener, bool *ended)
         atomic_fetch_add(&events, 1);
         return true;
     case ST_QUEUE_WAIT:
+    case ST_QUEUE_NUDGED:
         return false;
     case ST_QUEUE_BEHIND:
         (void)st_queue_skip(listener);
