@@ -391,7 +391,7 @@ test('a set is saved, chosen again, used in a form, and deleted', async (t) => {
         headers: { 'Content-Type': 'application/json' },
         body: JSON.stringify({ type: 'double' }),
     });
-    assert.equal(put.status, 200);
+    assert.equal(put.status, 201);
     await waitForFrame(page, { revision: 4 });
     await page.locator('#set-name').fill('weight');
     await page.locator('#set-save').click();
@@ -410,7 +410,8 @@ test('a set is saved, chosen again, used in a form, and deleted', async (t) => {
 });
 
 test('more elements than are read are selected, drawn, counted, and edited', async (t) => {
-    const { daemon, mesh, page } = await openMesh(t, LARGE);
+    // A dry run of the form may name a face that the other client has just deleted.
+    const { daemon, mesh, page } = await openMesh(t, LARGE, { allowed: [/status of 422/] });
     await press(page, 'a');
     await waitForFrame(page, { selection: '1600 faces' });
     assert.equal(await page.locator('#element-title').textContent(), '1,600 faces');
