@@ -198,7 +198,7 @@ export class Contract {
             this.checkHeaders(response, answer, wrong);
             this.checkBody(exchange, response, answer, wrong);
         }
-        if (status < 300 || status === 304) {
+        if (status < 400) {
             found.hits += 1;
             this.checkParameters(route, found.operation, path, query, request, wrong);
             this.checkRequest(found.operation, { ...request, query }, { ...answer, status }, wrong);
@@ -486,7 +486,12 @@ function variables({ template }) {
 
 // Returns the values that the segments of a path have for the variables of a template such as
 // /meshes/{mesh}, whose segments are `wanted`, or null if the path does not fit the template.
-function variablesOf(wanted, given) {
+function variablesOf(wanted, path) {
+    const last = wanted.length - 1;
+    // {asset} stands for the rest of a path, slashes included (route.h).
+    const given = wanted[last] === '{asset}' && path.length > wanted.length
+        ? [...path.slice(0, last), path.slice(last).join('/')]
+        : path;
     if (wanted.length !== given.length) {
         return null;
     }
