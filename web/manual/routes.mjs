@@ -19,6 +19,7 @@ const job = {
     headers: { Prefer: 'respond-async' },
     body: { shape: 'torus', major_segments: 24, minor_segments: 12 },
 };
+const presence = { client: 'b7Qw', name: 'Ada', selection: { kind: 'face', ids: [0] } };
 const page = { answer: false, run: false };
 const task = { answer: false, run: false };
 
@@ -44,9 +45,14 @@ export const ROUTES = {
     preview_deform: { mesh: 'sheet', body: { op: 'deform', vertices: [5], by: [0, 0, 1], fixed: [0, 3, 12, 15] } },
     apply_edits: { body: { op: 'edge_split', edge: 2, t: 0.5 } },
     list_edits: { setup: [poke] },
-    name_revision: { path: kite('/edits/2'), setup: [poke], body: { name: 'First try' } },
-    put_presence: { body: { client: 'my-tab-7f3a', name: 'Ada', selection: { kind: 'face', ids: [0] } } },
-    list_presence: { setup: [{ method: 'PUT', path: kite('/presence'), body: { client: 'my-tab-7f3a', name: 'Ada' } }], answer: false },
+    name_revision: {
+        path: kite('/edits/2'),
+        headers: { 'Content-Type': 'application/merge-patch+json' },
+        body: { name: 'with a peak' },
+        setup: [poke],
+    },
+    put_presence: { body: presence },
+    list_presences: { setup: [{ method: 'PUT', path: kite('/presence'), body: presence }] },
     undo_edits: { setup: [poke] },
     redo_edits: { setup: [poke, post(kite('/undo'))] },
     follow_mesh: { path: kite('/events?since=1'), setup: [poke], events: 1 },
