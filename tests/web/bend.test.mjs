@@ -180,9 +180,9 @@ async function beginDrag(page, by) {
     await page.mouse.move(x + by[0], y + by[1]);
 }
 
-// Waits until the canvas passes a test of its pixels, for some hundred frames.
+// Waits until the canvas passes a test of its pixels, for some thousand frames.
 async function waitForPicture(page, what, test) {
-    for (let frame = 0; frame < 300; frame++) {
+    for (let frame = 0; frame < 3000; frame++) {
         if (test(await readCanvas(page))) {
             return;
         }
