@@ -25,8 +25,8 @@ struct he_deformer {
     he_sparse matrix;  /* over all vertices of the patch: the Laplacian L, or L (1/m) L */
     he_sparse system;  /* its rows and columns of free vertices */
     he_factor *factor; /* of `system`; NULL if no vertex is free */
-    /* For each free vertex, what is the same for all translations of the handles (deform_fields.c):
-     * four columns. NULL if the system is singular, or almost. */
+    /* Four columns with a row for each free vertex: what is the same for all translations of the
+     * handles (deform_fields.c). NULL if the system is singular, or almost. */
     double *fields;
 };
 

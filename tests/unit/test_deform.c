@@ -373,9 +373,8 @@ static void what_lies_behind_fixed_vertices_stays(void **state)
     }
 }
 
-/* The handles that `by` and `to` give go to the same places. */
-/* For a translation the deformer uses fields that it made before; if one of the handles moves a
- * little differently, it solves for the motion. */
+/* The deformer uses fields that it made before if all handles move by the same vector; if one of
+ * them moves a little differently, it solves for the motion. */
 static void a_translation_leads_where_its_equations_do(void **state)
 {
     (void)state;
@@ -434,6 +433,7 @@ static void extremes_are_told_as_numbers(void **state)
     he_mesh_free(m);
 }
 
+/* The handles that `by` and `to` give go to the same places. */
 static void vectors_and_points_agree(void **state)
 {
     (void)state;

@@ -5,6 +5,7 @@
 #include "unit/fixture.h"
 
 #include "journal/crc32c.h"
+#include "journal/record_bytes.h"
 #include "stored/stored.h"
 #include "system/memory.h"
 
