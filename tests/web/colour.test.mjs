@@ -530,11 +530,11 @@ test('segment offers colours by patch, remesh by quality, and decimate by deviat
     await offer('Colour by patch').click();
     await waitForColor(page, 'attribute/faces/patch 2');
     await apply('remesh', { edge_length: '0.3' });
-    await waitForTold(page, /revision 3/);
+    await waitForFrame(page, { mesh, revision: 3 });
     await offer('Colour by the smallest angle').click();
     await waitForColor(page, 'measure/faces/smallest_angle 3');
     await apply('decimate', { faces: '100' });
-    await waitForTold(page, /revision 4/);
+    await waitForFrame(page, { mesh, revision: 4 });
     await offer('Colour by the deviation').click();
     await waitForColor(page, 'attribute/vertices/deviation 5');
     await waitForFrame(page, { mesh, revision: 5 });

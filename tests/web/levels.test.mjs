@@ -91,7 +91,7 @@ function seenUntil(page, faces) {
 }
 
 test('a mesh is shown from coarse to fine, and any level by a slider', async (t) => {
-    const { daemon, mesh, page } = await openMesh(t, SPHERE);
+    const { daemon, mesh, page } = await openMesh(t, SPHERE, { reducedMotion: 'no-preference' });
     const surface = async () => (await readCanvas(page)).countOf(isSurface);
     const whole = await surface();
     const seen = seenUntil(page, FACES);
@@ -219,7 +219,7 @@ test('levels are given up while they are waited for, and asked for again', async
 });
 
 test('playing waits for what has not come, and can be stopped and begun again', async (t) => {
-    const { page, ask } = await openHeld(t);
+    const { page, ask } = await openHeld(t, { reducedMotion: 'no-preference' });
     const answer = await ask();
     const valueText = () => slider(page).getAttribute('aria-valuetext');
     await sendTo(page, answer, 0.5);
