@@ -7,7 +7,7 @@ const document = JSON.parse(readFileSync(process.argv[2], 'utf8'));
 const faults = [];
 const isSchema = (path) => /\/(schema|items|additionalProperties|x-item-schema)$|\/(schemas|properties)\/[^/]*$|\/(oneOf|anyOf|allOf)\/\d+$/.test(path);
 const VERBS = new Set(['apply', 'back', 'check', 'compare', 'copy', 'create', 'delete', 'export', 'follow', 'get',
-    'list', 'preview', 'query', 'redo', 'reload', 'replace', 'traverse', 'undo', 'update']);
+    'list', 'name', 'preview', 'put', 'query', 'redo', 'reload', 'replace', 'traverse', 'undo', 'update']);
 const resolve = ({ $ref: reference, ...schema }) =>
     reference === undefined ? schema : reference.slice(2).split('/').reduce((at, name) => at[name], document);
 const only = (value, name) => Object.keys(value).every((key) => key === name);

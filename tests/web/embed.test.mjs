@@ -42,6 +42,13 @@ test('the embedded page has only the view and a link', async (t) => {
     for (const part of ['.bar', '.meshes', '#details']) {
         assert.ok(await page.locator(part).isHidden(), part);
     }
+    // Keys neither edit nor open anything.
+    for (const key of ['x', 's', 'Control+z', 'e', 'Control+k', 'v']) {
+        await page.locator('#canvas').press(key);
+    }
+    assert.equal((await (await fetch(`${daemon.url}/v1/meshes/${mesh}`)).json()).revision, 1);
+    assert.equal(await page.getByRole('dialog').count(), 0);
+    assert.ok(await page.locator('#view-panel').isHidden());
     const link = page.getByRole('link', { name: 'Open in hedge' });
     await link.hover();
     const href = await link.getAttribute('href');

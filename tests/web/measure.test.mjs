@@ -6,7 +6,7 @@ import { test } from 'node:test';
 import { formatAngle, formatLength } from '../../web/src/kit/lengths.js';
 import { angleAt, angleBetween, circleThrough, distance, pointsOf } from '../../web/src/measure/shapes.js';
 import { checkAccessible, projector, readCanvas, waitForFrame } from './browser.mjs';
-import { getAll, post } from './daemon.mjs';
+import { get, getAll, post } from './daemon.mjs';
 import { click, expectToast, goTo, press } from './page.mjs';
 import { openMesh } from './visit.mjs';
 
@@ -157,6 +157,25 @@ test('clicks measure: they snap to vertices, and else hit the surface exactly', 
     await page.getByRole('radio', { name: 'Face', exact: true }).check();
     await click(page, project.at(top.vertices));
     await waitForFrame(page, { selection: `face:${top.id}` });
+});
+
+test('measuring puts other tools down, and measures what it says whatever clicks picked before', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    const project = await projector(page, daemon, mesh);
+    const faces = (await getAll(daemon, mesh, 'faces')).filter((face) => project.isSeen(face));
+    const [a, b] = faces[0].vertices;
+    await click(page, project.at(faces[0].vertices));
+    await waitForFrame(page, { selection: `face:${faces[0].id}` });
+    await press(page, 'e');
+    await press(page, 'm');
+    await page.getByLabel('What to measure').selectOption('edge');
+    await press(page, '3'); // clicks pick faces, if one does not measure
+    await click(page, project.at([a, b]));
+    await expectValues(page, ['1']);
+    assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
+    // A tool that is taken up ends measuring.
+    await press(page, 'w');
+    assert.equal(await page.locator('#measure-button').getAttribute('aria-pressed'), 'false');
 });
 
 test('the area of the selection is measured', async (t) => {

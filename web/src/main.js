@@ -143,7 +143,7 @@ const importing = new Importing({ toasts, report }, openNew);
 new Uploads(
     { input: byId('file'), work, area: byId('drop') },
     {
-        isOpen: () => signIn.mayEdit,
+        isOpen: mayEdit,
         send: api.upload,
         onDone: (summary, batch) => importing.done(summary, batch),
         onRefused: (error, batch) => importing.refused(error, batch),
@@ -161,10 +161,14 @@ const stage = new Stage(
         content: () => session.shown,
         onPick: (chosen, also, place) =>
             (measuring.isOn && byId('measure-kind').value !== 'area'
-                ? measuring.click(chosen, place)
+                ? measuring.click(place)
                 : editing.pick(chosen, also)
             ).catch(fail),
-        onLine: (event) => select.pickLine(event).catch(fail),
+        onLine: (event) => {
+            if (!measuring.isOn && !editing.isPicking) {
+                select.pickLine(event).catch(fail);
+            }
+        },
         onMode: (kind) => {
             byId('goto-kind').value = kind;
         },
@@ -259,13 +263,23 @@ const measuring = new Measuring(
     },
     session,
     stage,
-    { onStart: () => editing.stopPicking(), onError: fail },
+    {
+        onStart: () => {
+            editing.stop();
+            select.cancel();
+            gizmo.hide();
+        },
+        onError: fail,
+    },
 );
 const select = new Select(canvas, session, stage, {
     isFree: () => !editing.isDragging,
     onArm: () => {
         editing.stop();
         gizmo.hide();
+        if (byId('measure-kind').value !== 'area') {
+            measuring.stop();
+        }
     },
     onTell: (title, detail) => toasts.tell(title, detail),
     onError: fail,
@@ -274,6 +288,7 @@ const gizmo = new Gizmo(canvas, session, stage, {
     onArm: () => {
         editing.stop();
         select.cancel();
+        measuring.stop();
     },
     onRun: (operation) => editing.run(operation, true),
     onError: fail,
@@ -367,7 +382,7 @@ const time = new Time(
         label,
         onChange: () => {
             if (time.isOn) {
-                editing.stopPicking();
+                putToolsDown();
                 endRefining();
             }
             showWhatMayBeDone();
@@ -391,7 +406,7 @@ const refining = new Refining(
     {
         onBegin: () => {
             look.suspend();
-            editing.stopPicking();
+            putToolsDown();
             showWhatMayBeDone();
         },
         onEnd: () => update('content'),
@@ -578,11 +593,12 @@ function showFacts() {
 }
 
 function showWhatMayBeDone() {
-    const ready = isReady(session, signIn.mayEdit) && !refining.isOn && !time.isOn;
+    const ready = isReady(session, mayEdit()) && !refining.isOn && !time.isOn;
+    const isSeen = session.mesh !== null && !refining.isOn && !time.isOn;
     showState(session, ready, stage.isThere);
     editing.setEnabled(ready);
-    measuring.setEnabled(session.mesh !== null && !refining.isOn);
-    select.setEnabled(session.mesh !== null && !refining.isOn, ready);
+    measuring.setEnabled(isSeen);
+    select.setEnabled(isSeen, ready);
     gizmo.setEnabled(ready);
     history.setEnabled(ready);
     lens.setEnabled(ready, session.mesh !== null);
@@ -627,18 +643,31 @@ async function openNew({ id }) {
 
 // --- buttons ---
 
+// Whether the user may change meshes. A page in a frame of another page only shows them.
+function mayEdit() {
+    return signIn.mayEdit && !isEmbedded;
+}
+
+// Ends all that waits for clicks or drags in the view.
+function putToolsDown() {
+    editing.stop();
+    select.cancel();
+    gizmo.hide();
+    measuring.stop();
+}
+
 // Handles the Esc key: ends what is going on in the view, or else clears the selection.
 function giveUp() {
     if (time.isOn) {
         time.end();
     } else if (refining.isWanted) {
         refining.end();
-    } else if (measuring.isOn) {
-        measuring.giveUp();
     } else if (select.isArmed) {
         select.cancel();
     } else if (gizmo.isOn) {
         gizmo.hide();
+    } else if (measuring.isOn) {
+        measuring.giveUp();
     } else {
         editing.giveUp();
     }
@@ -690,7 +719,7 @@ listenToKeys(canvas, {
     frame: frameSelection,
     zoomIn: () => stage.zoom(true),
     zoomOut: () => stage.zoom(false),
-    view: () => look.toggle(),
+    view: () => !isEmbedded && look.toggle(),
     nextWay: () => look.nextWay(),
     move: () => editing.start('move', true),
     extrude: () => editing.start('extrude', true),
@@ -742,12 +771,13 @@ for (const button of document.querySelectorAll('.new-shape')) {
 window.addEventListener('error', (event) => fail(event.error ?? event));
 window.addEventListener('unhandledrejection', (event) => fail(event.reason));
 
-new Palette({
-    operations: () => (signIn.mayEdit && session.mesh !== null ? editing.operations : []),
-    onOpen: (name) => editing.openForm(name),
-});
 if (isEmbedded) {
     embed(() => address.link);
+} else {
+    new Palette({
+        operations: () => (mayEdit() && session.mesh !== null ? editing.operations : []),
+        onOpen: (name) => editing.openForm(name),
+    });
 }
 showWhatMayBeDone();
 inspector.show(session.selection);

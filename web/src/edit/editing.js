@@ -72,6 +72,7 @@ export class Editing {
     #work;
     #onPicking;
     #nextAfter;
+    #isEnabled = false;
     #marking = 0; // number of the last request for the elements that the form's fields name
 
     // `onPicking()` is called when something begins to wait for a click or a drag in the view.
@@ -200,6 +201,7 @@ export class Editing {
     }
 
     setEnabled(isEnabled) {
+        this.#isEnabled = isEnabled;
         this.#tools.setEnabled(isEnabled);
         this.#direct.setEnabled(isEnabled);
         const { kind } = this.#session.selection;
@@ -442,6 +444,11 @@ export class Editing {
         }
     }
 
+    // Whether a field of the form waits for a click.
+    get isPicking() {
+        return this.#tools.isArmed;
+    }
+
     // Ends the wait of the form's field that waits for a click, if there is one.
     stopPicking() {
         this.#tools.disarm();
@@ -450,7 +457,10 @@ export class Editing {
 
     async #giveToField(chosen) {
         const { mesh, selection } = this.#session;
-        const id = chosen === null ? null : await selection.idOf(chosen);
+        if (chosen?.kind !== this.#tools.wantedKind) {
+            return; // the mode in which clicks pick was changed meanwhile
+        }
+        const id = await selection.idOf(chosen);
         if (id !== null) {
             const isVertex = chosen.kind === 'vertex';
             const place = isVertex
@@ -484,6 +494,9 @@ export class Editing {
     // give exact numbers. `isKey` says that the user pressed the tool's key and not its button.
     start(tool, isKey) {
         const name = FORMS[tool];
+        if (!this.#isEnabled) {
+            return;
+        }
         this.#onPicking();
         const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);
         if (!this.#tools.has(name) || !isThere) {

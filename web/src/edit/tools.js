@@ -188,6 +188,11 @@ export class Tools {
         return this.#armed !== null;
     }
 
+    // The kind of elements for which a field waits.
+    get wantedKind() {
+        return this.#armed === null ? null : kindOf(this.#armed.param);
+    }
+
     disarm() {
         if (this.isArmed) {
             this.#arm(null);

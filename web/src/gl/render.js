@@ -301,6 +301,7 @@ export class Renderer {
         this.#marks.setCut(shown);
         this.#cut.show(outline);
         this.#setChosen();
+        this.#ids.forget(); // clicks must not pick what is cut away
         this.#draw();
     }
 

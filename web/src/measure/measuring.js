@@ -66,7 +66,7 @@ export class Measuring {
     toggle() {
         if (this.#isOn) {
             this.stop();
-        } else {
+        } else if (!this.#elements.button.disabled) {
             this.#isOn = true;
             this.#begin();
             this.#elements.section.scrollIntoView({ block: 'nearest' });
@@ -131,10 +131,12 @@ export class Measuring {
         this.#show();
     }
 
-    // Takes a click at [x, y] in the window; `chosen` is the element there, see choose().
-    async click(chosen, place) {
+    // Takes a click at [x, y] in the window.
+    async click(place) {
         const kind = this.#kind;
         const { takes } = KINDS[kind];
+        // The mode in which clicks pick may have been changed since, by a key for example.
+        const chosen = this.#stage.elementAt(...place, PICKED[kind] ?? takes);
         const content = this.#session.shown;
         const ref =
             takes === 'point'

@@ -313,7 +313,7 @@ export class Stage {
     // Returns which triangle is visible in each pixel of the canvas: {width, height, shown}, see
     // region.js; null if the mesh is not drawn.
     get shownTriangles() {
-        return this.#marked?.shownTriangles ?? null;
+        return this.#isPast ? null : (this.#marked?.shownTriangles ?? null);
     }
 
     // Returns the element of a kind at a place in the window, see choose(), or null. If `isKept` is
