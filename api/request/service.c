@@ -538,6 +538,9 @@ static bool end_coding(api_exchange *x)
 static bool parse_body(api_exchange *x)
 {
     api_body_kind kind = x->route->body_kind;
+    if (x->has_root) {
+        return true; /* it was parsed to answer from the card of a mesh (load_and_go_on) */
+    }
     if (kind == API_BODY_NONE || kind == API_BODY_UPLOAD) {
         return kind == API_BODY_NONE || x->received > 0 || api_refuse_empty(x);
     }
@@ -622,10 +625,12 @@ static void go_on(api_exchange *x)
 }
 
 /* Loads the mesh and handles the request as if the mesh had been in memory. This thread may block,
- * so it also does the work that a worker thread would defer, except the work of a job. */
+ * so it also does the work that a worker thread would defer, except the work of a job. A handler
+ * that answers from the mesh's card reads the document of the body, so it is parsed before. */
 static void load_and_go_on(api_exchange *x)
 {
-    if (api_answer_from_card(x) || !api_load_mesh(x)) {
+    if ((x->route->cold != NULL && !parse_body(x)) || api_answer_from_card(x) ||
+        !api_load_mesh(x)) {
         return;
     }
     x->phase = API_PHASE_BODY;

@@ -122,6 +122,39 @@ static void a_cold_mesh_is_changed_like_any_other(void **state)
     end(b);
 }
 
+static void clients_show_themselves_at_a_cold_mesh(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *method, *body;
+        int status;
+        const char *says;
+    } cases[] = {
+        {"PUT", "{\"client\":\"a\",\"name\":\"A\"}", 200,
+         "{\"clients\":[{\"client\":\"a\",\"name\":\"A\"}]}"},
+        {"PUT", "{\"client\":\"a\",\"leaves\":true}", 200, "{\"clients\":[]}"},
+        {"GET", NULL, 200, "{\"clients\":[]}"},
+        {"PUT", "{\"client\":7}", 400, "/client"},
+        {"PUT", "{\"client\":", 400, "JSON"},
+        {"PUT", NULL, 400, "missing_body"},
+    };
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        b = restart(b);
+        bench_reply r = bench_expect(
+            cases[i].status,
+            bench_send(b, cases[i].method, "/v1/meshes/m/presence", NULL, cases[i].body));
+        if (strstr(r.body, cases[i].says) == NULL) {
+            fail_msg("%s: %s", cases[i].body == NULL ? "no body" : cases[i].body, r.body);
+        }
+        bench_done(r);
+    }
+    b = restart(b);
+    expect_code(404, "no_such_mesh",
+                bench_send(b, "PUT", "/v1/meshes/x/presence", NULL, "{\"client\":\"a\"}"));
+    end(b);
+}
+
 static void octets_of_an_attribute_are_counted_when_the_mesh_is_there(void **state)
 {
     (void)state;
@@ -345,6 +378,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_read_is_what_it_was),
         cmocka_unit_test(a_cold_mesh_is_changed_like_any_other),
+        cmocka_unit_test(clients_show_themselves_at_a_cold_mesh),
         cmocka_unit_test(octets_of_an_attribute_are_counted_when_the_mesh_is_there),
         cmocka_unit_test(preconditions_hold_of_a_cold_mesh),
         cmocka_unit_test(a_list_loads_nothing),
