@@ -186,9 +186,11 @@ static bool redirect_to_route(api_exchange *x)
         return false;
     }
     if (api_rating_enter(x)) {
+        char location[API_MAX_URI + 8]; /* path and query together have API_MAX_URI bytes at most */
+        snprintf(location, sizeof location, "../%s%s%s", strrchr(trimmed, '/') + 1,
+                 query[0] != '\0' ? "?" : "", query);
         api_answer_empty(x, 308);
-        api_answer_header_format(x, "Location", "../%s%s%s", strrchr(trimmed, '/') + 1,
-                                 query[0] != '\0' ? "?" : "", query);
+        api_answer_header(x, "Location", location);
     }
     return true;
 }

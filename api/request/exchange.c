@@ -403,7 +403,7 @@ void api_answer_header(api_exchange *x, const char *name, const char *value)
 
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
 {
-    char text[1024];
+    char text[API_HEADER_TEXT];
     va_list arguments;
     va_start(arguments, format);
     int length = vsnprintf(text, sizeof text, format, arguments);

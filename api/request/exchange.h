@@ -280,6 +280,10 @@ void api_answer_live(api_exchange *x, int status, const char *type, const api_so
 /* Sets a header of the answer, replacing one with this name; `value` is copied. It may be called
  * before or after the function that answers. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);
+/* Sets a header to a formatted value, which must have less than API_HEADER_TEXT bytes: the caller
+ * knows how long its parts are. A value with text of the client, such as a part of the path or the
+ * query, goes to api_answer_header. */
+enum { API_HEADER_TEXT = 1024 };
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Sets the ETag of the answer, made from the mesh's state in x->info and the name of the

@@ -388,6 +388,50 @@ static void a_slash_too_many_at_the_end_leads_to_the_path_without_it(void **stat
     }
 }
 
+/* Requires that a GET of `path`, which ends in a slash, leads to the last segment without it. */
+static void expect_redirect(const char *path, const char *query)
+{
+    char expected[API_MAX_URI + 8];
+    const size_t length = strlen(path) - 1;
+    size_t begin = length;
+    while (path[begin - 1] != '/') {
+        begin--;
+    }
+    snprintf(expected, sizeof expected, "../%.*s%s%s", (int)(length - begin), path + begin,
+             query[0] == '\0' ? "" : "?", query);
+    const api_request request = {.method = "GET", .path = path, .query = query, .request_id = "r"};
+    api_exchange *x = api_handle(service, &request, NULL, 0);
+    assert_int_equal(api_answer_of(x)->status, 308);
+    assert_string_equal(answer_header(api_answer_of(x), "Location"), expected);
+    api_free(x);
+}
+
+static void a_long_path_or_query_is_redirected_as_a_whole(void **state)
+{
+    (void)state;
+    static const char *const folders[] = {"/docs/", "/assets/"};
+    char query[API_MAX_URI + 1], path[API_MAX_URI + 1];
+    for (size_t bytes = 1000; bytes <= API_MAX_URI - 6; bytes += bytes < 1040 ? 1 : 2384) {
+        memset(query, 'a', bytes);
+        query[bytes] = '\0';
+        expect_redirect("/docs/", query);
+    }
+    memset(query, 'a', API_MAX_URI - 6);
+    query[API_MAX_URI - 6] = '\0';
+    expect_redirect("/docs/", query);
+    for (size_t i = 0; i < 2; i++) {
+        /* The escapes are three times as long as the segment that they stand for. */
+        int used = snprintf(path, sizeof path, "%s", folders[i]);
+        for (unsigned k = 0; k < API_MAX_SEGMENT; k++) {
+            used += snprintf(path + used, sizeof path - (size_t)used, "%%61");
+        }
+        snprintf(path + used, sizeof path - (size_t)used, "/");
+        expect_redirect(path, "");
+        query[API_MAX_URI - strlen(path)] = '\0';
+        expect_redirect(path, query);
+    }
+}
+
 static void a_range_of_a_file_is_answered_whole_and_said_not_to_be_taken(void **state)
 {
     (void)state;
@@ -729,6 +773,7 @@ int main(void)
         cmocka_unit_test(pages_of_a_configured_origin_may_ask_for_everything),
         cmocka_unit_test(unknown_names_are_answered_with_those_that_exist),
         cmocka_unit_test(a_slash_too_many_at_the_end_leads_to_the_path_without_it),
+        cmocka_unit_test(a_long_path_or_query_is_redirected_as_a_whole),
         cmocka_unit_test(a_range_of_a_file_is_answered_whole_and_said_not_to_be_taken),
         cmocka_unit_test(allow_lists_the_methods_of_a_path),
         cmocka_unit_test(readiness_is_the_servers_to_say),
