@@ -105,22 +105,22 @@ enum {
     /* The route has the parameter `dry_run`, so its answer may describe a state that the mesh never
      * had. */
     API_REHEARSED = 512,
+    /* The route reads, and its cost grows with the mesh. Requests from pages of other sites are
+     * refused, because such pages could make the server work although they cannot read the
+     * answer. */
+    API_EXPENSIVE = 1024,
+    /* Answers of the route show nothing from the store, so they are sent without waiting for the
+     * journal, like answers of routes with API_FIXED. */
+    API_STORELESS = 2048,
+    /* The answer is the result of another request (a job), whose answer may have had no ETag. */
+    API_TAG_OF_OTHERS = 4096,
     /* The limits of clients do not apply to the route: monitoring must always get an answer. */
     API_UNLIMITED = 8192,
     /* If nothing is at the path, a client that accepts HTML gets the page /docs/404 with the status
      * 404, and other clients a problem. */
     API_MISSING_PAGE = 16384,
-    /* The answer is the result of another request (a job), whose answer may have had no ETag. */
-    API_TAG_OF_OTHERS = 4096,
     /* The query belongs to the page that the route answers with; the server does not read it. */
-    API_OWN_QUERY = 16384,
-    /* Answers of the route show nothing from the store, so they are sent without waiting for the
-     * journal, like answers of routes with API_FIXED. */
-    API_STORELESS = 2048,
-    /* The route reads, and its cost grows with the mesh. Requests from pages of other sites are
-     * refused, because such pages could make the server work although they cannot read the
-     * answer. */
-    API_EXPENSIVE = 1024
+    API_OWN_QUERY = 32768
 };
 
 /* A response header of a route, and its description for the OpenAPI document. */

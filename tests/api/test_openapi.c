@@ -156,6 +156,24 @@ static unsigned expect_exposed(const cJSON *at)
     return count;
 }
 
+static const cJSON *not_found_of(const cJSON *root, const char *path)
+{
+    const cJSON *get = json_member(json_member(json_member(root, "paths"), path), "get");
+    return json_member(json_member(get, "responses"), "404");
+}
+
+static void only_the_manual_answers_404_with_a_page(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply r = description(b);
+    const cJSON *content = json_member(not_found_of(r.json, "/docs/{asset}"), "content");
+    assert_non_null(cJSON_GetObjectItem(content, "text/html"));
+    assert_non_null(cJSON_GetObjectItem(not_found_of(r.json, "/"), "$ref"));
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
 static void pages_of_other_origins_may_read_every_header_described(void **state)
 {
     (void)state;
@@ -181,6 +199,7 @@ int main(void)
         cmocka_unit_test(references_meet_and_nothing_is_left_over),
         cmocka_unit_test(shapes_are_those_of_the_table),
         cmocka_unit_test(bodies_take_what_their_schemas_list),
+        cmocka_unit_test(only_the_manual_answers_404_with_a_page),
         cmocka_unit_test(pages_of_other_origins_may_read_every_header_described),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
