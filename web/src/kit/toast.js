@@ -106,22 +106,23 @@ export class Toasts {
     // Shows a message of success, about the open mesh, for a while. If there is something to do about
     // it, `next` is {label, run}, the label and the function of a button; then the message stays
     // until it is closed, unless `next` has `isOffer`, because it can be done at any other time, too.
+    // If there are several things to do, `next` is a list of them, of which some may be null.
     tell(title, detail, next = null) {
         const toast = this.#add('status', title, detail, this.#mesh);
         if (toast === null) {
             return;
         }
-        if (next === null || next.isOffer === true) {
+        const all = [next].flat().filter((one) => one !== null);
+        if (all.every(({ isOffer }) => isOffer === true)) {
             this.#closeLater(toast);
         }
-        if (next === null) {
-            return;
+        for (const { label, run } of all) {
+            const onclick = () => {
+                this.#close(toast);
+                run();
+            };
+            toast.firstElementChild.append(make('button', { type: 'button', onclick }, label));
         }
-        const onclick = () => {
-            this.#close(toast);
-            next.run();
-        };
-        toast.firstElementChild.append(make('button', { type: 'button', onclick }, next.label));
     }
 
     // Returns all messages that can be closed, newest first.

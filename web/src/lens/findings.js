@@ -15,7 +15,7 @@
 
 import { formatCount, formatMeasure, formatNumberOf } from '../kit/dom.js';
 import { hasVertex, pointAt } from '../geometry/geometry.js';
-import { cornersOf, lengthOf, normalOf, placeOf } from './places.js';
+import { cornersOf, isFlat, lengthOf, normalOf, placeOf } from './places.js';
 import { mendOfAll, mendsOfComponent, mendsOfDefect, mendsOfLoop } from './mends.js';
 
 // By name of the group, its title.
@@ -86,7 +86,7 @@ function itemOfLoop(geometry, loop, isTriangles) {
         ids: halfedges,
         vertices,
         normal: size > 0 ? normalOf(geometry, vertices) : null,
-        mends: mendsOfLoop(loop, isTriangles),
+        mends: mendsOfLoop(loop, isTriangles || (size > 0 && !isFlat(geometry, vertices))),
     };
 }
 

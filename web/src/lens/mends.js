@@ -11,15 +11,16 @@ const SHORT = 1e-3;
 
 const always = (...operations) => async () => operations;
 
-// The mends of a boundary loop; `isTriangles` says that the mesh consists of triangles.
-export function mendsOfLoop({ halfedge }, isTriangles) {
+// The mends of a boundary loop; `wantsTriangles` says that the mesh consists of triangles, or that the
+// loop is not flat, so that one face would not be flat, either.
+export function mendsOfLoop({ halfedge }, wantsTriangles) {
     const fill = (method) => always({ op: 'hole_fill', halfedge, method });
     const mends = [
         { label: 'Fill with one face', done: 'The hole is filled.', make: fill('polygon') },
         { label: 'Fill with triangles', done: 'The hole is filled.', make: fill('triangulate') },
     ];
     const smooth = { label: 'Fill smoothly', done: 'The hole is filled.', make: fill('smooth') };
-    return [...(isTriangles ? mends.reverse() : mends), smooth];
+    return [...(wantsTriangles ? mends.reverse() : mends), smooth];
 }
 
 export function mendsOfComponent({ face }) {

@@ -68,6 +68,22 @@ export function normalOf(geometry, vertices) {
     return length > 0 ? normal.map((value) => value / length) : null;
 }
 
+// A polygon counts as flat if its corners are at most this part of its size from a plane.
+const FLAT = 1e-3;
+
+// Returns whether the polygon through some vertices is flat, so that one face can fill it well.
+export function isFlat(geometry, vertices) {
+    const normal = normalOf(geometry, vertices);
+    const ball = ballAround(geometry, vertices);
+    if (normal === null || ball === null) {
+        return true;
+    }
+    const heights = vertices.map((id) =>
+        pointAt(geometry, id).reduce((sum, value, axis) => sum + value * normal[axis], 0),
+    );
+    return Math.max(...heights) - Math.min(...heights) <= 2 * FLAT * ball.radius;
+}
+
 // Returns the ids of the corners of some faces.
 export function cornersOf(geometry, faces) {
     const corners = new Set();

@@ -43,7 +43,22 @@ const WORDS = {
 // The parameters that have a control of their own.
 const OWN = ['format', 'revision'];
 
-let lastFormat = 'obj'; // the format that was chosen last
+let lastFormat = 'obj'; // the format that was chosen last, or that of the file that was read last
+
+// Returns the format in which a file with this name is written again, null if there is none. Pure.
+export function formatOf(name) {
+    const [, end = ''] = /\.([^.]+)$/.exec(name.toLowerCase()) ?? [];
+    const format = end === 'gltf' ? 'glb' : end;
+    return format in FORMATS && format !== 'mtl' ? format : null;
+}
+
+// Returns the label of a format in a sentence, such as "STL".
+export const labelOf = (format) => FORMATS[format].label;
+
+// Says that the dialog opens with this format when it is opened next.
+export function preferFormat(format) {
+    lastFormat = format;
+}
 
 // Returns the choices of a format for a parameter of which the server names `values`. The first is
 // what the server does if the parameter is not given. Pure.
@@ -69,6 +84,28 @@ export async function askExport(content, toasts) {
     );
     const dialog = new Exporting(content, choices, toasts);
     dialog.showFormat();
+}
+
+// Saves a mesh, given by its summary, in a format without asking, and says what was saved and what
+// the file lacks.
+export async function exportNow({ id: mesh, name }, format, toasts) {
+    const { file, size, sentences } = await saveAs({ mesh, name }, { format }, () => {});
+    toasts.tell('Exported', [`${file}, ${formatBytes(size)}.`, ...sentences].join(' '));
+}
+
+// Gets a mesh as the server writes it with the parameters `choices`, and saves it as a file. Returns
+// {file, size, sentences}: the file's name, its bytes, and what it lacks.
+async function saveAs({ mesh, name }, choices, onBytes, signal) {
+    const { format, revision } = choices;
+    const { blob, suggested, warnings } = await api.getFile(mesh, choices, onBytes, signal);
+    const title = revision === undefined ? '' : ` r${revision}`;
+    // An OBJ file refers to its material library by the name that the server suggests.
+    const file =
+        format === 'mtl' && suggested !== null
+            ? suggested
+            : fileNameOf(`${name || mesh}${title}`, format);
+    save(blob, file);
+    return { file, size: blob.size, sentences: sentencesOf(warnings) };
 }
 
 class Exporting {
@@ -149,21 +186,14 @@ class Exporting {
         this.#ask.start('Exporting');
         const stop = new AbortController();
         this.#ask.begin(() => stop.abort());
-        const { blob, suggested, warnings } = await api.getFile(
-            this.#content.mesh,
+        const { mesh, summary } = this.#content;
+        const { file, size, sentences } = await saveAs(
+            { mesh, name: summary.name },
             { format, revision, ...chosen },
             (bytes) => this.#ask.show({ phase: `Exporting: ${formatBytes(bytes)}` }),
             stop.signal,
         );
-        const { name } = this.#content.summary;
-        const title = revision === undefined ? '' : ` r${revision}`;
-        // An OBJ file refers to its material library by the name that the server suggests.
-        const file =
-            format === 'mtl' && suggested !== null
-                ? suggested
-                : fileNameOf(`${name || this.#content.mesh}${title}`, format);
-        save(blob, file);
-        return this.#tell(file, blob.size, sentencesOf(warnings));
+        return this.#tell(file, size, sentences);
     }
 
     // Says what was saved. If the file lacks something, the dialog stays open and lists that.

@@ -3,6 +3,7 @@
 
 import * as api from '../wire/api.js';
 import { DEFECTS, defectsIn, defectsOf, sizesOf } from './defects.js';
+import { exportNow, formatOf, labelOf, preferFormat } from './exporting.js';
 import { formatCount } from '../kit/dom.js';
 import { offerRepairs } from './offer.js';
 
@@ -24,6 +25,10 @@ export class Importing {
     // empty.
     async #open(summary, file) {
         const isTelling = this.#report.keep(summary.id, file.name, summary.import);
+        const format = formatOf(file.name);
+        if (format !== null) {
+            preferFormat(format);
+        }
         await this.#onOpen(summary);
         return isTelling ? { label: 'Show report', run: () => this.#report.open() } : null;
     }
@@ -54,7 +59,9 @@ export class Importing {
 
     // Offers to use a repaired mesh in place of the one that was made from the file.
     #offerFor(summary, batch, found, tag) {
-        const chosen = [...new Set(found.flatMap(({ mender }) => mender ?? []))];
+        const hasHoles = found.some(({ code }) => code === 'open_border');
+        const menders = found.flatMap(({ mender }) => mender ?? []);
+        const chosen = [...new Set([...menders, ...(hasHoles ? fillsOf(batch.file) : [])])];
         const words = {
             title: `Repair ${batch.file.name}`,
             lead: 'The file was imported. A check of the mesh has found:',
@@ -69,7 +76,11 @@ export class Importing {
             );
             const end = isGone ? '' : ' The mesh without repairs was changed meanwhile and stays, too.';
             await this.#onOpen(repaired);
-            this.#toasts.tell(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`, more);
+            this.#tellRepaired(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`, {
+                repaired,
+                file: batch.file,
+                more,
+            });
         });
     }
 
@@ -86,12 +97,34 @@ export class Importing {
             lead: 'The file was refused, because a half-edge mesh cannot hold this:',
             go: 'Import repaired mesh',
         };
-        const { repair: chosen } = error;
+        const chosen = [...new Set([...error.repair, ...fillsOf(batch.file)])];
         await offerRepairs(batch, words, { found: defectsOf(error), chosen }, async (repaired) => {
             const more = await this.#open(repaired, batch.file);
-            this.#toasts.tell(`Read ${name} with repairs`, `${sizesOf(repaired)}.`, more);
+            this.#tellRepaired(`Read ${name} with repairs`, `${sizesOf(repaired)}.`, {
+                repaired,
+                file: batch.file,
+                more,
+            });
         });
     }
+
+    // Says that a mesh was repaired, and offers the repaired file, in the format that it had. `more` is
+    // the button for the report of the import, or null.
+    #tellRepaired(title, text, { repaired, file, more }) {
+        const format = formatOf(file.name);
+        const download = {
+            label: format === null ? '' : `Download ${labelOf(format)}`,
+            run: () =>
+                exportNow(repaired, format, this.#toasts).catch((error) => this.#toasts.show(error)),
+        };
+        this.#toasts.tell(title, text, [format === null ? null : download, more]);
+    }
+}
+
+// Returns the repairs that fill holes, if every hole of such a file is a defect: STL is for solids,
+// while other formats are also for surfaces with a border.
+function fillsOf(file) {
+    return formatOf(file.name) === 'stl' ? ['fill'] : [];
 }
 
 // Returns the warnings of an import that are no defects, such as about images, which are not stored.

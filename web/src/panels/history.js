@@ -2,6 +2,7 @@
 // all edits since. Each revision can be looked at and named.
 
 import { formatCount, make } from '../kit/dom.js';
+import { wordsOfTime } from '../kit/when.js';
 import { wordsOf } from '../open/entry.js';
 import { momentButtons } from '../time/moments.js';
 
@@ -31,6 +32,15 @@ export class History {
         this.#onReturn = onReturn;
         this.#acts = { onLook, onName, onError };
         more.addEventListener('click', () => this.#readOn().catch(onError));
+        document.addEventListener('visibilitychange', () => this.#tellTimes());
+    }
+
+    // Writes again when the revisions were made: in a page that was left open, "14:03" may have become
+    // "yesterday 14:03".
+    #tellTimes() {
+        for (const node of this.#list.querySelectorAll('time')) {
+            node.textContent = wordsOfTime(new Date(node.dateTime), new Date());
+        }
     }
 
     // Shows the first page of the history, as the server sent it.
@@ -66,7 +76,9 @@ export class History {
     #append({ entries, next, undo }) {
         const rows = entries.map((entry) => {
             const row = this.#row(entry);
-            row.append(momentButtons(entry, this.#acts, this.#isEnabled));
+            const moment = momentButtons(entry, this.#acts, this.#isEnabled);
+            moment.prepend(timeOf(entry));
+            row.append(moment);
             return row;
         });
         const first = entries.findLast((entry) => entry.undoable);
@@ -149,6 +161,13 @@ export class History {
         row.dataset.revision = revision;
         return row;
     }
+}
+
+// Returns when a revision was made.
+function timeOf({ time }) {
+    const date = new Date(time);
+    const title = date.toLocaleString();
+    return make('time', { dateTime: time, title, className: 'small' }, wordsOfTime(date, new Date()));
 }
 
 const signs = { created: '+', deleted: '\u2212', modified: '~' };

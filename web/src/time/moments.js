@@ -32,8 +32,7 @@ export function momentButtons(
         const end = () => {
             if (!isOver) {
                 isOver = true;
-                field.remove();
-                box.append(look, write);
+                field.replaceWith(look, write);
             }
         };
         const save = async () => {
@@ -67,7 +66,8 @@ export function momentButtons(
                 end();
             }
         });
-        box.replaceChildren(field);
+        look.remove();
+        write.replaceWith(field);
         field.focus();
         field.select();
     }

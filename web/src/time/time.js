@@ -8,6 +8,7 @@
 
 import { changedFaces, placementOf, shapeOfFaces } from '../geometry/changed.js';
 import { formatNumberOf } from '../kit/dom.js';
+import { wordsOfTime } from '../kit/when.js';
 import { Wiper } from './wiper.js';
 
 // Colours of faces that only the earlier revision has, that only the present one has, and that both
@@ -182,8 +183,19 @@ export class Time {
         this.#stage.wipe(isBeside ? this.#wiper.part : 1);
         said.replaceChildren(
             `You are looking at revision ${past.revision} of ${present.revision}.`,
+            this.#momentOf(past.revision),
             isBeside ? ` ${sumOf(changed)}` : '',
         );
+    }
+
+    // Returns which moment a revision is, as far as the history that was read tells.
+    #momentOf(revision) {
+        const entry = this.#content.history.entries.find((one) => one.revision === revision);
+        if (entry === undefined) {
+            return '';
+        }
+        const name = entry.name === undefined ? '' : `\u201c${entry.name}\u201d, `;
+        return ` It is ${name}from ${wordsOfTime(new Date(entry.time), new Date())}.`;
     }
 }
 

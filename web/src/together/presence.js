@@ -44,6 +44,10 @@ export class Presence {
         if (this.#isSilent) {
             return;
         }
+        // The page leaves a mesh at once, because the mesh may be deleted next.
+        if (this.#session.mesh !== this.#mesh) {
+            this.#leave(false);
+        }
         clearTimeout(this.#timer);
         this.#timer = setTimeout(() => this.#send(), SOON);
     }
