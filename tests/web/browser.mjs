@@ -110,7 +110,7 @@ export async function openPageIn(
 
 // Runs in the page: keeps the texts of success messages, because the page shows them only for some
 // seconds.
-function keepTold() {
+export function keepTold() {
     window.told = [];
     new MutationObserver((changes) => {
         for (const node of changes.flatMap(({ addedNodes }) => [...addedNodes])) {

@@ -2,14 +2,20 @@
 // faces take to open, to draw, to pick in and to edit, and how many bytes the page fetches after an
 // edit; if FOLDER is given, saves a screenshot of each mesh there. Then measures how long levels of
 // detail take: a frame of all triangles, the time until the coarsest level is shown, the frames
-// while levels are played, and the frames after the slider was moved. This is not a test: what it
-// prints depends on the machine.
+// while levels are played, and the frames after the slider was moved.
+//
+// Before all that, measures the page itself: the compressed size of what it loads first, the time until
+// it can be used, the time from a click to the frame in which what was clicked is highlighted, and the
+// clicks, keys and seconds of each task of tasks.mjs. `ONLY=page` ends there.
+//
+// This is not a test: what it prints depends on the machine, and WebGL is drawn by software.
 
 import { writeFile } from 'node:fs/promises';
 import path from 'node:path';
 
-import { countBytes, launch, waitForFrame } from './browser.mjs';
+import { countBytes, keepTold, launch, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
+import { Hand, TASKS, compressedSize } from './tasks.mjs';
 
 const SIDES = [32, 316, 1000];
 const FRAMES = 5;
@@ -145,8 +151,104 @@ async function measureLevels(browser, daemon, side) {
     return { faces: counts.faces, frames: played.length, seconds, times };
 }
 
+// Makes a torus of side * side faces, opens it in a fresh profile, and returns {page, time}: the
+// milliseconds until its first frame is drawn and the operations can be chosen.
+async function openFresh(browser, daemon, side) {
+    const shape = { shape: 'torus', major_segments: side, minor_segments: side };
+    const { id: mesh } = await post(daemon, '', { name: `torus ${side}`, ...shape });
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+    const page = await context.newPage();
+    page.setDefaultTimeout(120000);
+    const time = await timed(
+        () => page.goto(`${daemon.url}/#mesh=${mesh}`),
+        async () => {
+            await waitForFrame(page, { mesh, revision: 1 });
+            await page.locator('#operation option').first().waitFor({ state: 'attached' });
+        },
+    );
+    return { page, time };
+}
+
+// Clicks on faces one after another, and returns the milliseconds from each click to the frame in which
+// the face is highlighted, as the page sees them.
+async function clickTimes(page, count) {
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    await page.evaluate(() => {
+        const canvas = document.getElementById('canvas');
+        window.times = [];
+        let start = null;
+        addEventListener('pointerup', (event) => (start = event.timeStamp), true);
+        new MutationObserver(() => {
+            if (start !== null) {
+                window.times.push(performance.now() - start);
+                start = null;
+            }
+        }).observe(canvas, { attributeFilter: ['data-selection'] });
+    });
+    for (let i = 0; i < count; i++) {
+        await page.mouse.click(x + width / 2 + 7 * (i - count / 2), y + 0.68 * height);
+        await page.waitForFunction((wanted) => window.times.length === wanted, i + 1);
+    }
+    return page.evaluate(() => window.times);
+}
+
+// Does a task of tasks.mjs with a daemon of its own, and returns {clicks, keys, time}.
+async function doTask(browser, task) {
+    const daemon = await startDaemon(lifetime);
+    const made = { daemon, said: [], ...(await task.prepare(daemon)) };
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+    const page = await context.newPage();
+    // The tasks wait for messages that the page shows only for a while.
+    await page.addInitScript(keepTold);
+    if (task.later !== undefined) {
+        await page.clock.setFixedTime(Date.now() + task.later);
+    }
+    await page.goto(daemon.url);
+    await (made.mesh === undefined
+        ? page.getByRole('heading', { name: 'No meshes yet' }).waitFor()
+        : waitForFrame(page, { mesh: made.mesh }));
+    const hand = new Hand(page);
+    const time = await timed(() => task.run(page, hand, made), () => task.check(made));
+    await context.close();
+    return { clicks: hand.clicks, keys: hand.keys, time };
+}
+
+async function measurePage(browser, daemon) {
+    const times = [];
+    let size = 0;
+    for (let i = 0; i < FRAMES; i++) {
+        const { page, time } = await openFresh(browser, daemon, SIDES[0]);
+        times.push(time);
+        size = await compressedSize(page);
+        await page.context().close();
+    }
+    console.log(`what the page loads first, compressed: ${size} bytes`);
+    console.log(`until the page can be used: ${middle(times).toFixed(0)} ms`);
+    const { page } = await openFresh(browser, daemon, SIDES[1]);
+    const clicks = await clickTimes(page, 2 * FRAMES + 1);
+    await page.context().close();
+    const most = Math.max(...clicks).toFixed(0);
+    console.log(`from click to highlight at ${SIDES[1] ** 2} faces: ${middle(clicks).toFixed(0)} ms, at most ${most} ms`);
+    for (const task of TASKS) {
+        const { clicks: count, keys, time } = await doTask(browser, task);
+        console.log(`${task.name}: ${count} clicks, ${keys} keys, ${(time / 1000).toFixed(1)} s`);
+    }
+}
+
 const browser = await launch();
 try {
+    await measurePage(browser, await startDaemon(lifetime));
+    if (process.env.ONLY !== 'page') {
+        await measureMeshes();
+    }
+} finally {
+    await browser.close();
+    for (const cleanup of cleanups) {
+        await cleanup();
+    }
+}
+
+async function measureMeshes() {
     const daemon = await startDaemon(lifetime);
     const line = (cells) => console.log(cells.map((cell) => `${cell}`.padStart(10)).join(''));
     line(['faces', 'open', 'frame', 'pick', 'edit', 'heard', 'rival', 'undo', 'bytes']);
@@ -161,10 +263,5 @@ try {
         const { faces, frames, seconds, times } = await measureLevels(browser, daemon, half);
         const cells = times.map((time) => `${time.toFixed(0)} ms`);
         line([faces, ...cells, frames, seconds.toFixed(1)]);
-    }
-} finally {
-    await browser.close();
-    for (const cleanup of cleanups) {
-        await cleanup();
     }
 }

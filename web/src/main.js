@@ -469,6 +469,7 @@ function update(what, change) {
     colouring.follow(what);
     measuring.follow(what);
     if (what === 'gone') {
+        presence.forget(session.mesh);
         refreshList().catch(fail);
     }
     showWhatMayBeDone();
@@ -628,6 +629,7 @@ async function refreshList() {
 // Called when the user has deleted a mesh. If it is the open one, opens the one beside it in the
 // list.
 async function leave(mesh) {
+    presence.forget(mesh);
     const beside = list.neighbour(mesh);
     await refreshList();
     if (mesh === session.mesh && beside !== null) {

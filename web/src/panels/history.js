@@ -51,8 +51,18 @@ export class History {
         this.#isTopShown = false;
         this.#list.replaceChildren();
         this.#append(history);
+        this.#bringPresentIntoSight();
         if (hadFocus) {
             this.#list.focus(); // the element that had the focus is gone
+        }
+    }
+
+    // Scrolls the list, and nothing else, to the present state, which an undo may have moved down.
+    #bringPresentIntoSight() {
+        const row = this.#list.querySelector('[aria-current]');
+        if (row !== null && row !== this.#list.firstElementChild) {
+            const below = row.getBoundingClientRect().bottom - this.#list.getBoundingClientRect().bottom;
+            this.#list.scrollTop += Math.max(below, 0);
         }
     }
 

@@ -27,6 +27,8 @@ export class Offering {
     offer(operation) {
         this.#operation = operation;
         enable(this.#button, operation !== null);
+        this.#button.title =
+            operation === null ? 'First choose an operation, and the elements that it takes' : '';
     }
 
     async #show() {

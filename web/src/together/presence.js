@@ -52,6 +52,14 @@ export class Presence {
         this.#timer = setTimeout(() => this.#send(), SOON);
     }
 
+    // Called when a mesh was deleted: the page need not leave it.
+    forget(mesh) {
+        if (mesh === this.#mesh) {
+            this.#mesh = null;
+            this.#sent = '';
+        }
+    }
+
     async #send() {
         const { mesh, connection } = this.#session;
         if (mesh !== this.#mesh) {
