@@ -115,7 +115,7 @@ test('steps are fetched one at a time, and the newest position wins', async () =
     await settled();
     assert.deepEqual(shown, [[new Uint32Array([0]), new Float32Array([0, 0, 2])]]);
     assert.deepEqual(asked.map(({ x }) => x), [1, 4]);
-    assert.equal(bend.end().by[0], 4);
+    bend.end();
     bend.cancel();
     assert.equal(shown.length, 1, 'what is shown stays until the edit has been made');
     bend.settle();
@@ -134,7 +134,29 @@ test('nothing bends unless it is wanted and a part is moved', () => {
     elements.toggle.checked = true;
     const still = { ...MOVE, operation: null };
     assert.equal(bend.follow(still), still);
-    assert.equal(bend.end(), null);
+    bend.end();
+    elements.toggle.checked = true;
+    const whole = moveBy(1);
+    whole.operation.vertices = [0, 1, 2];
+    assert.equal(bend.follow(whole), whole, 'a move of the whole mesh is a plain move');
+});
+
+test('a drag that begins before the edit of the last one has been made is another drag', async () => {
+    const asked = [];
+    const { bend, shown } = makeBend(TRIANGLE, ({ vertices }, signal) => {
+        return new Promise(() => asked.push({ vertices, signal }));
+    });
+    bend.offer(true);
+    bend.follow(moveBy(1));
+    bend.end();
+    const next = moveBy(2);
+    next.operation.vertices = [1];
+    assert.deepEqual(bend.follow(next).operation.vertices, [1]);
+    assert.deepEqual(asked.map(({ vertices }) => vertices), [[0], [1]]);
+    assert.deepEqual(asked.map(({ signal }) => signal.aborted), [true, false]);
+    assert.deepEqual(shown, [[null]]);
+    bend.settle();
+    assert.equal(asked[1].signal.aborted, false, 'the edit of the first drag does not end the second one');
 });
 
 test('a refusal is shown, and the next position is tried', async () => {

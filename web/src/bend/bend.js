@@ -4,7 +4,7 @@
 //
 //     begin(vertices)   the vertices that will move are chosen
 //     move(by)          they shall be moved by this vector from where they were; the newest wins
-//     end()             returns the edit; what is shown stays until settle()
+//     end()             the drag is over; what is shown stays until settle()
 //     cancel()          shows the mesh as it is
 
 import { heldAround } from './ways.js';
@@ -20,7 +20,7 @@ const ALL = 100;
 export class Bend {
     #elements;
     #acts;
-    #drag = null; // {vertices, fixed, geometry, revision, wanted, by, isAsked, isEnding}
+    #drag = null; // {vertices, fixed, geometry, wanted, isEnding}
     #asking = null; // AbortController of the request that runs
 
     // `box` is shown while something can be bent; it has the checkbox `toggle` and, in `row`, the
@@ -54,47 +54,50 @@ export class Bend {
     }
 
     // Takes the result of a drag with the tool Move, see drag() in gesture.js. Returns it unchanged
-    // if nothing is to bend, else one whose operation bends, and moves the preview.
+    // if nothing is to bend, or if all of the mesh moves, so that nothing is left to bend; else one
+    // whose operation bends, and moves the preview. A drag that begins while the edit of an earlier
+    // one is awaited is a drag of its own.
     follow(result) {
         const { operation } = result;
         if (!this.isOn || operation?.op !== 'vertex_move') {
             return result;
         }
-        if (this.#drag === null) {
+        if (this.#drag === null || this.#drag.isEnding) {
             this.begin(operation.vertices);
+        }
+        if (this.#drag.fixed.length === 0) {
+            return result;
         }
         this.move(operation.by);
         return { ...result, lines: [], operation: this.#operation(operation.by) };
     }
 
     begin(vertices) {
-        this.cancel();
+        if (this.#drag !== null) {
+            this.#forget();
+        }
         const geometry = this.#acts.geometry();
         const fixed = heldAround(geometry, vertices, Number(this.#elements.radius.value) / ALL);
-        this.#drag = { vertices, fixed, geometry, wanted: null, by: [0, 0, 0], isEnding: false };
+        this.#drag = { vertices, fixed, geometry, wanted: null, isEnding: false };
     }
 
     // Moves the vertices by a vector in coordinates of the mesh. While the answer to an earlier call
     // is awaited, only the last vector is kept.
     move(by) {
         const drag = this.#drag;
-        drag.by = by;
         drag.wanted = by;
         if (this.#asking === null) {
             this.#askOn(drag);
         }
     }
 
-    // Ends the drag. Returns its edit, or null if there was none. The last answer stays in the view
-    // until settle() is called, when the edit has been made or has failed.
+    // Ends the drag. The last answer stays in the view until settle() is called, when the edit has
+    // been made or has failed.
     end() {
-        const drag = this.#drag;
-        if (drag === null) {
-            return null;
+        if (this.#drag !== null) {
+            this.#drag.isEnding = true;
+            this.#drag.wanted = null;
         }
-        drag.isEnding = true;
-        drag.wanted = null;
-        return this.#operation(drag.by);
     }
 
     settle() {

@@ -112,7 +112,8 @@ export function waysFrom(geometry, sources, { starts, ends } = neighboursOf(geom
 
 // Returns which vertices must stay so that only what is near the moved ones bends: those beyond a
 // fraction `reach` of the greatest way that have a neighbour that is not. If `reach` is 1, all bends
-// but the farthest. What lies behind them stays, too. Returns null if none stay.
+// but the farthest. What lies behind them stays, too. Returns [] if none stay, for example because all
+// vertices are moved.
 export function heldAround(geometry, sources, reach) {
     const neighbours = neighboursOf(geometry);
     const ways = waysFrom(geometry, sources, neighbours);
