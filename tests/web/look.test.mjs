@@ -273,7 +273,7 @@ test('in the light theme, a selection with its fields, a failure and the manual 
     await expectToast(page, /line 2/);
     await checkAccessible(page, 'failure, light');
     await page.goto(`${daemon.url}/docs`);
-    await page.locator('#manual section').first().waitFor();
+    await page.getByLabel('Search the manual').waitFor();
     await checkAccessible(page, 'manual, light');
 });
 

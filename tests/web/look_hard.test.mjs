@@ -27,15 +27,20 @@ test('on a telephone the panel leaves the mesh in sight', async (t) => {
     const panel = await page.locator('#view-panel').boundingBox();
     const canvas = await page.locator('#canvas').boundingBox();
     assert.ok(panel.x >= 0 && panel.x + panel.width <= 320, JSON.stringify(panel));
-    assert.ok(panel.y - canvas.y > 150, `${panel.y - canvas.y} pixels of the view are visible`);
+    assert.ok(panel.y - canvas.y > 240, `${panel.y - canvas.y} pixels of the view are visible`);
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 320);
     assert.equal(
         await page.locator('#view-panel').evaluate((box) => box.scrollWidth - box.clientWidth), 0);
-    for (const control of await page.locator('#view-panel :is(input, select, button)').all()) {
+    const controls = await page.locator('#view-panel :is(input, select, button):visible').all();
+    assert.ok(controls.length > 25, `${controls.length} controls`);
+    for (const control of controls) {
         await control.scrollIntoViewIfNeeded();
-        const { x, width } = await control.boundingBox();
+        const { x, y, width, height } = await control.boundingBox();
         assert.ok(x >= 0 && x + width <= 320);
+        assert.ok(y >= panel.y && y + height <= panel.y + panel.height + 1, `${y} is in the panel`);
     }
+    // the view stays where it is, whatever is scrolled
+    assert.deepEqual(await page.locator('#canvas').boundingBox(), canvas);
     await checkAccessible(page, 'telephone');
 });
 
@@ -57,6 +62,7 @@ test('a look whose program does not compile is given up, and the mesh is drawn p
     await openView(page);
     await choose(page, 'X-ray');
     await expectToast(page, /This look cannot be drawn.*drawn without it/);
+    await page.getByRole('button', { name: 'Close message' }).click(); // it covers a part of the view
     const after = await draw(page);
     assert.equal(after.countOf(isSurface), before);
     assert.equal((await lookOf(page)).way, 'solid');
@@ -103,6 +109,42 @@ test('while the camera moves, a simpler mesh is drawn, and the whole one when it
     await page.mouse.wheel(0, 100);
     await waitForDrawing(page);
     assert.equal(await drawn(), 'mesh');
+});
+
+test('the simpler mesh has the colours of values, where they belong to vertices or faces', async (t) => {
+    const side = 220;
+    const { page } = await openMesh(t, {
+        name: 'large', shape: 'torus', major_segments: side, minor_segments: side,
+    });
+    await openView(page);
+    await page.getByRole('combobox', { name: 'While moving' }).selectOption('Always simpler');
+    const box = await page.locator('#canvas').boundingBox();
+    const canvas = page.locator('#canvas');
+    const isColoured = ([r, g, b]) => Math.max(r, g, b) - Math.min(r, g, b) > 60;
+    // Returns the numbers of coloured pixels while the camera moves, and when it rests.
+    const countColoured = async (key) => {
+        await page.locator('#colour-by').selectOption(key);
+        await page.locator(`#canvas[data-color="${key} 1"]`).waitFor();
+        await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+        await page.mouse.down();
+        let isProxy = false;
+        for (let i = 0; !isProxy; i++) {
+            await page.mouse.move(box.x + box.width / 2 + (i % 2), box.y + box.height / 2);
+            await waitForDrawing(page);
+            isProxy = (await canvas.getAttribute('data-drawn')) === 'proxy';
+        }
+        const moving = (await readCanvas(page)).countOf(isColoured);
+        await page.mouse.up();
+        await page.locator('#canvas[data-drawn="mesh"]').waitFor();
+        return [moving, (await draw(page)).countOf(isColoured)];
+    };
+    for (const key of ['KEYF', 'KEYV']) {
+        const [moving, still] = await countColoured(key);
+        assert.ok(still > 20000 && Math.abs(moving - still) < 0.1 * still, `${key}: ${moving}, then ${still}`);
+    }
+    // The sides of its triangles are no edges of the mesh, so they have no values.
+    const [moving, still] = await countColoured('KEYE');
+    assert.ok(still > 20000 && moving < 0.1 * still, `${moving}, then ${still}`);
 });
 
 // Counts the bytes that are given to the graphics memory.

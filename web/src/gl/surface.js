@@ -89,7 +89,7 @@ export class Surface {
         };
         this.showMaterials(null);
         this.#ways = this.#waysOf({});
-        this.#proxyWays = this.#waysOf(this.#proxyLook);
+        this.#proxyWays = this.#waysOf({ ...this.#proxyLook, ...this.values.proxyUniforms });
         this.fill = new Mesh(new BufferGeometry(), this.#ways.plain);
         this.proxy = new Mesh(new BufferGeometry(), this.#proxyWays.solid);
         this.proxy.visible = false;

@@ -30,7 +30,7 @@ export class SurfaceLook {
         marksBacks: { value: false },
         edgeStrength: { value: EDGE_STRENGTH },
         normals: { value: emptyRows() },
-        cut: { value: new Vector4() },
+        cut: { value: new Vector4(0, 0, 0, 0) }, // without numbers, its last part would be 1
         ink: { value: new Color() },
         paper: { value: new Color() },
     };

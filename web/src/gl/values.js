@@ -16,6 +16,9 @@ export class Values {
         valueRange: { value: new Vector2(0, 1) },
         valueShade: { value: 1 },
     };
+    // For the proxy, which has vertices and faces of the mesh, but other triangles: values of corners
+    // and sides of triangles are not shown on it.
+    proxyUniforms = { valuesOf: { value: OF.nothing } };
     #mostRows;
 
     // `mostRows` is the maximum height of a texture in texels.
@@ -32,18 +35,24 @@ export class Values {
         if (texels.length / (4 * ROW) > this.#mostRows) {
             throw new RangeError('These values are more than the graphics memory can hold.');
         }
-        const { values, valuesOf, valuesAs } = this.uniforms;
+        const { values, valuesAs } = this.uniforms;
         values.value?.dispose();
         values.value = new Rows(texels, RGBAFormat, FloatType);
-        valuesOf.value = OF[of];
+        this.#setOf(OF[of]);
         valuesAs.value = AS[as];
     }
 
     hide() {
-        const { values, valuesOf } = this.uniforms;
+        const { values } = this.uniforms;
         values.value?.dispose();
         values.value = new Rows(new Float32Array(4 * ROW), RGBAFormat, FloatType);
-        valuesOf.value = OF.nothing;
+        this.#setOf(OF.nothing);
+    }
+
+    #setOf(kind) {
+        const isInProxy = kind === OF.vertices || kind === OF.faces;
+        this.uniforms.valuesOf.value = kind;
+        this.proxyUniforms.valuesOf.value = isInProxy ? kind : OF.nothing;
     }
 
     // Sets the colours of a map, four bytes each.
