@@ -6,7 +6,7 @@ import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
 import { fileNameOf, formatBytes } from '../../web/src/kit/download.js';
-import { choicesOf, sentencesOf } from '../../web/src/meshes/exporting.js';
+import { choicesOf, formatOf, sentencesOf } from '../../web/src/meshes/exporting.js';
 import { parametersOf } from '../../web/src/wire/schema.js';
 import { checkAccessible, waitForFrame, waitForTold } from './browser.mjs';
 import { post, startDaemon } from './daemon.mjs';
@@ -51,6 +51,21 @@ test('names of files are safe, and sizes and warnings are words', () => {
         'A face is cut, 6 times.',
         'And 3 more.',
     ]);
+});
+
+test('a file is written again in its own format, if the server can write it', () => {
+    const formats = ['a.STL', 'a.b.obj', 'a.gltf', 'a.glb', 'a.mtl', 'a.bin', 'stl', ''].map(formatOf);
+    assert.deepEqual(formats, ['stl', 'obj', 'glb', 'glb', null, null, null, null]);
+});
+
+test('the export begins with the format of the file that was read last', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    const { bytes } = await contentOf({ daemon, mesh }, 'format=off');
+    const file = { name: 'cube.off', mimeType: '', buffer: bytes };
+    await page.locator('#file').setInputFiles(file);
+    await waitForTold(page, /Read cube\.off/);
+    await openDialog(page);
+    assert.equal(await page.getByLabel('Format').inputValue(), 'off');
 });
 
 test('each format has the choices that the server accepts for it, and no others', async (t) => {

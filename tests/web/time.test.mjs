@@ -219,3 +219,31 @@ test('after a replacement there is no way back to earlier revisions', async (t) 
     assert.ok(await note(page).isHidden());
     assert.ok(await page.locator('#time').isHidden());
 });
+
+test('each revision says when it was made, and the present one is in sight after an undo', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    const { entries } = await get(daemon, `/${mesh}/edits`);
+    const times = page.locator('#history time');
+    assert.deepEqual(
+        await times.evaluateAll((all) => all.map(({ dateTime }) => dateTime)),
+        entries.map(({ time }) => time),
+    );
+    // The page was left open for a day.
+    await page.clock.setFixedTime(new Date(entries[0].time).getTime() + 24 * 60 * 60 * 1000);
+    await page.evaluate(() => document.dispatchEvent(new Event('visibilitychange')));
+    await times.first().filter({ hasText: /^yesterday \d\d:\d\d$/ }).waitFor();
+    await row(page, 1).getByRole('button').click();
+    await waitForFrame(page, { revision: 7 });
+    const present = page.locator('#history [aria-current]');
+    await present.filter({ hasText: 'now' }).waitFor();
+    const [list, now] = await Promise.all([page.locator('#history'), present].map((one) => one.boundingBox()));
+    assert.ok(now.y >= list.y && now.y + now.height <= list.y + list.height + 1, JSON.stringify([list, now]));
+    // What is looked at is said with its name and time.
+    await page.getByRole('button', { name: 'Name revision 2' }).click();
+    await page.getByRole('textbox', { name: 'Name of revision 2' }).fill('one face less');
+    await page.keyboard.press('Enter');
+    await page.locator('#history .named').filter({ hasText: 'one face less' }).waitFor();
+    await page.getByRole('button', { name: 'Look at revision 2' }).click();
+    await note(page).getByText(/revision 2 of 7\. It is \u201cone face less\u201d, from yesterday \d\d:\d\d\./).waitFor();
+    await checkAccessible(page, 'a moment with its time');
+});
