@@ -278,12 +278,13 @@ static uint64_t earlier(uint64_t a, uint64_t b)
 }
 
 /* Forgets the clients of a mesh that were not heard of for too long. Returns the time at which the
- * next one will be forgotten. */
+ * next one will be forgotten. A client may have been put after `now`, while the lock was released
+ * to wake listeners. */
 static uint64_t forget(api_presences *p, place *mesh, uint64_t now)
 {
     uint64_t next = UINT64_MAX;
     for (present **at = &mesh->first; *at != NULL;) {
-        if (now - (*at)->put >= PRESENCE_MICROS) {
+        if (now >= (*at)->put + PRESENCE_MICROS) {
             drop(p, mesh, at);
             mesh->moment = ++p->moment;
             mesh->due = true;

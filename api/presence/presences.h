@@ -52,7 +52,8 @@ void api_presences_news(api_presences *presences, uint64_t incarnation, uint64_t
 size_t api_presences_count(api_presences *presences);
 
 /* Does what is due at the time `now` (st_clock_micros): forgets presences and wakes listeners.
- * Returns the time at which something will be due, UINT64_MAX if nothing will. */
+ * Returns the time at which something will be due, UINT64_MAX if nothing will. `now` may be earlier
+ * than the last puts: such presences stay. */
 uint64_t api_presences_work(api_presences *presences, uint64_t now);
 /* Does the work of api_presences_work whenever it is due, until api_presences_stop is called. The
  * server calls it on a thread of its own. */

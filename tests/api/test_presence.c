@@ -150,6 +150,18 @@ static void a_client_is_forgotten_after_half_a_minute_or_when_it_leaves(void **s
     bench_free(b);
 }
 
+static void a_client_that_is_put_during_the_work_stays(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    api_presences *presences = api_service_presences(bench_service(b));
+    show(b, "ada", 1);
+    const uint64_t next = api_presences_work(presences, clock_now - 1);
+    assert_int_equal(api_presences_count(presences), 1);
+    assert_int_equal(next, clock_now + (uint64_t)API_PRESENCE_SECONDS * 1000000);
+    bench_free(b);
+}
+
 static void the_mesh_and_the_journal_know_nothing_of_it(void **state)
 {
     (void)state;
@@ -339,6 +351,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(listeners_are_told_ten_times_a_second_at_most),
         cmocka_unit_test(a_client_is_forgotten_after_half_a_minute_or_when_it_leaves),
+        cmocka_unit_test(a_client_that_is_put_during_the_work_stays),
         cmocka_unit_test(the_mesh_and_the_journal_know_nothing_of_it),
         cmocka_unit_test(what_a_client_shows_is_listed),
         cmocka_unit_test(what_is_wrong_is_refused_and_named),
