@@ -59,6 +59,9 @@ static bool draw_remesh(md_draft *d)
         }
     }
     double length = fmax(sum / MOST, longest * md_from(d->r, 10, 60) / 50.0);
+    if (!isfinite(length)) {
+        return false; /* JSON has no such number */
+    }
     if (md_chance(d->r, 10) && longest > 0 &&
         triangles(d->o, d->m, md_get(d->c, "faces"), longest * 1e-8) > 1e9) {
         md_give_number(d, "edge_length", longest * 1e-8);

@@ -15,6 +15,10 @@ import { openPage } from './visit.mjs';
 const EDITS = Number(process.env.EDITS ?? 300);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
+// How many textures have the format of each array: its own and that of the materials; beside the
+// vertices also that of the values by which the mesh is coloured.
+const TEXTURES = { vertices: 3, triangles: 2 };
+
 // Runs in the page: keeps a copy of all data that is uploaded to 32-bit textures, so that the
 // copies equal the textures in graphics memory, and remembers the arrays from which the data came.
 function keepTextures() {
@@ -52,8 +56,7 @@ function keepTextures() {
         }
     });
     hook('deleteTexture', (texture) => kept.delete(texture));
-    // Each of the two formats has two textures: one with data of the mesh, one with data of the
-    // materials. The test recognizes the mesh's texture because it was uploaded directly from the
+    // The test recognizes the mesh's texture because it was uploaded directly from the
     // mesh's array.
     window.readTextures = ({ vertices, triangles }) => {
         const { RGBA32F, RGBA32UI } = WebGL2RenderingContext;
@@ -103,7 +106,7 @@ async function checkSame(daemon, mesh, page) {
         const wanted = Buffer.from(fresh[name].buffer, 0, 16 * fresh[count]).toString('base64');
         const { array, textures, textureCount } = kept[name];
         assert.ok(array === wanted, `${name} of the page at revision ${fresh.revision}`);
-        assert.deepEqual([textures.length, textureCount], [1, 2], `textures of ${name}`);
+        assert.deepEqual([textures.length, textureCount], [1, TEXTURES[name]], `textures of ${name}`);
         assert.ok(textures[0] === wanted, `${name} of its texture at ${fresh.revision}`);
     }
 }

@@ -74,7 +74,8 @@ test('the page asks for a token until one is good, and edits with it', async (t)
 
     // The token must not be in the address, or in a storage that outlives the browser's tab.
     assert.equal(page.url().includes(alice.token), false);
-    assert.equal(await page.evaluate(() => localStorage.length + document.cookie.length), 0);
+    const kept = await page.evaluate(() => JSON.stringify(localStorage) + document.cookie);
+    assert.equal(kept.includes(alice.token), false, kept);
     await page.reload();
     await waitForFrame(page, { mesh: 'box', revision: 3 });
     const other = await page.context().newPage();
