@@ -1,9 +1,12 @@
+#define _GNU_SOURCE /* F_GETPIPE_SZ */
+
 #include "server/log/log.h"
 
 #include "base/mem.h"
 #include "system/clock.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <poll.h>
@@ -11,12 +14,17 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum {
     /* Longest time, in milliseconds, that the line of a request waits for other lines. */
     GATHER_MILLIS = 20,
-    BATCH = 16, /* most entries that are formatted and then written together */
+    /* Size of the buffer in which lines of requests are collected. It is what a pipe holds by
+     * default, so that one write fills an empty pipe. */
+    COLLECTED = 64 * 1024,
+    MOST_OF_ENTRY = 2 * SRV_ACCESS_LINE, /* the most bytes that one entry adds to the buffer */
     POLL_MILLIS = 100,
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,
@@ -36,6 +44,7 @@ typedef struct entry {
 
 struct srv_log {
     int fd;
+    size_t whole; /* the most bytes that are written to `fd` at once: see whole_of */
     _Atomic int level;
     _Atomic bool json, requests;
     _Atomic uint64_t slow_us;
@@ -55,19 +64,46 @@ struct srv_log {
     pthread_t thread;
 };
 
+/* Returns how many bytes the descriptor of the log takes now without blocking, or 0 if it took none
+ * for POLL_MILLIS. A pipe that is ready takes PIPE_BUF bytes, and an empty one all that it holds. A
+ * file takes any number. */
+static size_t room_in(const srv_log *log)
+{
+    struct pollfd out = {.fd = log->fd, .events = POLLOUT};
+    int queued = 0;
+    if (log->whole == SIZE_MAX) {
+        return SIZE_MAX;
+    }
+    if (log->whole > PIPE_BUF && ioctl(log->fd, FIONREAD, &queued) == 0 && queued == 0) {
+        return log->whole;
+    }
+    return poll(&out, 1, POLL_MILLIS) == 0 ? 0 : PIPE_BUF;
+}
+
+/* Returns the most bytes that are written to a descriptor at once: the size of a pipe, no limit for
+ * a file, and PIPE_BUF for anything else. */
+static size_t whole_of(int fd)
+{
+    struct stat about;
+    const int size = fcntl(fd, F_GETPIPE_SZ);
+    if (size > PIPE_BUF) {
+        return (size_t)size;
+    }
+    return fstat(fd, &about) == 0 && S_ISREG(about.st_mode) ? SIZE_MAX : PIPE_BUF;
+}
+
 /* Writes bytes to the descriptor of the log. On an error they are lost, and the server goes on.
  * While nothing can be written because the log is not read, this waits, but only ENDING_MILLIS once
- * the log ends. At most PIPE_BUF bytes are written at once, which a pipe that is ready takes
- * without blocking. */
+ * the log ends. */
 static void write_all(srv_log *log, const char *bytes, size_t length)
 {
     while (length > 0 && log->waited < ENDING_MILLIS / POLL_MILLIS) {
-        struct pollfd out = {.fd = log->fd, .events = POLLOUT};
-        if (poll(&out, 1, POLL_MILLIS) == 0) {
+        const size_t room = room_in(log);
+        if (room == 0) {
             log->waited += atomic_load(&log->ending) ? 1 : 0;
             continue;
         }
-        ssize_t written = write(log->fd, bytes, length < PIPE_BUF ? length : PIPE_BUF);
+        ssize_t written = write(log->fd, bytes, length < room ? length : room);
         if (written < 0 && errno != EINTR && errno != EAGAIN) {
             return;
         }
@@ -113,7 +149,7 @@ static bool wait_for_entries(srv_log *log)
 
 /* Writes an entry. If it is a line of the daemon itself, writes the *at bytes in `room`, and then
  * the line; if it is the record of a request, appends its lines to `room`. */
-static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], size_t *at)
+static void write_entry(srv_log *log, entry *e, char room[COLLECTED], size_t *at)
 {
     const bool json = atomic_load(&log->json);
     if (e->line != NULL) {
@@ -133,7 +169,7 @@ static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], 
 static void *run(void *context)
 {
     srv_log *log = context;
-    char lines[2 * BATCH * SRV_ACCESS_LINE];
+    char lines[COLLECTED];
     pthread_mutex_lock(&log->lock);
     while (wait_for_entries(log)) {
         size_t count = log->count, first = log->first;
@@ -142,7 +178,7 @@ static void *run(void *context)
         pthread_mutex_unlock(&log->lock);
         for (size_t taken = 0; taken < count;) {
             size_t at = 0, batch = 0;
-            for (; batch < BATCH && taken + batch < count; batch++) {
+            for (; at + MOST_OF_ENTRY <= sizeof lines && taken + batch < count; batch++) {
                 write_entry(log, &log->ring[(first + taken + batch) % log->capacity], lines, &at);
             }
             write_all(log, lines, at);
@@ -176,6 +212,7 @@ srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings)
         return NULL;
     }
     log->fd = fd;
+    log->whole = whole_of(fd);
     log->capacity = capacity;
     log->ring = he_mem_zero(capacity, sizeof *log->ring);
     srv_log_set(log, settings);
