@@ -17,14 +17,16 @@ static const char *const part_names[SRV_PARTS] = {"receive", "queue", "lock",
  * the client and was never decoded. */
 static void append_text(char line[SRV_ACCESS_LINE], size_t *at, const char *text)
 {
+    size_t end = *at;
     for (const unsigned char *c = (const unsigned char *)text; *c != '\0'; c++) {
-        assert(*at + 8 < SRV_ACCESS_LINE);
+        assert(end + 8 < SRV_ACCESS_LINE);
         if (*c < 0x20 || *c >= 0x7F || *c == '"' || *c == '\\') {
-            *at += (size_t)snprintf(line + *at, 7, "\\u%04x", (unsigned)*c);
+            end += (size_t)snprintf(line + end, 7, "\\u%04x", (unsigned)*c);
         } else {
-            line[(*at)++] = (char)*c;
+            line[end++] = (char)*c;
         }
     }
+    *at = end;
 }
 
 /* Appends a text that has only printable ASCII characters and fits into the line. */
