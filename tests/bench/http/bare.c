@@ -1,17 +1,42 @@
 /* The minimum that a server based on libmicrohttpd can do: it answers every request with the same
  * bytes. tests/bench/http.sh compares hedged with this server.
  *
- *     bare WORKERS BODY      prints the port it listens on, and ends when its standard input
- * ends */
+ *     bare WORKERS BODY [HEADER...]
+ *
+ * Each HEADER is a line such as "ETag: 1"; without any, the answers have only a Content-Type. The
+ * program prints the port it listens on, and ends when its standard input ends. */
 #include <arpa/inet.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+enum { MOST_HEADERS = 16 };
+
 static const char *body;
+static struct {
+    char *name, *value;
+} headers[MOST_HEADERS] = {{"Content-Type", "application/json"}};
+static size_t header_count = 1;
+
+/* Splits lines such as "ETag: 1" into names and values. Returns false if one is none. */
+static bool read_headers(char **lines, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        char *colon = strstr(lines[i], ": ");
+        if (colon == NULL || i == MOST_HEADERS) {
+            return false;
+        }
+        *colon = '\0';
+        headers[i].name = lines[i];
+        headers[i].value = colon + 2;
+    }
+    header_count = count > 0 ? count : header_count;
+    return true;
+}
 
 static enum MHD_Result answer(void *context, struct MHD_Connection *connection, const char *url,
                               const char *method, const char *version, const char *data,
@@ -29,7 +54,9 @@ static enum MHD_Result answer(void *context, struct MHD_Connection *connection, 
     }
     struct MHD_Response *response = MHD_create_response_from_buffer(
         strlen(body), (void *)(uintptr_t)body, MHD_RESPMEM_PERSISTENT);
-    MHD_add_response_header(response, "Content-Type", "application/json");
+    for (size_t i = 0; i < header_count; i++) {
+        MHD_add_response_header(response, headers[i].name, headers[i].value);
+    }
     enum MHD_Result result = MHD_queue_response(connection, MHD_HTTP_OK, response);
     MHD_destroy_response(response);
     return result;
@@ -37,8 +64,8 @@ static enum MHD_Result answer(void *context, struct MHD_Connection *connection, 
 
 int main(int argc, char **argv)
 {
-    if (argc != 3) {
-        fprintf(stderr, "usage: %s WORKERS BODY\n", argv[0]);
+    if (argc < 3 || !read_headers(argv + 3, (size_t)argc - 3)) {
+        fprintf(stderr, "usage: %s WORKERS BODY [HEADER...]\n", argv[0]);
         return 2;
     }
     unsigned workers = (unsigned)strtoul(argv[1], NULL, 10);
