@@ -399,6 +399,23 @@ static bool check_selected(const decoder *d)
     return true;
 }
 
+/* Refuses an operation without a required parameter. The message also names the alternatives of
+ * its group. */
+static bool fail_missing(const decoder *d, size_t i)
+{
+    const he_param *param = &d->op->params[i];
+    char names[160] = "";
+    strncat(names, param->name, sizeof names - strlen(names) - 1);
+    for (size_t j = 0; param->group != 0 && j < he_op_params(d->op); j++) {
+        const he_param *other = &d->op->params[j];
+        if (j != i && other->group == param->group && he_op_takes(d->op, d->call->args, j)) {
+            strncat(names, "\" or \"", sizeof names - strlen(names) - 1);
+            strncat(names, other->name, sizeof names - strlen(names) - 1);
+        }
+    }
+    return api_in_fail(d->object, API_MISSING_MEMBER, "\"%s\" is missing", names);
+}
+
 /* Checks that all required parameters are given, and that at most one parameter of each group of
  * alternatives is given. */
 static bool check_given(const decoder *d)
@@ -410,8 +427,6 @@ static bool check_given(const decoder *d)
         if (!he_op_takes(d->op, args, i)) {
             continue;
         }
-        char names[160] = "";
-        strncat(names, param->name, sizeof names - strlen(names) - 1);
         for (size_t j = 0; param->group != 0 && j < he_op_params(d->op); j++) {
             const he_param *other = &d->op->params[j];
             if (j == i || other->group != param->group || !he_op_takes(d->op, args, j)) {
@@ -425,11 +440,9 @@ static bool check_given(const decoder *d)
             }
             given = given || args[j].given;
             needed = needed || he_op_needs(d->op, args, j);
-            strncat(names, "\" or \"", sizeof names - strlen(names) - 1);
-            strncat(names, other->name, sizeof names - strlen(names) - 1);
         }
         if (needed && !given) {
-            return api_in_fail(d->object, API_MISSING_MEMBER, "\"%s\" is missing", names);
+            return fail_missing(d, i);
         }
     }
     return true;

@@ -11,6 +11,7 @@
 #include "api/write/named_meshes.h"
 #include "api/write/result_names.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* The state of a request between the decoding of its body and its answer. */
@@ -47,7 +48,6 @@ typedef struct edits {
     he_progress told; /* the original x->progress, to which tell_and_charge forwards */
     api_hubs hubs;
     api_result_names names;
-    api_named_meshes named;
     api_arena scratch; /* arguments of the current operation */
     api_text results;  /* the JSON array "results" of the answer */
     api_out out;       /* writes to `results` */
@@ -58,6 +58,8 @@ typedef struct edits {
     bool effect; /* the operations changed something */
     /* Position of the revision in the answer, where it is filled in after the commit. */
     size_t revision_at;
+    /* The last member, because it is large and api_named_meshes_init sets what must be set. */
+    api_named_meshes named;
 } edits;
 
 /* The progress (0 to 1) that a long edit has reached after copying the mesh, after running the
@@ -631,10 +633,11 @@ static void load_others(api_exchange *x)
 
 bool api_edits_decode(api_exchange *x)
 {
-    edits *e = he_mem_zero(1, sizeof *e);
+    edits *e = he_mem_alloc(sizeof *e);
     if (e == NULL) {
         return api_fail_memory(x);
     }
+    memset(e, 0, offsetof(edits, named));
     x->state = e;
     x->free_state = free_edits;
     e->growth = 1;
