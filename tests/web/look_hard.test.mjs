@@ -5,9 +5,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { checkAccessible, isBackground, isSurface, readCanvas, waitForFrame } from './browser.mjs';
+import { checkAccessible, isBackground, isSurface, readCanvas, readPicture, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { cameraOf, click, expectToast, press } from './page.mjs';
+import { countUploads } from './uploads.mjs';
 import { lookOf, openView, setLook, waitForDrawing } from './view_panel.mjs';
 import { openMesh, openPage } from './visit.mjs';
 
@@ -60,7 +61,8 @@ test('a look whose program does not compile is given up, and the mesh is drawn p
     await waitForFrame(page, { mesh, revision: 1 });
     const before = (await readCanvas(page)).countOf(isSurface);
     await openView(page);
-    await choose(page, 'X-ray');
+    // The page goes back to a plain look at once, so that the button does not stay pressed.
+    await page.locator('#view-form').getByRole('radio', { name: 'X-ray', exact: true }).click();
     await expectToast(page, /This look cannot be drawn.*drawn without it/);
     await page.getByRole('button', { name: 'Close message' }).click(); // it covers a part of the view
     const after = await draw(page);
@@ -74,6 +76,35 @@ test('a look whose program does not compile is given up, and the mesh is drawn p
     assert.ok((await readCanvas(page)).countOf(isSurface) > before);
 });
 
+// Turns the wheel until the simpler mesh, which is computed in the background, is drawn, and then lets the
+// camera rest. Returns the pictures of both frames, as they are in the canvas.
+async function moveAndRest(page) {
+    const urls = await page.evaluate(() => new Promise((resolve) => {
+        const canvas = document.getElementById('canvas');
+        const pictures = [];
+        // A frame is in the canvas until the task in which it was drawn ends.
+        const observer = new MutationObserver(() => {
+            if (canvas.dataset.drawn === ['proxy', 'mesh'][pictures.length]) {
+                pictures.push(canvas.toDataURL());
+            }
+            if (pictures.length === 2) {
+                observer.disconnect();
+                resolve(pictures);
+            }
+        });
+        observer.observe(canvas, { attributeFilter: ['data-drawn'] });
+        let turns = 0;
+        const move = () => {
+            if (pictures.length === 0) {
+                canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: turns++ % 2 ? 10 : -10 }));
+                requestAnimationFrame(move);
+            }
+        };
+        move();
+    }));
+    return urls.map((url) => readPicture(Buffer.from(url.slice(url.indexOf(',') + 1), 'base64')));
+}
+
 test('while the camera moves, a simpler mesh is drawn, and the whole one when it rests', async (t) => {
     const side = 220;
     const { page, daemon, mesh } = await openMesh(t, {
@@ -82,25 +113,14 @@ test('while the camera moves, a simpler mesh is drawn, and the whole one when it
     const drawn = () => page.locator('#canvas').getAttribute('data-drawn');
     await openView(page);
     await page.getByRole('combobox', { name: 'While moving' }).selectOption('Always simpler');
-    // The simpler mesh is computed in the background; the wheel is turned until it is used.
-    const box = await page.locator('#canvas').boundingBox();
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    await page.mouse.down();
-    let isProxy = false;
-    for (let i = 0; !isProxy; i++) {
-        await page.mouse.move(box.x + box.width / 2 + (i % 2) * 40, box.y + box.height / 2);
-        await waitForDrawing(page);
-        isProxy = (await drawn()) === 'proxy';
-    }
-    const moving = await readCanvas(page);
-    await page.mouse.up();
-    await page.locator('#canvas[data-drawn="mesh"]').waitFor();
-    const rest = await draw(page);
-    // the simpler mesh covers the same pixels, except at the outline
+    const [moving, rest] = await moveAndRest(page);
+    // the pictures differ, but the simpler mesh covers the same pixels, except at the outline
+    assert.notEqual(moving.countOf(isSurface), rest.countOf(isSurface));
     const filled = (canvas) => canvas.count - canvas.countOf(isBackground);
     assert.ok(Math.abs(filled(moving) - filled(rest)) < 0.03 * filled(rest),
         `${filled(moving)} and ${filled(rest)} pixels`);
     // a picked face is one of the mesh
+    const box = await page.locator('#canvas').boundingBox();
     await click(page, { x: box.width / 2, y: 0.68 * box.height });
     await page.locator('#canvas[data-selection^="face"]').waitFor();
     const chosen = await page.locator('#canvas').getAttribute('data-selection');
@@ -118,54 +138,23 @@ test('the simpler mesh has the colours of values, where they belong to vertices 
     });
     await openView(page);
     await page.getByRole('combobox', { name: 'While moving' }).selectOption('Always simpler');
-    const box = await page.locator('#canvas').boundingBox();
-    const canvas = page.locator('#canvas');
+    await setLook(page, { hasEdges: false }); // the simpler mesh has none
     const isColoured = ([r, g, b]) => Math.max(r, g, b) - Math.min(r, g, b) > 60;
-    // Returns the numbers of coloured pixels while the camera moves, and when it rests.
     const countColoured = async (key) => {
-        await page.locator('#colour-by').selectOption(key);
-        await page.locator(`#canvas[data-color="${key} 1"]`).waitFor();
-        await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-        await page.mouse.down();
-        let isProxy = false;
-        for (let i = 0; !isProxy; i++) {
-            await page.mouse.move(box.x + box.width / 2 + (i % 2), box.y + box.height / 2);
-            await waitForDrawing(page);
-            isProxy = (await canvas.getAttribute('data-drawn')) === 'proxy';
-        }
-        const moving = (await readCanvas(page)).countOf(isColoured);
-        await page.mouse.up();
-        await page.locator('#canvas[data-drawn="mesh"]').waitFor();
-        return [moving, (await draw(page)).countOf(isColoured)];
+        await page.getByLabel('Colour by').focus();
+        await page.locator(`#colour-by option[value="${key}"]`).waitFor({ state: 'attached' });
+        await page.getByLabel('Colour by').selectOption(key);
+        await page.locator(`#canvas[data-colour="${key} 1"]`).waitFor();
+        return (await moveAndRest(page)).map((picture) => picture.countOf(isColoured));
     };
-    for (const key of ['KEYF', 'KEYV']) {
+    for (const key of ['measure/faces/area', 'measure/vertices/gaussian_curvature']) {
         const [moving, still] = await countColoured(key);
         assert.ok(still > 20000 && Math.abs(moving - still) < 0.1 * still, `${key}: ${moving}, then ${still}`);
     }
     // The sides of its triangles are no edges of the mesh, so they have no values.
-    const [moving, still] = await countColoured('KEYE');
+    const [moving, still] = await countColoured('measure/edges/dihedral');
     assert.ok(still > 20000 && moving < 0.1 * still, `${moving}, then ${still}`);
 });
-
-// Counts the bytes that are given to the graphics memory.
-function countUploads() {
-    window.uploaded = 0;
-    const { prototype } = WebGL2RenderingContext;
-    for (const name of ['bufferData', 'bufferSubData', 'texImage2D', 'texSubImage2D']) {
-        const original = prototype[name];
-        prototype[name] = function (...values) {
-            const data = values.findLast((one) => ArrayBuffer.isView(one) || one instanceof ArrayBuffer);
-            if (name.startsWith('tex')) {
-                // width x height texels of 16 bytes: all textures of the mesh have such texels
-                const [width, height] = values.slice(name === 'texImage2D' ? 3 : 4);
-                window.uploaded += data === undefined ? 0 : 16 * width * height;
-            } else {
-                window.uploaded += data?.byteLength ?? 0;
-            }
-            return original.apply(this, values);
-        };
-    }
-}
 
 test('a frame uploads nothing, and an edit only what it changed', async (t) => {
     const { page, daemon, mesh } = await openMesh(t, {

@@ -2,7 +2,8 @@
 // faces take to open, to draw, to pick in and to edit, and how many bytes the page fetches after an
 // edit; if FOLDER is given, saves a screenshot of each mesh there. Then measures how long levels of
 // detail take: a frame of all triangles, the time until the coarsest level is shown, the frames
-// while levels are played, and the frames after the slider was moved.
+// while levels are played, and the frames after the slider was moved. At last measures frames while the
+// camera moves, see frames.mjs.
 //
 // Before all that, measures the page itself: the compressed size of what it loads first, the time until
 // it can be used, the time from a click to the frame in which what was clicked is highlighted, and the
@@ -15,6 +16,7 @@ import path from 'node:path';
 
 import { countBytes, keepTold, launch, waitForFrame } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
+import { measureMoving } from './frames.mjs';
 import { Hand, TASKS, compressedSize } from './tasks.mjs';
 
 const SIDES = [32, 316, 1000];
@@ -263,5 +265,11 @@ async function measureMeshes() {
         const { faces, frames, seconds, times } = await measureLevels(browser, daemon, half);
         const cells = times.map((time) => `${time.toFixed(0)} ms`);
         line([faces, ...cells, frames, seconds.toFixed(1)]);
+    }
+    line(['faces', 'moving', 'script', 'software', 'uploaded']);
+    for (const side of SIDES) {
+        for (const { faces, drawn, script, whole, bytes } of await measureMoving(browser, daemon, side)) {
+            line([faces, drawn, `${script.toFixed(1)} ms`, `${whole.toFixed(0)} ms`, bytes]);
+        }
     }
 }
