@@ -211,8 +211,9 @@ test('what is cut away can be neither seen nor picked, and marks on it are hidde
     assert.ok(isDot(whole.colour(corner.x, corner.y)));
     // A pointer that rests on the mesh makes the page keep an image of what is where.
     const box = await page.locator('#canvas').boundingBox();
-    await page.mouse.move(box.x + front.x, box.y + front.y);
-    await page.mouse.move(box.x + front.x + 1, box.y + front.y);
+    const middle = place.atPlace([0.5, 0, 0]);
+    await page.mouse.move(box.x + middle.x, box.y + middle.y);
+    await page.mouse.move(box.x + middle.x + 1, box.y + middle.y);
     await setLook(page, { section: { axis: 'x', at: -0.1 } });
     const cut = await readCanvas(page);
     assert.ok(!isDot(cut.colour(corner.x, corner.y)));

@@ -295,7 +295,6 @@ export class Renderer {
     // cutOutline() for this plane, or null.
     setCut(plane, outline) {
         this.#surface.setCut(plane);
-        this.#ids.forget();
         // three.js hides what has a negative distance from the plane.
         const shown =
             plane && new Plane(new Vector3(...plane.normal).multiplyScalar(-1), plane.at);
