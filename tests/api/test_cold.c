@@ -141,9 +141,9 @@ static void clients_show_themselves_at_a_cold_mesh(void **state)
     api_bench *b = begin();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         b = restart(b);
-        bench_reply r = bench_expect(
-            cases[i].status,
-            bench_send(b, cases[i].method, "/v1/meshes/m/presence", NULL, cases[i].body));
+        bench_reply r =
+            bench_expect(cases[i].status, bench_send(b, cases[i].method, "/v1/meshes/m/presence",
+                                                     NULL, cases[i].body));
         if (strstr(r.body, cases[i].says) == NULL) {
             fail_msg("%s: %s", cases[i].body == NULL ? "no body" : cases[i].body, r.body);
         }
