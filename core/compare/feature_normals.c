@@ -93,11 +93,21 @@ static size_t list_sides(const he_feature_normals *n, he_hub_edge *list)
 }
 
 /* Adds up the normals at each edge between hubs. */
-static he_status list_hub_edges(he_feature_normals *n, he_error *err)
+static he_status list_hub_edges(he_feature_normals *n, he_budget *budget, he_error *err)
 {
-    const size_t sides = list_sides(n, NULL);
+    he_status status = he_budget_take(budget, n->tree->count, err);
+    const size_t sides = status == HE_OK ? list_sides(n, NULL) : 0;
     if (sides == 0) {
-        return HE_OK;
+        return status;
+    }
+    /* The second look at all triangles, and sorting, which compares each side that often. */
+    uint64_t steps = n->tree->count;
+    for (size_t half = sides; half > 0; half /= 2) {
+        steps += sides;
+    }
+    status = he_budget_take(budget, steps, err);
+    if (status != HE_OK) {
+        return status;
     }
     n->hub_edges = he_mem_array(NULL, sides, sizeof *n->hub_edges);
     if (n->hub_edges == NULL) {
@@ -144,8 +154,12 @@ he_status he_feature_normals_make(const he_mesh *m, const he_bvh *tree, he_budge
     if (status != HE_OK) {
         return status;
     }
+    status = he_budget_take(budget, 2 * (uint64_t)tree->count + m->c.vertices.issued, err);
+    if (status != HE_OK) {
+        return status;
+    }
     list_triangles(out);
-    status = list_hub_edges(out, err);
+    status = list_hub_edges(out, budget, err);
     for (uint32_t i = 0; i < tree->count && status == HE_OK; i++) {
         he_vec3 p[3];
         const he_vec3 normal = triangle_normal(out, i, p);

@@ -12,6 +12,7 @@ enum { ROWS = HE_PART_ROWS / HE_COMPARE_PART };
 
 typedef struct part {
     he_comparing c;
+    uint64_t steps; /* steps that the part might take when it began */
     bool done;
 } part;
 
@@ -26,6 +27,7 @@ static void begin(part *p, const he_comparing *whole, he_budget budget)
 {
     p->c = *whole;
     p->c.budget = budget;
+    p->steps = budget.left;
     p->c.samples = NULL;
     p->c.sample_count = p->c.sample_capacity = 0;
     p->c.weight = p->c.sum = p->c.squares = 0;
@@ -36,7 +38,8 @@ static he_status run_part(void *context, uint32_t which, size_t from, size_t to,
     const parts *all = context;
     part *p = &all->parts[which];
     he_error why = {.status = HE_OK};
-    begin(p, all->whole, (he_budget){.left = MOST_STEPS});
+    const uint64_t left = all->whole->budget.left;
+    begin(p, all->whole, (he_budget){.left = left < MOST_STEPS ? left : MOST_STEPS});
     he_status status = all->work(&p->c, (uint32_t)(from / ROWS), (uint32_t)(to / ROWS), &why);
     p->done = status == HE_OK;
     if (!p->done) {
@@ -86,7 +89,7 @@ static he_status finish(const parts *all, he_comparing *c, uint32_t which, he_er
     const uint32_t from = which * HE_COMPARE_PART, count = c->from.tree->count;
     const uint32_t to = count - from < HE_COMPARE_PART ? count : from + HE_COMPARE_PART;
     if (p->done) {
-        return he_budget_take(&c->budget, MOST_STEPS - p->c.budget.left, err);
+        return he_budget_take(&c->budget, p->steps - p->c.budget.left, err);
     }
     begin(p, all->whole, c->budget);
     he_status status = all->work(&p->c, from, to, err);

@@ -4,8 +4,9 @@
 #include "tests/unit/dense.h"
 #include "tests/unit/random_meshes.h"
 
-#include "compare/compare.h"
+#include "compare/comparing.h"
 #include "compare/deviation.h"
+#include "compare/feature_normals.h"
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/write.h"
@@ -502,6 +503,46 @@ static void the_order_of_the_parts_does_not_matter(void **state)
     pair_clear(&p);
 }
 
+/* Takes steps until none are left. */
+static he_status take_all(he_comparing *part, uint32_t from, uint32_t to, he_error *err)
+{
+    (void)from;
+    (void)to;
+    uint64_t *taken = part->upper == NULL ? NULL : (uint64_t *)(void *)part->upper;
+    he_status status = he_budget_take(&part->budget, 1, err);
+    while (status == HE_OK) {
+        ++*taken;
+        status = he_budget_take(&part->budget, 1, err);
+    }
+    return status;
+}
+
+static void a_part_takes_no_more_steps_than_are_left(void **state)
+{
+    (void)state;
+    enum { STEPS = 1000 };
+    he_mesh *torus = dense_torus(60);
+    pair p = pair_of(torus, dense_shape("cube", NULL, 0));
+    he_progress progress;
+    uint32_t count;
+    union {
+        uint64_t steps;
+        double unused;
+    } taken = {.steps = 0};
+    backwards_lend(&progress, &count);
+    he_comparing c = {.from = p.surface[0],
+                      .to = p.surface[1],
+                      .budget = {.left = STEPS, .progress = &progress},
+                      .triangle = HE_NONE,
+                      .upper = &taken.unused};
+    assert_int_equal(he_compare_in_parts(&c, take_all, NULL), HE_LIMIT);
+    assert_true(count >= 4);
+    /* Each part once on the threads that are lent, and the first one again. */
+    assert_int_equal(taken.steps, (count + 1) * STEPS);
+    assert_int_equal(c.budget.left, 0);
+    pair_clear(&p);
+}
+
 static void too_few_pieces_leave_wider_bounds(void **state)
 {
     (void)state;
@@ -632,6 +673,16 @@ static void beside_an_edge_of_two_hubs_the_sign_is_right(void **state)
     for (uint32_t v = 0; v < POINTS; v++) {
         require_near(value_of(m, "deviation", v), -0.02 * (v + 1), 1e-7);
     }
+    /* Lists of the triangles and of the edges between hubs are charged, too. */
+    he_bvh *tree;
+    he_feature_normals normals = {.mesh = NULL};
+    he_budget budget = {.left = UINT64_MAX};
+    assert_int_equal(he_bvh_new(orange, NULL, &tree, NULL), HE_OK);
+    assert_int_equal(he_feature_normals_make(orange, tree, &budget, &normals, NULL), HE_OK);
+    assert_true(normals.hub_edge_count > 0);
+    assert_true(UINT64_MAX - budget.left > (HE_BVH_LOOK + 4) * (uint64_t)tree->count);
+    he_feature_normals_clear(&normals);
+    he_bvh_free(tree);
     he_mesh_free(m);
     he_mesh_free(orange);
 }
@@ -708,6 +759,7 @@ int main(void)
         cmocka_unit_test(random_meshes_have_sound_bounds),
         cmocka_unit_test(no_sample_is_outside_the_bounds),
         cmocka_unit_test(the_order_of_the_parts_does_not_matter),
+        cmocka_unit_test(a_part_takes_no_more_steps_than_are_left),
         cmocka_unit_test(too_few_pieces_leave_wider_bounds),
         cmocka_unit_test(every_allocation_may_fail),
         cmocka_unit_test(points_have_the_signed_distance_from_a_cube),
