@@ -74,12 +74,14 @@ static bool carries_hash(const char *name)
            strspn(dash + 1, "abcdef0123456789") >= length;
 }
 
-/* Removes the suffix .html from a path, and the name "index" that may be left. */
+/* Removes the suffix .html from the path of a page, and the name "index" that may be left. Files in
+ * /assets/ keep their names, because the files of a bundle refer to each other by them. */
 static void shorten(char *path)
 {
     static const char suffix[] = ".html", index[] = "/index";
     size_t length = strlen(path), tail = sizeof suffix - 1;
-    if (length > tail && strcmp(path + length - tail, suffix) == 0) {
+    if (strncmp(path, "/assets/", 8) != 0 && length > tail &&
+        strcmp(path + length - tail, suffix) == 0) {
         path[length - tail] = '\0';
         if (strcmp(path, index) == 0) {
             path[1] = '\0';
@@ -87,8 +89,9 @@ static void shorten(char *path)
     }
 }
 
-/* Adds a file of the page: its bytes are served under `path`, but an HTML file without the suffix
- * .html. The media type follows from `name`. Returns false when memory is out. */
+/* Adds a file of the page: its bytes are served under `path`, but an HTML file outside /assets/
+ * without the suffix .html. The media type follows from `name`. Returns false when memory is out.
+ */
 static bool add(srv_assets *assets, const char *path, const char *name, const char *bytes,
                 size_t length)
 {

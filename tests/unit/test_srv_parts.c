@@ -108,6 +108,7 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
     write_file(folder, "secret.txt", "no");
     write_file(inner, "app-ABCD1234.js", "1");
     write_file(inner, "style.css", "");
+    write_file(inner, "frame.html", "<p>frame");
     write_file(inner, "sub-component.js", "2");
     write_file(inner, ".hidden", "no");
     snprintf(path, sizeof path, "%s/link.txt", inner);
@@ -136,6 +137,9 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
     assert_true(g.immutable);
     assert_string_equal(g.type, "text/javascript; charset=utf-8");
     assert_string_not_equal(f.etag, g.etag);
+    assert_true(find(assets, "/assets/frame.html", &g));
+    assert_string_equal(g.type, "text/html; charset=utf-8");
+    assert_false(find(assets, "/assets/frame", &g));
     assert_true(find(assets, "/assets/style.css", &g));
     assert_int_equal(g.length, 0);
     assert_true(find(assets, "/assets/sub-component.js", &g));
@@ -162,7 +166,8 @@ static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
     }
     srv_assets_free(assets);
     static const char *const inside[] = {
-        "app-ABCD1234.js", "style.css", "sub-component.js", ".hidden", "link.txt", "fifo", NULL};
+        "app-ABCD1234.js", "style.css", "frame.html", "sub-component.js",
+        ".hidden",         "link.txt",  "fifo",       NULL};
     static const char *const outside[] = {"index.html", "docs.html", "secret.txt", NULL};
     remove_files(inner, inside);
     remove_files(deep, (const char *const[]){"page.html", NULL});
