@@ -1,6 +1,7 @@
 /* factor_solve.c - solutions of linear systems by a factor. */
 #include "solve/factor_values.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -273,6 +274,7 @@ he_status he_factor_solve(const he_factor *factor, const he_sparse *a, he_right_
 {
     const uint32_t n = factor->pattern.n;
     block b;
+    assert(!sides.once || residual == NULL); /* `once` leaves no residual to look at */
     he_status status = make_block(factor, sides.count == 1 ? 1 : TOGETHER, &b, err);
     if (status != HE_OK) {
         return status;
