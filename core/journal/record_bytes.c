@@ -172,7 +172,9 @@ static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_erro
     if (!take_kind(bytes[1], &r->kind) || bytes[0] != version_of(r->kind) ||
         (*flags & ~(unsigned)ALL_FLAGS) != 0 || bytes[3] != 0) {
         c->at -= sizeof bytes - 1;
-        return he_refuse_at(c, err, "the record has an unknown kind or flag");
+        return he_refuse_at(
+            c, err,
+            "the record has an unknown kind or flag, or a kind that its version does not have");
     }
     r->barrier = (*flags & BARRIER) != 0;
     r->tally.known = (*flags & TALLY) != 0;
