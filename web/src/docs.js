@@ -22,6 +22,15 @@ function pageOf(section) {
     return /^[a-z]+(_[a-z]+)+$/.test(section) ? `docs/routes/${section}` : null;
 }
 
+// Returns the words of a part of an address; it may be anything.
+function wordsOf(part) {
+    try {
+        return decodeURIComponent(part).replaceAll(/[-_]+/g, ' ');
+    } catch {
+        return '';
+    }
+}
+
 const section = location.hash.slice(1);
 const moved = section !== '' && document.getElementById(section) === null ? pageOf(section) : null;
 if (moved !== null && /\/docs$/.test(location.pathname)) {
@@ -33,7 +42,7 @@ if (moved !== null && /\/docs$/.test(location.pathname)) {
     startRequests(root);
     if (document.body.dataset.missing !== undefined) {
         // What was asked for is probably nearly right.
-        search.field.value = decodeURIComponent(location.pathname.split('/').at(-1)).replaceAll(/[-_]+/g, ' ');
+        search.field.value = wordsOf(location.pathname.split('/').at(-1));
         search.field.focus();
     }
 }

@@ -1,26 +1,15 @@
 // samples.js - what readers do with the code of a page: choose a language, which all pages remember,
 // and copy it.
 
+import { copyText } from '../kit/clipboard.js';
 import { make } from '../kit/dom.js';
+import { recall, remember } from '../kit/storage.js';
 
 const PLACE = 'hedge-language';
 // The address in the pages as they were made.
 const BASE = 'http://127.0.0.1:8080';
 // Milliseconds for which a button says that it has copied.
 const TOLD = 1500;
-
-async function copy(text) {
-    if (navigator.clipboard !== undefined) {
-        await navigator.clipboard.writeText(text);
-        return;
-    }
-    // Browsers offer the clipboard only to pages that they trust; over plain HTTP this way is left.
-    const field = make('textarea', { value: text });
-    document.body.append(field);
-    field.select();
-    document.execCommand('copy');
-    field.remove();
-}
 
 // Returns the code that a block shows.
 function shownIn(block) {
@@ -31,7 +20,7 @@ function addCopy(block) {
     const button = make('button', { type: 'button', className: 'copy' }, 'Copy');
     button.addEventListener('click', async () => {
         try {
-            await copy(shownIn(block));
+            await copyText(shownIn(block));
             button.textContent = 'Copied';
         } catch {
             button.textContent = 'Not allowed';
@@ -55,13 +44,13 @@ export function startSamples(root) {
     for (const code of document.querySelectorAll('.sample code, .plain-code code')) {
         code.textContent = code.textContent.replaceAll(BASE, base);
     }
-    const kept = localStorage.getItem(PLACE);
+    const kept = recall(PLACE);
     if (['curl', 'python', 'fetch'].includes(kept)) {
         choose(kept);
     }
     document.addEventListener('change', ({ target }) => {
         if (target.matches('.sample input')) {
-            localStorage.setItem(PLACE, target.value);
+            remember(PLACE, target.value);
             choose(target.value);
         }
     });

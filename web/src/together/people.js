@@ -2,6 +2,7 @@
 // have selected, and the name that this page shows to them.
 
 import { formatNumberOf, make } from '../kit/dom.js';
+import { recall, remember } from '../kit/storage.js';
 
 const STORED = 'hedge-name';
 const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
@@ -19,10 +20,10 @@ export class People {
         const { name } = elements;
         this.#elements = elements;
         this.#onLook = onLook;
-        name.value = stored();
+        name.value = recall(STORED) ?? '';
         name.addEventListener('change', () => {
             name.value = cut(name.value.trim());
-            store(name.value);
+            remember(STORED, name.value);
             onName(name.value);
         });
     }
@@ -88,21 +89,4 @@ function cut(name) {
         text = [...text].slice(0, -1).join('');
     }
     return text;
-}
-
-// A browser may forbid storage; then the name is forgotten when the page is left.
-function stored() {
-    try {
-        return window.localStorage.getItem(STORED) ?? '';
-    } catch {
-        return '';
-    }
-}
-
-function store(name) {
-    try {
-        window.localStorage.setItem(STORED, name);
-    } catch {
-        // see stored()
-    }
 }
