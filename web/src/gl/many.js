@@ -3,30 +3,44 @@
 import {
     BufferAttribute,
     BufferGeometry,
+    Color,
     LineBasicMaterial,
     LineSegments,
     Mesh,
+    NoColorSpace,
     Vector3,
 } from 'three';
 
+import { COLORS } from './colors.js';
 import { RAISED, dots } from './marks.js';
 import { eachTriangle, membersOf } from '../geometry/sets.js';
 
-const CHOSEN = 0xffb347; // as in marks.js
 const POINT_SIZE = 9; // in CSS pixels
 
 export class Many {
     // The objects of three.js by which the selection is drawn.
     faces;
-    lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: CHOSEN }));
+    lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
     points;
 
     // `material` is the material with which three.js draws selected triangles, `uniforms` are those of
     // the look.
     constructor(material, { cut, ink, paper }) {
-        this.points = dots(new Vector3(1, 0.7, 0.28), { cut, ink, paper });
+        this.points = dots(new Vector3(), { cut, ink, paper });
+        this.setColors(COLORS.dark);
         this.faces = new Mesh(new BufferGeometry(), material);
         this.show(null, null);
+    }
+
+    // Sets the colours, see colors.js.
+    setColors({ chosen }) {
+        this.lines.material.color.set(chosen);
+        this.points.material.uniforms.tint.value.setFromColor(new Color().setHex(chosen, NoColorSpace));
+    }
+
+    // Hides what is above a plane, a Plane of three.js, or nothing (null).
+    setCut(plane) {
+        this.lines.material.clippingPlanes = plane === null ? null : [plane];
     }
 
     // Shows a Crowd of elements of the mesh with the arrays `geometry`, or nothing (null).

@@ -27,8 +27,6 @@ import { pixelAtOne } from '../geometry/view.js';
 import { COLORS } from './colors.js';
 import { ARROW_FRAGMENT, ARROW_VERTEX, DOT_FRAGMENT, MARK_VERTEX } from './shaders.js';
 
-const CHOSEN = 0xffb347;
-const CHOSEN_START = 0x7a4a10; // colour at the origin of a selected half-edge
 const MARK_SIZE = 13; // in CSS pixels, as all sizes here
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
@@ -52,6 +50,7 @@ export class Marks {
     #pixel = { value: 1 };
     #colors = COLORS.dark;
     #halfedges = [];
+    #lined = [[], false]; // the arguments of #setLines()
 
     // `materials` are those with which three.js draws selected triangles, `cut`, `ink` and `paper` are
     // uniforms of SurfaceLook.
@@ -78,11 +77,12 @@ export class Marks {
         // they are behind it.
         this.lines = segments(line(LessEqualDepth, 1));
         this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
-        this.vertices = dots(new Vector3(1, 0.7, 0.28), { cut, ink, paper });
+        this.vertices = dots(new Vector3(), { cut, ink, paper });
         this.fieldLines = segments(plain(line(AlwaysDepth, 1), FIELD_WIDTH));
         this.fieldVertices = dots(new Vector3(0.96, 0.97, 0.98), { cut, ink, paper });
         this.preview = segments(plain(line(AlwaysDepth, 1), PREVIEW_WIDTH));
         this.preview.visible = false;
+        this.setColors(this.#colors);
     }
 
     // Sets the colours of the marks, see colors.js.
@@ -91,9 +91,13 @@ export class Marks {
         this.boundary.material.color.set(colors.boundary);
         this.preview.material.color.set(colors.preview);
         this.fieldLines.material.color.set(colors.field);
-        this.fieldVertices.material.uniforms.tint.value.setFromColor(
-            new Color().setHex(colors.field, NoColorSpace),
-        );
+        for (const [points, color] of [
+            [this.fieldVertices, colors.field],
+            [this.vertices, colors.chosen],
+        ]) {
+            points.material.uniforms.tint.value.setFromColor(new Color().setHex(color, NoColorSpace));
+        }
+        this.#setLines(...this.#lined);
         this.#setArrows(this.#halfedges);
     }
 
@@ -189,9 +193,11 @@ export class Marks {
     }
 
     #setLines(ends, directed) {
+        this.#lined = [ends, directed];
         const geometry = this.#between(ends);
         if (ends.length > 0) {
-            const [chosen, start] = [CHOSEN, CHOSEN_START].map((hex) => new Color(hex).toArray());
+            const { chosen: end, chosenStart } = this.#colors;
+            const [chosen, start] = [end, chosenStart].map((hex) => new Color(hex).toArray());
             const colors = ends.flatMap((_, i) => (directed && i % 2 === 0 ? start : chosen));
             geometry.setColors(colors);
         }

@@ -299,6 +299,8 @@ export class Renderer {
         const shown =
             plane && new Plane(new Vector3(...plane.normal).multiplyScalar(-1), plane.at);
         this.#marks.setCut(shown);
+        this.#many.setCut(shown);
+        this.#tints.setCut(shown);
         this.#cut.show(outline);
         this.#setChosen();
         this.#ids.forget(); // clicks must not pick what is cut away
@@ -329,6 +331,8 @@ export class Renderer {
         this.#renderer.setClearColor(this.#colors.paper, 1);
         this.#surface.look.setColors(this.#colors);
         this.#marks.setColors(this.#colors);
+        this.#many.setColors(this.#colors);
+        this.#rulers.setColors(this.#colors);
         this.#guides.setColors(this.#colors);
         this.#draw();
     }

@@ -4,8 +4,10 @@ import {
     AlwaysDepth,
     BufferAttribute,
     BufferGeometry,
+    Color,
     GLSL3,
     NoBlending,
+    NoColorSpace,
     Points,
     RawShaderMaterial,
     Vector3,
@@ -14,10 +16,9 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 
+import { COLORS } from './colors.js';
 import { DOT_FRAGMENT, MARK_VERTEX } from './shaders.js';
 
-const COLOR = 0xff7ad9;
-const TINT = new Vector3(1, 0.48, 0.85);
 const WIDTH = 2.5; // in CSS pixels, as all sizes here
 const POINT = 9;
 
@@ -28,7 +29,6 @@ export class Rulers {
 
     constructor() {
         const material = new LineMaterial({
-            color: COLOR,
             linewidth: WIDTH,
             depthFunc: AlwaysDepth,
             depthWrite: false,
@@ -41,14 +41,23 @@ export class Rulers {
                 glslVersion: GLSL3,
                 vertexShader: MARK_VERTEX,
                 fragmentShader: DOT_FRAGMENT,
-                uniforms: { size: { value: POINT }, tint: { value: TINT } },
+                uniforms: { size: { value: POINT }, tint: { value: new Vector3() } },
                 blending: NoBlending,
                 depthFunc: AlwaysDepth,
                 depthWrite: false,
             }),
         );
         this.objects = [this.#lines, this.#points];
+        this.setColors(COLORS.dark);
         this.show([], []);
+    }
+
+    // Sets the colours, see colors.js.
+    setColors({ ruler }) {
+        this.#lines.material.color.set(ruler);
+        this.#points.material.uniforms.tint.value.setFromColor(
+            new Color().setHex(ruler, NoColorSpace),
+        );
     }
 
     // Draws lines, whose end points come in pairs, and points; all are [x, y, z] in view coordinates.

@@ -24,6 +24,7 @@ export class Tints {
     group = new Group();
     #named = new Map(); // by name: the group of its objects
     #ratio = 1;
+    #planes = null; // what hides tints: a list of one Plane of three.js, or null
 
     // Draws the shapes in the list `shapes` under a name, in place of those drawn under it before.
     // Each is {color, triangles, lines, dots}: three numbers for each point, see changed.js.
@@ -36,6 +37,16 @@ export class Tints {
             this.#named.set(name, group);
             this.group.add(group);
         }
+    }
+
+    // Hides what is above a plane, a Plane of three.js, or nothing (null).
+    setCut(plane) {
+        this.#planes = plane === null ? null : [plane];
+        this.group.traverse(({ material }) => {
+            if (material !== undefined) {
+                material.clippingPlanes = this.#planes;
+            }
+        });
     }
 
     clear() {
@@ -80,6 +91,7 @@ export class Tints {
         }
         objects.forEach((object) => {
             object.frustumCulled = false;
+            object.material.clippingPlanes = this.#planes;
             object.renderOrder = 1000; // after the surface and its marks
         });
         return objects;

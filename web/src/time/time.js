@@ -7,15 +7,11 @@
 //      +----------------------+  back to the present; another mesh is opened
 
 import { changedFaces, placementOf, shapeOfFaces } from '../geometry/changed.js';
+import { COLORS } from '../gl/colors.js';
 import { formatNumberOf } from '../kit/dom.js';
 import { wordsOfTime } from '../kit/when.js';
+import { onTheme, theme } from '../look/theme.js';
 import { Wiper } from './wiper.js';
-
-// Colours of faces that only the earlier revision has, that only the present one has, and that both
-// have but that changed; style/time.css has the same colours.
-const GONE = 0xff5d5d;
-const MADE = 0x4fd37a;
-const MOVED = 0xffd166;
 
 // How many of the revisions that were looked at last are kept.
 const MOST_KEPT = 6;
@@ -44,6 +40,7 @@ export class Time {
         this.#wiper = new Wiper({ slider: wipe, line }, (part) => stage.wipe(part));
         slider.addEventListener('input', () => this.look(slider.valueAsNumber));
         compare.addEventListener('change', () => this.#draw());
+        onTheme(() => this.#past !== null && this.#draw());
         undo.addEventListener('click', () => {
             const { revision } = this;
             this.end();
@@ -170,15 +167,16 @@ export class Time {
         }
         const present = this.#content.geometry;
         const changed = isBeside ? changedFaces(past, present) : null;
+        const { gone, made, moved } = COLORS[theme()].changes;
         this.#stage.showPast(
             past,
             placementOf(past, present),
-            isBeside ? tintsOf(past, [GONE, changed.gone], [MOVED, changed.moved]) : [],
+            isBeside ? tintsOf(past, [gone, changed.gone], [moved, changed.moved]) : [],
             this.#acts.label(),
         );
         this.#stage.tint(
             'changed',
-            isBeside ? tintsOf(present, [MADE, changed.made], [MOVED, changed.moved]) : [],
+            isBeside ? tintsOf(present, [made, changed.made], [moved, changed.moved]) : [],
         );
         this.#stage.wipe(isBeside ? this.#wiper.part : 1);
         said.replaceChildren(
