@@ -462,19 +462,33 @@ static bool check_listen(const srv_config *config, srv_address *address, char *m
     return true;
 }
 
+/* Returns true if the text is a name, an IPv4 address, or an IPv6 address in brackets, and perhaps
+ * ':' and a port. */
+static bool is_authority(const char *text)
+{
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-";
+    static const char digits[] = "0123456789";
+    const bool bracketed = text[0] == '[';
+    const char *name = text + bracketed;
+    const size_t length = strspn(name, bracketed ? "0123456789abcdefABCDEF:." : letters);
+    const char *end = name + length;
+    if (length == 0 || (bracketed && *end++ != ']')) {
+        return false;
+    }
+    const size_t port = end[0] == ':' ? strspn(end + 1, digits) : 0;
+    return end[0] == '\0' || (port > 0 && end[1 + port] == '\0');
+}
+
 /* Returns true if the text is the origin of a page: http:// or https://, a name or an address, and
  * perhaps a port. Anything else could add words to the policy of the viewer, where it is written.
  */
 static bool is_origin(const char *text)
 {
-    static const char allowed[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]";
     const size_t scheme = strncmp(text, "https://", 8) == 0  ? 8
                           : strncmp(text, "http://", 7) == 0 ? 7
                                                              : 0;
-    const char *name = text + scheme;
-    return scheme > 0 && name[0] != '\0' && name[0] != ':' && strlen(text) <= SRV_MAX_ORIGIN &&
-           strspn(name, allowed) == strlen(name);
+    return scheme > 0 && strlen(text) <= SRV_MAX_ORIGIN && is_authority(text + scheme);
 }
 
 static bool check_frames(const srv_config *config, char *message, size_t size)

@@ -297,9 +297,11 @@ static void a_frame_is_allowed_by_an_origin_and_nothing_else(void **state)
     assert_int_equal(config.frames.count, 3);
     assert_string_equal(config.frames.items[2], "https://[::1]:9");
     srv_config_clear(&config);
-    static const char *const wrong[] = {"a.example",   "https://",   "https://:8",
-                                        "ftp://a",     "https://a/", "https://a b",
-                                        "https://a;x", "https://*",  "'self'"};
+    static const char *const wrong[] = {
+        "a.example",    "https://",       "https://:8", "ftp://a",        "https://a/",
+        "https://a b",  "https://a;x",    "https://*",  "'self'",         "https://a:b:c",
+        "https://[",    "https://[::1",   "https://[]", "https://[::1]9", "https://a:",
+        "https://a:8x", "https://[::1]:", "https://a]", "https://[g]"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         assert_false(READ(&config, "--allow-frame", wrong[i]));
         assert_non_null(strstr(message, "--allow-frame takes the origin"));
