@@ -309,7 +309,7 @@ bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
         return api_fail(x, API_BAD_PARAMETER, "\"since\" and \"layout\" must be given together");
     }
-    return !api_wants_job(x, 0) || name_kept(x);
+    return x->snapshot != NULL || !api_wants_job(x, 0) || name_kept(x);
 }
 
 /* Answers with all rows of an earlier revision, whose copy the exchange has. */

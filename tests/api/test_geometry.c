@@ -269,6 +269,25 @@ static void an_earlier_revision_is_sent_as_it_was(void **state)
     bench_free(b);
 }
 
+/* Read as an earlier one, a revision has another tag than when it was the present one, also if the
+ * slots that are kept are still its own and the request becomes a job. */
+static void an_earlier_revision_has_a_tag_of_its_own(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    bench_reply present = bench_expect(200, bench_send(b, "GET", PATH, NULL, NULL));
+    edit(b, "{\"op\":\"face_poke\",\"face\":0}");
+    const char *const job[] = {"Prefer", "respond-async", "If-None-Match",
+                               bench_header(&present, "ETag"), NULL};
+    bench_done(
+        bench_expect(202, bench_send(b, "GET", "/v1/meshes/m/geometry?revision=1", job, NULL)));
+    bench_done(present);
+    bench_run_jobs(b, BENCH_JOBS);
+    bench_free(b);
+}
+
 static void a_tag_holds_until_the_mesh_changes(void **state)
 {
     (void)state;
@@ -360,6 +379,7 @@ int main(void)
         cmocka_unit_test(rows_of_vertices_keep_their_ids_when_others_are_deleted),
         cmocka_unit_test(an_undo_brings_back_the_same_rows),
         cmocka_unit_test(an_earlier_revision_is_sent_as_it_was),
+        cmocka_unit_test(an_earlier_revision_has_a_tag_of_its_own),
         cmocka_unit_test(a_tag_holds_until_the_mesh_changes),
         cmocka_unit_test(a_wrong_type_parameter_or_mesh_is_refused),
         cmocka_unit_test(arrays_without_memory_are_complete_or_refused),
