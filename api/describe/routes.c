@@ -449,7 +449,9 @@ static const api_route routes[] = {
      .summary = "Name a revision",
      .doc = "A JSON merge patch (RFC 7396) of the name of a revision, by which the moment is found "
             "again. The history keeps the name with the entry of the revision, within the undo "
-            "budget, and drops both together. The content and its revision do not change."},
+            "budget, and drops both together. The first revision, which is not in the history, "
+            "cannot have a name. The content and its revision do not change, but all ETags of the "
+            "mesh do, as after a rename, so an edit with an older If-Match is answered 412."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_edits",

@@ -38,7 +38,7 @@ static bool read_name(const api_in *root, api_presence *out)
     api_in member;
     const char *text = "";
     if (api_in_find(root, "name", &member) && !api_in_is_null(&member) &&
-        !api_in_string(&member, API_PRESENCE_NAME, &text)) {
+        !api_in_seen_name(&member, API_PRESENCE_NAME, &text)) {
         return false;
     }
     memcpy(out->name, text, strlen(text) + 1);

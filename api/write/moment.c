@@ -20,7 +20,7 @@ static bool read_name(api_exchange *x, const char **out)
         return true;
     }
     *out = "";
-    return api_in_is_null(&member) || api_in_string(&member, ST_MOMENT_NAME, out);
+    return api_in_is_null(&member) || api_in_seen_name(&member, ST_MOMENT_NAME, out);
 }
 
 static bool refuse(api_exchange *x, st_status status)
@@ -33,7 +33,8 @@ static bool refuse(api_exchange *x, st_status status)
     }
     if (status == ST_GONE) {
         return api_fail(x, API_REVISION_GONE,
-                        "the history has no entry of revision %llu that could keep a name",
+                        "revision %llu cannot have a name: it is the first revision, or it was "
+                        "dropped from the history",
                         revision);
     }
     if (status == ST_TOO_LARGE) {

@@ -134,6 +134,40 @@ static void the_history_tells_what_each_revision_did(void **state)
     bench_free(b);
 }
 
+static bench_reply name_revision(api_bench *b, unsigned revision, const char *body)
+{
+    static const char *const patch[] = {"Content-Type", "application/merge-patch+json", NULL};
+    char target[60];
+    snprintf(target, sizeof target, "/v1/meshes/m/edits/%u", revision);
+    return bench_send(b, "PATCH", target, patch, body);
+}
+
+static void names_of_revisions_are_text_that_can_be_seen(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *code;
+    } wrong[] = {{"\\u0007", "U+0007"},        {"a\\u001b[2J", "U+001B"}, {"\x7f", "U+007F"},
+                 {"a\xc2\x85", "U+0085"},      {"\\u202egpj", "U+202E"},  {"\\u202A", "U+202A"},
+                 {"x\xe2\x81\xa6y", "U+2066"}, {"\xe2\x81\xa9", "U+2069"}};
+    api_bench *b = history_begin();
+    char body[100];
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        snprintf(body, sizeof body, "{\"name\":\"%s\"}", wrong[i].name);
+        bench_reply r = bench_expect(400, name_revision(b, 2, body));
+        assert_non_null(strstr(r.body, "/name"));
+        assert_non_null(strstr(r.body, wrong[i].code));
+        bench_done(r);
+    }
+    bench_done(bench_expect(
+        200, name_revision(b, 2,
+                           "{\"name\":\"d\xc3\xa9j\xc3\xa0 \xe2\x80\x94 \xc2\xa0\xe2\x81\x84\"}")));
+    bench_reply r = bench_expect(410, name_revision(b, 1, "{\"name\":\"x\"}"));
+    assert_non_null(strstr(r.body, "revision 1 cannot have a name: it is the first revision, or "));
+    bench_done(r);
+    bench_free(b);
+}
+
 static void a_page_of_the_history_goes_on_where_it_was(void **state)
 {
     (void)state;
@@ -195,6 +229,7 @@ int main(void)
         cmocka_unit_test(a_tag_names_the_revision_that_was_read),
         cmocka_unit_test(an_earlier_revision_can_be_copied),
         cmocka_unit_test(the_history_tells_what_each_revision_did),
+        cmocka_unit_test(names_of_revisions_are_text_that_can_be_seen),
         cmocka_unit_test(a_page_of_the_history_goes_on_where_it_was),
         cmocka_unit_test(every_allocation_of_a_reader_may_fail),
     };
