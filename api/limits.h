@@ -192,14 +192,15 @@ enum {
 enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };
 
 /* Limits of presences (api/presence). A client is forgotten API_PRESENCE_SECONDS after it was last
- * heard of; the listeners of a mesh are told of changes at most once in API_PRESENCE_MICROS. */
+ * put; the listeners of a mesh are told of changes at most once in API_PRESENCE_MICROS. */
 enum {
-    API_MAX_PRESENCE = 4096,      /* bytes of the body that a client puts */
-    API_PRESENCE_CLIENT = 40,     /* characters of a client's id */
-    API_PRESENCE_NAME = 64,       /* bytes of a client's name */
-    API_PRESENCE_IDS = 256,       /* ids of selected elements */
-    API_MAX_PRESENT_OF_MESH = 64, /* clients that show themselves at one mesh */
-    API_MAX_PRESENT = 4096,       /* clients that show themselves at all meshes */
+    API_MAX_PRESENCE = 4096,       /* bytes of the body that a client puts */
+    API_PRESENCE_CLIENT = 40,      /* characters of a client's id */
+    API_PRESENCE_NAME = 64,        /* bytes of a client's name */
+    API_PRESENCE_IDS = 256,        /* ids of selected elements */
+    API_MAX_PRESENT_OF_MESH = 64,  /* clients that show themselves at one mesh */
+    API_MAX_PRESENT = 4096,        /* clients that show themselves at all meshes */
+    API_MAX_PRESENT_OF_TOKEN = 16, /* clients with one token that show themselves at one mesh */
     API_PRESENCE_SECONDS = 30,
     API_PRESENCE_MICROS = 100000
 };

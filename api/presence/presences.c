@@ -13,7 +13,7 @@ enum { BUCKETS = 256 };
 typedef struct present {
     api_presence presence;
     char holder[ST_HOLDER + 1]; /* `holder` is the name of the client's token; "": none */
-    uint64_t put;               /* time (st_clock_micros) at which the client was last heard of */
+    uint64_t put;               /* time (st_clock_micros) at which the presence was last put */
     uint64_t moment;            /* moment at which the presence changed last */
     struct present *next;       /* the next present client in the order of ids */
 } present;
@@ -38,7 +38,7 @@ struct api_presences {
     bool stopping;
     uint64_t moment; /* number of changes so far, which numbers the moments */
     uint64_t next;   /* time for which the thread of api_presences_run waits */
-    size_t clients, meshes;
+    size_t clients;
     place *buckets[BUCKETS];
 };
 
@@ -108,9 +108,22 @@ static place *find_or_add(api_presences *p, const st_mesh_info *info)
         st_copy_text(mesh->id, info->id, ST_MESH_ID);
         mesh->next = *bucket;
         *bucket = mesh;
-        p->meshes++;
     }
     return mesh;
+}
+
+/* Removes a mesh from the table if no client was ever put there. */
+static void drop_unused(api_presences *p, place *mesh)
+{
+    place **at = bucket_of(p, mesh->incarnation);
+    if (mesh->moment != 0) {
+        return;
+    }
+    while (*at != mesh) {
+        at = &(*at)->next;
+    }
+    *at = mesh->next;
+    he_mem_free(mesh);
 }
 
 /* Returns the place in the list of a mesh's clients where the client `id` is or belongs. */
@@ -172,8 +185,22 @@ static void wake(api_presences *p, const char *id, uint64_t incarnation)
     }
 }
 
-static api_presence_put add(api_presences *p, place *mesh, present **at, present **out)
+/* Returns the number of clients of a mesh that have the token `holder`. */
+static size_t count_of(const place *mesh, const char *holder)
 {
+    size_t count = 0;
+    for (const present *client = mesh->first; client != NULL; client = client->next) {
+        count += strcmp(client->holder, holder) == 0;
+    }
+    return count;
+}
+
+/* Makes a client of the token `holder` at its place in the list of a mesh. */
+static api_presence_put add(api_presences *p, place *mesh, present **at, const char *holder)
+{
+    if (holder[0] != '\0' && count_of(mesh, holder) >= API_MAX_PRESENT_OF_TOKEN) {
+        return API_PRESENCE_FULL_OF_TOKEN;
+    }
     if (mesh->count >= API_MAX_PRESENT_OF_MESH || p->clients >= API_MAX_PRESENT) {
         return API_PRESENCE_FULL;
     }
@@ -185,7 +212,6 @@ static api_presence_put add(api_presences *p, place *mesh, present **at, present
     *at = client;
     mesh->count++;
     p->clients++;
-    *out = client;
     return API_PRESENCE_PUT;
 }
 
@@ -200,26 +226,27 @@ static api_presence_put put(api_presences *p, const st_mesh_info *info, const ch
         return API_PRESENCE_NO_MEMORY;
     }
     present **at = place_of(mesh, presence->client);
-    present *client = *at;
-    const bool is_new = !is_client(client, presence->client);
+    const bool is_new = !is_client(*at, presence->client);
     api_presence_put result = API_PRESENCE_PUT;
     if (is_new) {
-        result = add(p, mesh, at, &client);
-    } else if (strcmp(client->holder, holder) != 0) {
+        result = add(p, mesh, at, holder);
+    } else if (strcmp((*at)->holder, holder) != 0) {
         result = API_PRESENCE_TAKEN;
     }
-    if (result == API_PRESENCE_PUT) {
-        client->put = now;
+    if (result != API_PRESENCE_PUT) {
+        drop_unused(p, mesh);
+        return result;
     }
-    if (result == API_PRESENCE_PUT &&
-        (is_new || !api_presence_is_equal(&client->presence, presence))) {
+    present *client = *at;
+    client->put = now;
+    if (is_new || !api_presence_is_equal(&client->presence, presence)) {
         client->presence = *presence;
         st_copy_text(client->holder, holder, ST_HOLDER);
         *wakes = note(p, mesh, now);
         client->moment = mesh->moment;
     }
     hurry(p, mesh->due ? mesh->woken + API_PRESENCE_MICROS : now + PRESENCE_MICROS);
-    return result;
+    return API_PRESENCE_PUT;
 }
 
 api_presence_put api_presences_put(api_presences *p, const st_mesh_info *info, const char *holder,
@@ -277,7 +304,7 @@ static uint64_t earlier(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-/* Forgets the clients of a mesh that were not heard of for too long. Returns the time at which the
+/* Forgets the clients of a mesh that were not put for too long. Returns the time at which the
  * next one will be forgotten. A client may have been put after `now`, while the lock was released
  * to wake listeners. */
 static uint64_t forget(api_presences *p, place *mesh, uint64_t now)
@@ -297,7 +324,7 @@ static uint64_t forget(api_presences *p, place *mesh, uint64_t now)
 }
 
 /* Does what is due for one mesh. Returns the time at which something will be due for it. `wakes`
- * becomes true if its listeners must be woken; not if they may not be woken yet, or not `here`. */
+ * becomes true if its listeners must be woken; not if they may not be woken yet. */
 static uint64_t work_on(api_presences *p, place *mesh, uint64_t now, bool *wakes)
 {
     const uint64_t next = forget(p, mesh, now);
@@ -329,7 +356,6 @@ static uint64_t work_in(api_presences *p, place **bucket, uint64_t now, due list
         }
         if (mesh->count == 0 && !mesh->due && !wakes && now >= mesh->woken + API_PRESENCE_MICROS) {
             *at = mesh->next;
-            p->meshes--;
             he_mem_free(mesh);
         } else {
             next = earlier(next, then);

@@ -28,8 +28,9 @@ void api_presences_free(api_presences *presences); /* takes NULL */
 
 typedef enum api_presence_put {
     API_PRESENCE_PUT,
-    API_PRESENCE_TAKEN, /* a client with another token has the id of the client */
-    API_PRESENCE_FULL,  /* the mesh, or the server, has the most clients that it may have */
+    API_PRESENCE_TAKEN,         /* a client with another token has the id of the client */
+    API_PRESENCE_FULL,          /* the mesh, or the server, has the most clients that it may have */
+    API_PRESENCE_FULL_OF_TOKEN, /* the token shows the most clients that it may show at a mesh */
     API_PRESENCE_NO_MEMORY
 } api_presence_put;
 

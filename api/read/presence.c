@@ -39,6 +39,10 @@ static bool put(api_exchange *x, const char *holder, const api_presence *presenc
                         presence->client);
     case API_PRESENCE_FULL:
         return api_fail(x, API_TOO_MANY_PRESENT, "too many clients show themselves");
+    case API_PRESENCE_FULL_OF_TOKEN:
+        return api_fail(x, API_TOO_MANY_PRESENT,
+                        "%d clients with this token show themselves at this mesh already",
+                        API_MAX_PRESENT_OF_TOKEN);
     case API_PRESENCE_NO_MEMORY:
         return api_fail_memory(x);
     }

@@ -228,6 +228,8 @@ static void what_is_wrong_is_refused_and_named(void **state)
         {"{\"client\":\"12345678901234567890123456789012345678901\"}", 400, "/client"},
         {"{\"client\":\"a\",\"nam\":\"\"}", 400, "nam"},
         {"{\"client\":\"a\",\"name\":7}", 400, "/name"},
+        {"{\"client\":\"a\",\"name\":\"\\u001b[2J\"}", 400, "U+001B"},
+        {"{\"client\":\"a\",\"name\":\"\\u202egpj\"}", 400, "U+202E"},
         {"{\"client\":\"a\",\"selection\":[]}", 400, "/selection"},
         {"{\"client\":\"a\",\"selection\":{\"ids\":[]}}", 400, "kind"},
         {"{\"client\":\"a\",\"selection\":{\"kind\":\"face\"}}", 400, "ids"},
@@ -300,6 +302,77 @@ static void so_many_clients_may_be_there(void **state)
     bench_free(b);
 }
 
+static void one_token_cannot_take_all_places(void **state)
+{
+    (void)state;
+    char body[60];
+    api_bench *b = bench_new_guarded("alice admin " TEST "\nbob read " PRUEBA "\n");
+    bench_use_token(b, "test");
+    bench_done(
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
+    bench_use_token(b, "prueba");
+    for (unsigned i = 0; i < API_MAX_PRESENT_OF_TOKEN; i++) {
+        snprintf(body, sizeof body, "{\"client\":\"b%u\"}", i);
+        bench_done(bench_expect(200, put(b, body)));
+    }
+    bench_reply r = bench_expect(503, put(b, "{\"client\":\"one-more\"}"));
+    assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "too_many_present");
+    assert_non_null(strstr(r.body, "with this token"));
+    bench_done(r);
+    bench_done(bench_expect(200, put(b, "{\"client\":\"b0\",\"name\":\"still there\"}")));
+    bench_use_token(b, "test");
+    bench_done(bench_expect(200, put(b, "{\"client\":\"a\"}")));
+    bench_use_token(b, "prueba");
+    bench_done(bench_expect(200, put(b, "{\"client\":\"b0\",\"leaves\":true}")));
+    bench_done(bench_expect(200, put(b, "{\"client\":\"one-more\"}")));
+    bench_free(b);
+}
+
+/* Counts the blocks of memory in use. */
+static void *count_block(void *context, void *memory, size_t size)
+{
+    size_t *blocks = context;
+    if (size == 0) {
+        *blocks -= memory != NULL;
+        free(memory);
+        return NULL;
+    }
+    void *now = realloc(memory, size);
+    assert_non_null(now);
+    *blocks += memory == NULL;
+    return now;
+}
+
+static void a_refused_presence_leaves_no_memory_in_use(void **state)
+{
+    (void)state;
+    size_t blocks = 0;
+    st_store *store = st_store_new(&(st_store_options){
+        .undo_budget = 1 << 20, .max_meshes = 1, .journal = st_journal_memory()});
+    assert_non_null(store);
+    const he_mem_hook hook = {.resize = count_block, .context = &blocks};
+    he_mem_set_hook(&hook);
+    api_presences *presences = api_presences_new(store);
+    assert_non_null(presences);
+    st_mesh_info mesh = {.id = "m"};
+    api_presence one = {.client = "c"};
+    for (unsigned i = 0; i < API_MAX_PRESENT; i++) {
+        mesh.incarnation = i / API_MAX_PRESENT_OF_MESH;
+        snprintf(one.client, sizeof one.client, "c%u", i);
+        assert_int_equal(api_presences_put(presences, &mesh, "", &one), API_PRESENCE_PUT);
+    }
+    const size_t before = blocks;
+    for (unsigned i = 0; i < 100; i++) {
+        mesh.incarnation = 1000 + i;
+        assert_int_equal(api_presences_put(presences, &mesh, "", &one), API_PRESENCE_FULL);
+    }
+    assert_int_equal(blocks, before);
+    api_presences_free(presences);
+    assert_int_equal(blocks, 0);
+    he_mem_set_hook(NULL);
+    st_store_free(store);
+}
+
 static void with_tokens_the_name_is_the_tokens(void **state)
 {
     (void)state;
@@ -356,6 +429,8 @@ int main(void)
         cmocka_unit_test(what_a_client_shows_is_listed),
         cmocka_unit_test(what_is_wrong_is_refused_and_named),
         cmocka_unit_test(so_many_clients_may_be_there),
+        cmocka_unit_test(one_token_cannot_take_all_places),
+        cmocka_unit_test(a_refused_presence_leaves_no_memory_in_use),
         cmocka_unit_test(with_tokens_the_name_is_the_tokens),
         cmocka_unit_test(a_request_without_memory_shows_nothing),
     };
