@@ -23,9 +23,10 @@
          "Server-sent events. `edit`: a new revision as a delta, complete enough to mirror the "   \
          "mesh exactly. `metadata`: the name of the mesh changed. `moment`: a revision was "       \
          "named. "                                                                                 \
-         "`presence`: who else is there, and what they show. `job`: a job on this mesh "           \
-         "started or ended. `resync`: fetch the mesh again, because events were left out. `bye`: " \
-         "the stream ends. With Last-Event-ID or `since` the stream continues where a client was " \
+         "`presence`: who else is there, and what they show. `job`: a job on this mesh started "   \
+         "or "                                                                                     \
+         "ended. `resync`: fetch the mesh again, because events were left out. `bye`: the stream " \
+         "ends. With Last-Event-ID or `since` the stream continues where a client was "            \
          "interrupted, or begins with `resync` if the history does not reach back that far."},     \
         {.method = "GET",                                                                          \
          .path = "/v1/meshes/{mesh}/presence",                                                     \
@@ -48,11 +49,10 @@
         .response = "presences", .summary = "Show yourself to others",                             \
         .doc =                                                                                     \
             "What the client shows of itself to the other clients of the mesh. It is no change "   \
-            "of "                                                                                  \
-            "the mesh and is not stored. Listeners get it in an event `presence`, at most ten "    \
-            "times "                                                                               \
-            "a second. A client is forgotten 30 seconds after its last request. The answer lists " \
-            "who is there, like GET."                                                              \
+            "of the mesh and is not stored. Listeners get it in an event `presence`, at most ten " \
+            "times a second. A client is forgotten 30 seconds after its last PUT. At most 64 "     \
+            "clients show themselves at a mesh, and 16 with one token. The answer lists who is "   \
+            "there, like GET."                                                                     \
     }
 
 #endif

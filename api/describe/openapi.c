@@ -33,6 +33,7 @@ static void write_path_parameter(api_out *out, const char *name)
         api_out_key_string(out, "type", "integer");
         api_out_key_string(out, "format", "int64");
         api_out_key_number(out, "minimum", 1);
+        api_out_key_number(out, "maximum", 9007199254740992.0);
         api_out_object_end(out);
     } else {
         api_out_object_begin(out);

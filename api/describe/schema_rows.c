@@ -611,13 +611,15 @@ const api_member api_request_members[] = {
     {"mesh_patch", "name", "text?", OPTIONAL, "The new name; null removes the name."},
 
     {"moment_patch", "name", "text?", OPTIONAL,
-     "The new name of the revision, at most 200 bytes of UTF-8; null takes the name away."},
+     "The new name of the revision, at most 200 bytes of UTF-8, without control characters; null "
+     "takes the name away."},
 
-    {"presence_put", "client", "text", REQUIRED,
+    {"presence_put", "client", "#client_id", REQUIRED,
      "An id that the client chooses for itself, at random: 1 to 40 letters, digits, '.', '_' and "
      "'-'."},
     {"presence_put", "name", "text?", OPTIONAL,
-     "The name to show, at most 64 bytes of UTF-8. If the request has a token, the token's name is "
+     "The name to show, at most 64 bytes of UTF-8, without control characters. If the request has "
+     "a token, the token's name is "
      "shown instead."},
     {"presence_put", "selection", "#shown_selection?", OPTIONAL,
      "The selected elements of one kind; null: none."},

@@ -47,6 +47,7 @@ static const struct {
     {"type_name",
      "{\"type\":\"string\",\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
     {"rule_name", "{\"type\":\"string\",\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
+    {"client_id", "{\"type\":\"string\",\"maxLength\":40,\"pattern\":\"^[A-Za-z0-9._-]{1,40}$\"}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
     {"set", "{\"type\":\"object\",\"additionalProperties\":{\"oneOf\":[{\"type\":\"boolean\","
             "\"const\":true},{\"type\":\"integer\",\"format\":\"int64\"}]},"
