@@ -252,8 +252,8 @@ $(HEDGED): $(call object,$(MAIN_C)) $(LIBRARIES)
 wrap = -fuse-ld=bfd $(patsubst %,-Wl$(comma)--wrap=%,$(1))
 comma := ,
 $(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_write_abort st_write_remove)
-$(BUILD)/tests/api/test_limits $(BUILD)/tests/api/test_presence: private LDFLAGS += \
-    $(call wrap,st_clock_micros)
+$(BUILD)/tests/api/test_limits: private LDFLAGS += $(call wrap,st_clock_micros)
+$(BUILD)/tests/api/test_presence: private LDFLAGS += $(call wrap,st_clock_micros api_record_write)
 $(BUILD)/tests/api/test_compare: private LDFLAGS += $(call wrap,st_read_begin st_read_end st_read_card st_elements_at st_snapshot_take st_snapshot_at)
 $(BUILD)/tests/api/test_created: private LDFLAGS += $(call wrap,st_create_from)
 $(BUILD)/tests/api/test_disk: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_create_from)

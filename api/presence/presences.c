@@ -18,6 +18,14 @@ typedef struct present {
     struct present *next;       /* the next present client in the order of ids */
 } present;
 
+/* The text of an event `presence`, which is written once for all listeners that have seen the same.
+ * The last user frees it. */
+typedef struct told {
+    size_t users;
+    uint64_t since, moment; /* it tells what changed after `since`, up to `moment` */
+    api_text text;
+} told;
+
 /* A mesh with present clients. It stays in the table after the last client has left until its
  * listeners may be woken again. */
 typedef struct place {
@@ -28,6 +36,7 @@ typedef struct place {
     bool due;        /* true if something changed since then */
     size_t count;
     present *first;
+    told *told;         /* the newest event that was written; NULL: none */
     struct place *next; /* the next mesh in the bucket */
 } place;
 
@@ -43,6 +52,15 @@ struct api_presences {
 };
 
 enum { PRESENCE_MICROS = API_PRESENCE_SECONDS * 1000000 };
+
+/* Gives back an event; NULL: nothing. Needs the lock, if there is another user. */
+static void drop_told(told *event)
+{
+    if (event != NULL && --event->users == 0) {
+        api_text_clear(&event->text);
+        he_mem_free(event);
+    }
+}
 
 api_presences *api_presences_new(st_store *store)
 {
@@ -70,6 +88,7 @@ void api_presences_free(api_presences *p)
                 mesh->first = client->next;
                 he_mem_free(client);
             }
+            drop_told(mesh->told);
             he_mem_free(mesh);
         }
     }
@@ -356,6 +375,7 @@ static uint64_t work_in(api_presences *p, place **bucket, uint64_t now, due list
         }
         if (mesh->count == 0 && !mesh->due && !wakes && now >= mesh->woken + API_PRESENCE_MICROS) {
             *at = mesh->next;
+            drop_told(mesh->told);
             he_mem_free(mesh);
         } else {
             next = earlier(next, then);
@@ -480,20 +500,63 @@ void api_presences_write(api_presences *p, uint64_t incarnation, api_out *out)
     pthread_mutex_unlock(&p->lock);
 }
 
+static void write_news(const place *mesh, uint64_t since, api_text *text)
+{
+    api_out out;
+    const shown s = {.mesh = mesh, .since = since};
+    api_text_add_string(text, "event: presence\ndata: ");
+    api_out_init(&out, text);
+    api_record_write(&out, &api_presence_news_record, &s);
+    api_text_add_string(text, "\n\n");
+}
+
+/* Returns the event for listeners that have seen the presences up to `since`; the caller gives it
+ * back. Returns NULL when memory is out. Needs the lock. */
+static told *tell(place *mesh, uint64_t since)
+{
+    told *event = mesh->told;
+    if (event != NULL && event->moment == mesh->moment && event->since == since) {
+        event->users++;
+        return event;
+    }
+    event = he_mem_zero(1, sizeof *event);
+    if (event == NULL) {
+        return NULL;
+    }
+    *event = (told){.users = 1, .since = since, .moment = mesh->moment};
+    write_news(mesh, since, &event->text);
+    if (event->text.failed) {
+        drop_told(event);
+        return NULL;
+    }
+    /* A listener that begins, or is slow, does not replace the event that most listeners need. */
+    if (mesh->told == NULL || mesh->told->moment < mesh->moment || mesh->told->since < since) {
+        drop_told(mesh->told);
+        mesh->told = event;
+        event->users++;
+    }
+    return event;
+}
+
 void api_presences_news(api_presences *p, uint64_t incarnation, uint64_t *seen, api_text *text)
 {
+    told *event = NULL;
     pthread_mutex_lock(&p->lock);
-    const place *mesh = find(p, incarnation);
+    place *mesh = find(p, incarnation);
     const bool nobody = mesh == NULL || mesh->count == 0;
     const uint64_t moment = nobody ? 0 : mesh->moment;
     if (moment != *seen) {
-        api_out out;
-        api_text_add_string(text, "event: presence\ndata: ");
-        api_out_init(&out, text);
-        const shown s = {.mesh = mesh, .since = *seen};
-        api_record_write(&out, &api_presence_news_record, &s);
-        api_text_add_string(text, "\n\n");
+        event = nobody ? NULL : tell(mesh, *seen);
+        if (event == NULL) {
+            write_news(mesh, *seen, text);
+        }
         *seen = moment;
     }
     pthread_mutex_unlock(&p->lock);
+    if (event != NULL) {
+        api_text_add(text, event->text.bytes, event->text.length);
+        pthread_mutex_lock(&p->lock);
+        drop_told(event);
+        pthread_mutex_unlock(&p->lock);
+    }
 }

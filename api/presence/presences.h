@@ -5,7 +5,7 @@
  * mesh learn of changed presences at most once in API_PRESENCE_MICROS: changes in between are
  * collected. When a mesh has news, its listeners are woken (st_follow_nudge), and each asks for
  * what has changed since it asked last (api_presences_news), so a slow listener gets the newest
- * state and no queue grows.
+ * state and no queue grows. Listeners that have seen the same get one text, which is written once.
  *
  *     put --+-- last news API_PRESENCE_MICROS ago ------> listeners are woken
  *           +-- else: due -- api_presences_work waits --> listeners are woken
@@ -13,7 +13,8 @@
  * The meshes of the table are known by their incarnations, so a mesh can be evicted while clients
  * are present, and another mesh with its id has none of them.
  *
- * One mutex guards the table. It is held for moments, and no other lock is taken meanwhile. */
+ * One mutex guards the table. It is held while presences are written as JSON, and no other lock
+ * is taken meanwhile. */
 #ifndef HE_API_PRESENCE_PRESENCES_H
 #define HE_API_PRESENCE_PRESENCES_H
 

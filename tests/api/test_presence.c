@@ -27,6 +27,17 @@ uint64_t __wrap_st_clock_micros(void)
     return clock_now;
 }
 
+/* How often an event `presence` was written. */
+static unsigned news_written;
+
+void __real_api_record_write(api_out *out, const api_record *record, const void *value);
+void __wrap_api_record_write(api_out *out, const api_record *record, const void *value);
+void __wrap_api_record_write(api_out *out, const api_record *record, const void *value)
+{
+    news_written += record == &api_presence_news_record;
+    __real_api_record_write(out, record, value);
+}
+
 static const char PATH[] = "/v1/meshes/m/presence";
 static const char EVENTS[] = "/v1/meshes/m/events";
 
@@ -147,6 +158,39 @@ static void a_client_is_forgotten_after_half_a_minute_or_when_it_leaves(void **s
     assert_true(pass(b, API_PRESENCE_MICROS) == UINT64_MAX);
     expect_none(l);
     stream_close(l);
+    bench_free(b);
+}
+
+static void listeners_that_have_seen_the_same_get_one_text(void **state)
+{
+    (void)state;
+    enum { LISTENERS = 30 };
+    api_bench *b = bench_new();
+    api_presences *p = api_service_presences(bench_service(b));
+    const st_mesh_info mesh = {.id = "m", .incarnation = 7};
+    api_presence one = {.client = "c"};
+    uint64_t seen[LISTENERS] = {0};
+    for (unsigned round = 1; round <= 3; round++) {
+        api_text first = {0};
+        one.selection.count = round;
+        one.has_selection = true;
+        assert_int_equal(api_presences_put(p, &mesh, "", &one), API_PRESENCE_PUT);
+        news_written = 0;
+        for (unsigned i = 0; i < LISTENERS; i++) {
+            api_text text = {0};
+            uint64_t none = 0;
+            api_presences_news(p, mesh.incarnation, &seen[i], i == 0 ? &first : &text);
+            assert_true(i == 0 || (text.length == first.length &&
+                                   memcmp(text.bytes, first.bytes, text.length) == 0));
+            api_text_clear(&text);
+            if (i == LISTENERS / 2 && round > 1) { /* a listener that begins now */
+                api_presences_news(p, mesh.incarnation, &none, &text);
+                api_text_clear(&text);
+            }
+        }
+        assert_int_equal(news_written, round > 1 ? 2 : 1);
+        api_text_clear(&first);
+    }
     bench_free(b);
 }
 
@@ -424,6 +468,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(listeners_are_told_ten_times_a_second_at_most),
         cmocka_unit_test(a_client_is_forgotten_after_half_a_minute_or_when_it_leaves),
+        cmocka_unit_test(listeners_that_have_seen_the_same_get_one_text),
         cmocka_unit_test(a_client_that_is_put_during_the_work_stays),
         cmocka_unit_test(the_mesh_and_the_journal_know_nothing_of_it),
         cmocka_unit_test(what_a_client_shows_is_listed),
