@@ -501,7 +501,7 @@ static unsigned unseen_at(const unsigned char *at)
 
 bool api_in_seen_name(const api_in *in, size_t max, const char **out)
 {
-    const char *text;
+    const char *text = "";
     if (!api_in_string(in, max, &text)) {
         return false;
     }

@@ -147,9 +147,9 @@ static void names_of_revisions_are_text_that_can_be_seen(void **state)
     (void)state;
     static const struct {
         const char *name, *code;
-    } wrong[] = {{"\\u0007", "U+0007"},        {"a\\u001b[2J", "U+001B"}, {"\x7f", "U+007F"},
-                 {"a\xc2\x85", "U+0085"},      {"\\u202egpj", "U+202E"},  {"\\u202A", "U+202A"},
-                 {"x\xe2\x81\xa6y", "U+2066"}, {"\xe2\x81\xa9", "U+2069"}};
+    } wrong[] = {{"\\u0007", "U+0007"},   {"a\\u001b[2J", "U+001B"}, {"\x7f", "U+007F"},
+                 {"a\xc2\x85", "U+0085"}, {"\\u202egpj", "U+202E"},  {"\\u202A", "U+202A"},
+                 {"x\\u2066y", "U+2066"}, {"\\u2069", "U+2069"}};
     api_bench *b = history_begin();
     char body[100];
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {

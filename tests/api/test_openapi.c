@@ -6,6 +6,7 @@
 #include "algo/shape.h"
 #include "api/request/answer_headers.h"
 #include "api/describe/routes.h"
+#include "api/request/route.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -156,6 +157,26 @@ static unsigned expect_exposed(const cJSON *at)
     return count;
 }
 
+static void each_flag_of_a_route_is_a_bit_of_its_own(void **state)
+{
+    (void)state;
+    static const unsigned flags[] = {
+        API_WRITES,        API_COSTLY,          API_MAY_CREATE,          API_OWN_ACCEPT,
+        API_FIXED,         API_IDEMPOTENCY_KEY, API_IDEMPOTENCY_KEY_NEW, API_LONG,
+        API_INTERRUPTS,    API_REHEARSED,       API_EXPENSIVE,           API_STORELESS,
+        API_TAG_OF_OTHERS, API_UNLIMITED,       API_MISSING_PAGE,        API_OWN_QUERY};
+    unsigned all = 0;
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
+        assert_int_equal(all & flags[i], 0);
+        assert_int_equal(flags[i] & (flags[i] - 1), 0);
+        all |= flags[i];
+    }
+    /* The list above is whole: no row has another flag. */
+    for (size_t i = 0; i < api_routes().count; i++) {
+        assert_int_equal(api_routes().rows[i].flags & ~all, 0);
+    }
+}
+
 static const cJSON *not_found_of(const cJSON *root, const char *path)
 {
     const cJSON *get = json_member(json_member(json_member(root, "paths"), path), "get");
@@ -199,6 +220,7 @@ int main(void)
         cmocka_unit_test(references_meet_and_nothing_is_left_over),
         cmocka_unit_test(shapes_are_those_of_the_table),
         cmocka_unit_test(bodies_take_what_their_schemas_list),
+        cmocka_unit_test(each_flag_of_a_route_is_a_bit_of_its_own),
         cmocka_unit_test(only_the_manual_answers_404_with_a_page),
         cmocka_unit_test(pages_of_other_origins_may_read_every_header_described),
     };

@@ -621,26 +621,6 @@ static void documents_of_the_tables_are_json(void **state)
 }
 
 /* Checks that the entries of the route table are complete and consistent. */
-static void each_flag_of_a_route_is_a_bit_of_its_own(void **state)
-{
-    (void)state;
-    static const unsigned flags[] = {
-        API_WRITES,        API_COSTLY,          API_MAY_CREATE,          API_OWN_ACCEPT,
-        API_FIXED,         API_IDEMPOTENCY_KEY, API_IDEMPOTENCY_KEY_NEW, API_LONG,
-        API_INTERRUPTS,    API_REHEARSED,       API_EXPENSIVE,           API_STORELESS,
-        API_TAG_OF_OTHERS, API_UNLIMITED,       API_MISSING_PAGE,        API_OWN_QUERY};
-    unsigned all = 0;
-    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
-        assert_int_equal(all & flags[i], 0);
-        assert_int_equal(flags[i] & (flags[i] - 1), 0);
-        all |= flags[i];
-    }
-    /* The list above is whole: no row has another flag. */
-    for (size_t i = 0; i < api_routes().count; i++) {
-        assert_int_equal(api_routes().rows[i].flags & ~all, 0);
-    }
-}
-
 static void rows_are_whole(void **state)
 {
     (void)state;
@@ -805,7 +785,6 @@ int main(void)
         cmocka_unit_test(costly_work_leaves_the_worker),
         cmocka_unit_test(a_large_document_is_read_off_the_worker),
         cmocka_unit_test(documents_of_the_tables_are_json),
-        cmocka_unit_test(each_flag_of_a_route_is_a_bit_of_its_own),
         cmocka_unit_test(rows_are_whole),
         cmocka_unit_test(each_relation_of_each_kind_has_a_row),
         cmocka_unit_test(what_is_not_there_is_refused_with_what_is),
