@@ -4,7 +4,9 @@
 // The values are read again when the mesh has changed, with one request at a time. Until they have
 // arrived, the elements keep their colours, and new elements are grey.
 
-import { formatMeasure, make } from '../kit/dom.js';
+import { formatCount, formatMeasure, make } from '../kit/dom.js';
+import { onUnit } from '../kit/units.js';
+import { MOST_READ } from '../open/selection.js';
 import { BINS } from './bars.js';
 import { Column } from './column.js';
 import { Key } from './key.js';
@@ -15,9 +17,6 @@ import { KINDS, keyOf, numbersOf, partsOf, readSources, usualPart } from './sour
 import { scalingOf, texelsOfCategories, texelsOfNumbers, texelsOfVectors } from './texels.js';
 import { relatedTo } from './related.js';
 
-// At most so many elements are selected together.
-const MOST_SELECTED = 1000;
-
 // At most so many values are listed for the selected elements.
 const MOST_VALUES = 8;
 
@@ -26,10 +25,6 @@ const TRIES = 5;
 
 // The pointer rests if it has not moved for this many milliseconds.
 const REST = 120;
-
-// In larger meshes, the value under the pointer is shown only after a click: to find the element, the
-// whole mesh is drawn.
-const MOST_HOVERED = 200000;
 
 // The kinds of elements in the words of Selection and choose().
 const ELEMENTS = { vertices: 'vertex', faces: 'face', edges: 'edge', halfedges: 'halfedge' };
@@ -50,6 +45,7 @@ export class Colouring {
     #range = null; // chosen by the user, or null
     #reading = null; // AbortController of the present reading
     #isWanted = false; // the values must be read again
+    #isBehind = false; // the connection was lost while they were read again
     #timer = 0;
 
     // `select` is the choice of what the colours show, `part` that of a part of a vector, `scale` gets
@@ -74,6 +70,7 @@ export class Colouring {
             onRangeSelect: () => this.#selectRange(),
         });
         this.#key = new Key(key);
+        onUnit(() => this.#show());
         const readSoon = () => this.#readSources().catch(onError);
         select.addEventListener('focus', readSoon);
         select.addEventListener('pointerenter', readSoon);
@@ -106,6 +103,8 @@ export class Colouring {
             this.#load().catch(this.#acts.onError);
         } else if (what === 'selection') {
             this.#showValues();
+        } else if (what === 'state' && this.#isBehind && this.#session.connection === 'on') {
+            this.#load().catch(this.#acts.onError);
         }
     }
 
@@ -122,7 +121,8 @@ export class Colouring {
         if (this.#source === null) {
             return null;
         }
-        return [this.#source.key, this.#part ?? '', this.#map ?? '', ...(this.#range ?? [])].join('~');
+        const parts = [this.#source.key, this.#part ?? '', this.#map ?? '', ...(this.#range ?? [])];
+        return parts.map((part) => encodeURIComponent(part).replaceAll('~', '%7E')).join('~');
     }
 
     // Shows what the text of a link says; null is nothing. What the mesh does not have is passed over.
@@ -130,7 +130,7 @@ export class Colouring {
         if (text === this.shared) {
             return;
         }
-        const [key, part, map, ...range] = (text ?? '').split('~');
+        const [key, part, map, ...range] = partsOfLink(text ?? '');
         await this.#readSources();
         await this.#choose(key);
         if (this.#read !== null) {
@@ -161,6 +161,7 @@ export class Colouring {
         this.#reading = null;
         [this.#source, this.#part, this.#read] = [null, null, null];
         [this.#map, this.#range, this.#isWanted] = [null, null, false];
+        this.#isBehind = false;
         this.#elements.select.value = '';
         this.#elements.said.textContent = '';
     }
@@ -224,6 +225,7 @@ export class Colouring {
     // one more reading.
     async #load() {
         this.#isWanted = true;
+        this.#isBehind = false;
         if (this.#reading !== null) {
             return;
         }
@@ -268,6 +270,12 @@ export class Colouring {
     }
 
     #failed(error) {
+        // Status 0 means a lost connection, which the page shows in its bar. The colours stay; when the
+        // connection is back, the values are read again.
+        if (error.status === 0 && this.#read !== null) {
+            this.#isBehind = true;
+            return;
+        }
         const { title } = this.#source;
         this.clear();
         // An attribute can be deleted, for example by an undo.
@@ -467,10 +475,8 @@ export class Colouring {
             this.#key.setValue('');
             return;
         }
-        if (this.#session.shown.geometry.triangleCount <= MOST_HOVERED) {
-            const { clientX, clientY } = event;
-            this.#timer = setTimeout(() => this.#showValueAt(clientX, clientY), REST);
-        }
+        const { clientX, clientY } = event;
+        this.#timer = setTimeout(() => this.#showValueAt(clientX, clientY), REST);
     }
 
     // Shows the value of the element at a place in the window.
@@ -479,7 +485,7 @@ export class Colouring {
             return;
         }
         const { kind } = this.#source;
-        const found = this.#stage.elementAt(x, y, ELEMENTS[kind]);
+        const found = this.#stage.elementAt(x, y, ELEMENTS[kind], true);
         const id = found === null ? null : this.#idOf(found);
         this.#key.setValue(id === null ? '' : `${TITLES[kind]} ${id}: ${this.#valueOf(id)}`);
     }
@@ -502,24 +508,35 @@ export class Colouring {
         this.#selectWhere((number) => number >= from && number <= to);
     }
 
-    // Selects the elements whose numbers pass a test, if they are not too many.
+    // Selects the elements whose numbers pass a test. Corners are half-edges, of which the page selects
+    // only as many as it reads.
     #selectWhere(test) {
         if (this.#read === null) {
             return;
         }
-        const count = this.#column.countOf(test);
-        const { said } = this.#elements;
-        if (count > MOST_SELECTED || count === 0) {
-            said.textContent =
-                count === 0
-                    ? 'Nothing has such a value.'
-                    : `${this.#noun(count)}: too many to select, at most ${MOST_SELECTED}.`;
+        const ids = this.#column.find(test);
+        const kind = ELEMENTS[this.#source.kind];
+        const count = ids.length;
+        const isTooMany = kind === 'halfedge' && count > MOST_READ;
+        this.#elements.said.textContent =
+            count === 0
+                ? 'Nothing has such a value.'
+                : isTooMany
+                  ? `${this.#noun(count)}: too many to select, at most ${formatCount(MOST_READ)}.`
+                  : `${this.#noun(count)} selected.`;
+        if (count === 0 || isTooMany) {
             return;
         }
-        said.textContent = `${this.#noun(count)} selected.`;
-        const ids = this.#column.find(test, MOST_SELECTED);
-        const kind = ELEMENTS[this.#source.kind];
         this.#session.selection.selectAll(kind, ids).catch(this.#acts.onError);
+    }
+}
+
+// Returns the parts of the text of a link, see Colouring.shared; [''] if it cannot be read.
+function partsOfLink(text) {
+    try {
+        return text.split('~').map(decodeURIComponent);
+    } catch {
+        return [''];
     }
 }
 

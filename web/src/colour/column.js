@@ -12,7 +12,7 @@ const MOST_SPREAD = 4;
 const MOST_SAMPLES = 50000;
 
 // A map of categories is offered for at most this many different values.
-export const MOST_CATEGORIES = 256;
+const MOST_CATEGORIES = 256;
 
 export class Column {
     numbers;
@@ -73,20 +73,9 @@ export class Column {
         return Math.min(Math.floor(part * bins), bins - 1);
     }
 
-    // Returns the ids whose numbers pass a test, at most `limit`.
-    find(test, limit) {
-        const found = [];
-        for (let i = 0; i < this.ids.length && found.length < limit; i++) {
-            if (test(this.at(this.ids[i]))) {
-                found.push(this.ids[i]);
-            }
-        }
-        return found;
-    }
-
-    // Returns how many elements have a number that passes a test.
-    countOf(test) {
-        return this.ids.reduce((sum, id) => sum + (test(this.at(id)) ? 1 : 0), 0);
+    // Returns the ids whose numbers pass a test.
+    find(test) {
+        return [...this.ids].filter((id) => test(this.at(id)));
     }
 
     // Returns a test for find(): whether a number is in a part of the histogram.

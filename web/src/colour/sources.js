@@ -8,6 +8,7 @@
 // promise of an array with `components` numbers for each id; `place` is {mesh, revision, ids, corners}.
 
 import * as api from '../wire/api.js';
+import { unitText } from '../kit/units.js';
 
 export const KINDS = { vertices: 'vertex', faces: 'face', edges: 'edge', halfedges: 'corner' };
 
@@ -17,11 +18,20 @@ const UNITS = {
     smallest_angle: 'rad',
     angle_defect: 'rad',
     dihedral: 'rad',
-    length: 'units',
-    area: 'units\u00b2',
-    mean_curvature: '1/unit',
-    gaussian_curvature: '1/unit\u00b2',
 };
+
+// Measures of lengths and areas, and of what lies in one of them, are in the unit that the user has chosen.
+const SIZES = {
+    length: () => sizeUnit('units', 1),
+    area: () => sizeUnit('units', 2),
+    mean_curvature: () => `1/${sizeUnit('unit', 1)}`,
+    gaussian_curvature: () => `1/${sizeUnit('unit', 2)}`,
+};
+
+// Returns the unit of lengths (`power` 1) or areas (2): the chosen one, or else the word `unknown`.
+function sizeUnit(unknown, power) {
+    return unitText(power).trim() || `${unknown}${power === 2 ? '\u00b2' : ''}`;
+}
 
 // Types of attributes, by the array of their values.
 const ARRAYS = {
@@ -64,7 +74,9 @@ function measureSource({ name, kind, components }) {
         kind,
         name,
         title: wordsOf(name),
-        unit: UNITS[name] ?? '',
+        get unit() {
+            return SIZES[name]?.() ?? UNITS[name] ?? '';
+        },
         components,
         labels: null,
         isIndex: false,
@@ -112,7 +124,9 @@ function positionSource() {
         ...attributeSource({ domain: 'vertices', name: 'position', type: 'double', components: 3 }),
         key: keyOf('measure', 'vertices', 'position'),
         title: 'Position',
-        unit: 'units',
+        get unit() {
+            return SIZES.length();
+        },
     };
 }
 

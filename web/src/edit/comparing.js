@@ -1,12 +1,14 @@
 // comparing.js - the form that compares the open mesh with another mesh, or with one of its own
 // earlier revisions, and shows how far they are apart and where.
 
-import { formatMeasure, make } from '../kit/dom.js';
+import { make } from '../kit/dom.js';
+import { formatSize, onUnit } from '../kit/units.js';
 
 export class Comparing {
     #elements;
     #callbacks;
     #mesh = null;
+    #rows = null; // makes the rows of the result again, or null if there is no result
     #isKept = false; // an edit is running that does not move the faces
 
     // `form` contains `kind`, a choice of mesh or revision, with the fields `other` and `revision`,
@@ -24,21 +26,27 @@ export class Comparing {
             event.preventDefault();
             this.#run().catch(callbacks.onError);
         });
+        onUnit(() => this.#show(this.#rows));
         this.#showFields();
+    }
+
+    #show(rows) {
+        this.#rows = rows;
+        this.#elements.result.replaceChildren(...(rows === null ? [] : rows()));
     }
 
     // Called when another mesh is opened.
     setMesh(mesh) {
-        const { revision, result } = this.#elements;
+        const { revision } = this.#elements;
         this.#mesh = mesh;
         revision.value = '';
-        result.replaceChildren();
+        this.#show(null);
     }
 
     // Called when the open mesh has changed, so that its faces may be others.
     forget() {
         if (!this.#isKept) {
-            this.#elements.result.replaceChildren();
+            this.#show(null);
         }
     }
 
@@ -61,14 +69,15 @@ export class Comparing {
     }
 
     async #run() {
-        const { kind, other, revision, button, result } = this.#elements;
+        const { kind, other, revision, button } = this.#elements;
         const mesh = this.#mesh;
         button.disabled = true;
         try {
             const asked = kind.value === 'mesh' ? other.value : Number(revision.value);
             const found = await this.#callbacks.compare(asked);
             if (mesh === this.#mesh) {
-                result.replaceChildren(...this.#rowsOf(found), this.#colorButton(asked));
+                const button = this.#colorButton(asked);
+                this.#show(() => [...this.#rowsOf(found), button]);
             }
         } finally {
             button.disabled = false;
@@ -97,8 +106,8 @@ export class Comparing {
     #rowsOf({ lower, upper, forward, backward }) {
         return [
             row('Largest distance', rangeOf({ lower, upper })),
-            row('Mean', formatMeasure(Math.max(forward.mean, backward.mean))),
-            row('Root mean square', formatMeasure(Math.max(forward.rms, backward.rms))),
+            row('Mean', formatSize(Math.max(forward.mean, backward.mean))),
+            row('Root mean square', formatSize(Math.max(forward.rms, backward.rms))),
             this.#placeRow('From this mesh', forward, forward.place.face),
             this.#placeRow('From the other', backward, backward.place.near_face),
         ];
@@ -114,7 +123,7 @@ export class Comparing {
 
 // Returns a distance between its two bounds as text, as one number if they look the same.
 function rangeOf({ lower, upper }) {
-    const [low, high] = [formatMeasure(lower), formatMeasure(upper)];
+    const [low, high] = [formatSize(lower), formatSize(upper)];
     return low === high ? low : `${low} to ${high}`;
 }
 

@@ -1,19 +1,18 @@
-// lengths.js - how lengths, areas and angles are written. A mesh has no unit of its own, so its lengths
-// are plain numbers.
+// lengths.js - how measured lengths, areas and angles are written: lengths and areas in the unit that
+// the user has chosen.
 
 import { formatMeasure } from './dom.js';
-
-const DIGITS = 6;
+import { formatSize } from './units.js';
 
 export function formatLength(length) {
-    return formatMeasure(length, DIGITS);
+    return formatSize(length, 1);
 }
 
 export function formatArea(area) {
-    return formatMeasure(area, DIGITS);
+    return formatSize(area, 2);
 }
 
 // Writes an angle, which is given in radians, in degrees.
 export function formatAngle(angle) {
-    return `${formatMeasure((angle * 180) / Math.PI, DIGITS)}\u00b0`;
+    return `${formatMeasure((angle * 180) / Math.PI)}\u00b0`;
 }

@@ -14,6 +14,7 @@
 //   mends       how it can be mended, the best way first
 
 import { formatCount, formatMeasure, formatNumberOf } from '../kit/dom.js';
+import { formatSize } from '../kit/units.js';
 import { hasVertex, pointAt } from '../geometry/geometry.js';
 import { cornersOf, isFlat, lengthOf, normalOf, placeOf } from './places.js';
 import { mendOfAll, mendsOfComponent, mendsOfDefect, mendsOfLoop } from './mends.js';
@@ -80,7 +81,7 @@ function itemOfLoop(geometry, loop, isTriangles) {
     const { halfedge, halfedges, vertices, length, size } = loop;
     return {
         key: `loops:${halfedge}`,
-        text: `${formatNumberOf(length, 'edge')}, perimeter ${formatMeasure(size, DIGITS)}`,
+        text: `${formatNumberOf(length, 'edge')}, perimeter ${formatSize(size, 1, DIGITS)}`,
         place: placeOf(geometry, vertices),
         kind: 'halfedge',
         ids: halfedges,

@@ -10,6 +10,8 @@ import { enable, formatCount, make } from '../kit/dom.js';
 import { elementsOf, groupsOf, restOf, summaryOf, wordsOfPlace } from './findings.js';
 import { Mend } from './mend.js';
 import { ballAround, cornersOf } from './places.js';
+import { MOST_READ } from '../open/selection.js';
+import { onUnit } from '../kit/units.js';
 import { wordsOf } from '../edit/trial.js';
 import { Work } from '../kit/work.js';
 
@@ -18,9 +20,6 @@ const MOST_SHOWN = 50;
 
 // At first a group with more findings than this is closed.
 const MOST_OPEN = 8;
-
-// At most this many elements are selected when a finding is opened.
-const MOST_SELECTED = 1000;
 
 // An operation on a large mesh is not tried before it is done.
 const MOST_TRIED = 100000;
@@ -51,6 +50,11 @@ export class Lens {
         const { box, label, progress, cancel } = elements;
         this.#work = new Work({ box, label, progress, button: cancel }, acts.onError);
         elements.run.addEventListener('click', () => this.check());
+        onUnit(() => {
+            if (this.#groups !== null && !session.shown.isLarge) {
+                this.check();
+            }
+        });
         elements.meets.addEventListener('change', () => {
             if (this.#isOn) {
                 this.check();
@@ -351,9 +355,11 @@ export class Lens {
         const seen = ids === null ? cornersOf(geometry, elements) : vertices;
         const ball = ballAround(geometry, seen);
         if (shown === this.#session.shown) {
+            // More half-edges than the page reads cannot be selected: then their edges are.
+            const isMany = kind === 'halfedge' && elements.length > MOST_READ;
             await this.#acts.show({
-                kind,
-                ids: elements.slice(0, MOST_SELECTED),
+                kind: isMany ? 'edge' : kind,
+                ids: isMany ? elements.map((halfedge) => halfedge >>> 1) : elements,
                 ball: ball === null ? null : { ...ball, normal },
             });
         }

@@ -12,7 +12,9 @@
 //   at       where the label stands
 
 import * as api from '../wire/api.js';
+import { formatNumberOf } from '../kit/dom.js';
 import { formatAngle, formatArea, formatLength } from '../kit/lengths.js';
+import { askAll } from '../open/crowd.js';
 import {
     along,
     angleAt,
@@ -122,7 +124,7 @@ function made(value, format, { note = '', lines = [], points = [], at }) {
 
 // Asks for the present elements of refs, and returns the server's answers.
 async function getAll(mesh, kind, ids) {
-    return answersOf(await api.query(mesh, ids.map((id) => ({ get: { [kind]: id } }))));
+    return answersOf(await askAll(mesh, ids, (id) => ({ get: { [kind]: id } })));
 }
 
 // Throws the first problem among the answers to some questions.
@@ -135,8 +137,8 @@ function answersOf(answers) {
 }
 
 async function pointsAt({ mesh }, refs) {
-    const ids = refs.filter(({ vertex }) => vertex !== undefined).map(({ vertex }) => vertex);
-    const found = new Map((await getAll(mesh, 'vertex', ids)).map((one) => [one.id, one.position]));
+    const ids = new Set(refs.filter(({ vertex }) => vertex !== undefined).map(({ vertex }) => vertex));
+    const found = new Map((await getAll(mesh, 'vertex', [...ids])).map((one) => [one.id, one.position]));
     return refs.map(({ vertex, point }) => point ?? found.get(vertex));
 }
 
@@ -215,25 +217,18 @@ async function measureFaces(place, refs) {
 
 async function measureArea(place, refs) {
     const faces = refs.map(({ face }) => face);
-    const [{ values }, ...found] = answersOf(
-        await api.query(place.mesh, [
-            { measure: 'area', of: { faces } },
-            ...faces.map((face) => ({ get: { face } })),
-        ]),
-    );
+    const found = await getAll(place.mesh, 'face', faces);
     // The outline are the edges that only one of the faces has.
     const counts = new Map();
     for (const edge of found.flatMap(({ halfedges }) => halfedges.map((one) => one >>> 1))) {
         counts.set(edge, (counts.get(edge) ?? 0) + 1);
     }
     const outline = [...counts].filter(([, count]) => count === 1).map(([edge]) => edge);
-    const [{ ids }] = answersOf(
-        await api.query(place.mesh, [{ relation: 'vertices', of: { edges: outline } }]),
-    );
-    const sum = values.reduce((total, value) => total + value, 0);
+    const ends = (await getAll(place.mesh, 'edge', outline)).flatMap(({ vertices }) => vertices);
+    const sum = found.reduce((total, { area }) => total + area, 0);
     return made(sum, formatArea, {
-        note: `${faces.length} ${faces.length === 1 ? 'face' : 'faces'}`,
-        lines: await pointsAt(place, ids.map((vertex) => ({ vertex }))),
+        note: formatNumberOf(faces.length, 'face'),
+        lines: await pointsAt(place, ends.map((vertex) => ({ vertex }))),
         at: middle(found.map(({ centroid }) => centroid)),
     });
 }

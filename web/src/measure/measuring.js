@@ -7,6 +7,7 @@
 import { copyText } from '../kit/clipboard.js';
 import { enable, make } from '../kit/dom.js';
 import { numbersOf } from '../kit/numbers.js';
+import { onUnit } from '../kit/units.js';
 import { pointAt } from '../geometry/geometry.js';
 import { Problem } from '../wire/api.js';
 import { KINDS, elementOf, measure } from './kinds.js';
@@ -54,6 +55,7 @@ export class Measuring {
             event.preventDefault();
             this.#take().catch(onError);
         });
+        onUnit(() => this.#measureAgain().catch(onError));
         done.addEventListener('click', () => this.stop());
         clear.addEventListener('click', () => this.#forget(this.#results));
     }
@@ -103,9 +105,15 @@ export class Measuring {
         if (what === 'mesh') {
             this.#results = [];
             this.stop();
-        } else if (what === 'change' || what === 'content') {
+        } else if (what === 'change' || what === 'content' || this.#isBack(what)) {
             this.#measureAgain().catch(this.#acts.onError);
         }
+    }
+
+    // Whether the connection is back, during whose loss the results were to be measured again.
+    #isBack(what) {
+        const isIdle = this.#isWanted && this.#running === null;
+        return what === 'state' && isIdle && this.#session.connection === 'on';
     }
 
     // Called after each frame.
@@ -172,8 +180,8 @@ export class Measuring {
         const element = elementOf(kind);
         let ids = numbersOf(this.#elements.ids.value, 'ids');
         if (takes === 'faces' && ids.length === 0) {
-            const { chosen } = this.#session.selection;
-            ids = chosen.filter((one) => one.kind === 'face').map(({ id }) => id);
+            const { selection } = this.#session;
+            ids = selection.kind === 'face' ? await selection.ids() : [];
         }
         const isRight = takes === 'faces' ? ids.length > 0 : ids.length === count;
         if (!isRight || !ids.every((id) => Number.isInteger(id) && id >= 0)) {
@@ -214,7 +222,7 @@ export class Measuring {
 
     // --- after a change of the mesh ---
 
-    // Measures all results again. A call during that only asks for one more pass.
+    // Measures all results again, and writes them in the present unit. A call during that only asks for one more pass.
     #measureAgain() {
         this.#isWanted = this.#results.length > 0;
         this.#running ??= this.#measureAll().finally(() => {
@@ -231,7 +239,13 @@ export class Measuring {
                     result.found = await measure(result, this.#place);
                     result.problem = null;
                 } catch (error) {
-                    if (!(error instanceof Problem) || error.status === 0) {
+                    // Status 0 means a lost connection, which the page shows in its bar. The results
+                    // stay, and are measured again when it is back.
+                    if (error.status === 0) {
+                        this.#isWanted = true;
+                        return;
+                    }
+                    if (!(error instanceof Problem)) {
                         throw error;
                     }
                     result.problem = error.detail;

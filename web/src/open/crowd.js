@@ -150,7 +150,7 @@ export class Crowd {
 
 // Asks the server the question `about(item)` for each item, in as few requests as possible, and
 // returns the answers in order.
-async function askAll(mesh, items, about) {
+export async function askAll(mesh, items, about) {
     const answers = [];
     for (let at = 0; at < items.length; at += MOST_ASKED) {
         const part = items.slice(at, at + MOST_ASKED);

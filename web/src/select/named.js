@@ -6,7 +6,7 @@ import { make } from '../kit/dom.js';
 
 const DOMAINS = { vertices: 'vertex', edges: 'edge', faces: 'face' };
 
-// A set is listed again after these operations, which write attributes.
+// Sets are listed again after these operations, which write attributes.
 const WRITERS = /attribute|select|segment|append|compact/;
 
 export class NamedSets {
@@ -15,6 +15,7 @@ export class NamedSets {
     #sets = []; // {domain, name}
     #reading = 0; // number of the last reading
     #mesh = null;
+    #seen = 0; // the revision up to which the history was looked at
 
     // `form` contains the field `name`; `list` gets the sets. `offers` has a datalist for each
     // domain, which gets their names. `onSave(name)` saves the selection, `onTake({domain, name},
@@ -34,12 +35,18 @@ export class NamedSets {
     }
 
     // Called when the mesh `mesh` has changed; `what` is as in the constructor of Session, and
-    // `history` are the newest entries of the history.
-    follow(mesh, what, history) {
+    // `history` is the newest page of the history.
+    follow(mesh, what, { revision, entries, next }) {
+        if (mesh !== this.#mesh) {
+            this.#sets = [];
+            this.#show();
+        }
         const isNew = mesh !== this.#mesh || what === 'content';
-        const isWritten = history.some(({ ops }) => ops.some((op) => WRITERS.test(op)));
-        this.#mesh = mesh;
-        if (isNew || isWritten) {
+        const unseen = entries.filter((entry) => entry.revision > this.#seen);
+        const isLong = next !== null && unseen.length === entries.length;
+        const isWritten = unseen.some(({ ops }) => ops.some((op) => WRITERS.test(op)));
+        [this.#mesh, this.#seen] = [mesh, revision];
+        if (isNew || isLong || isWritten) {
             this.#read().catch((error) => error.status !== 0 && this.#acts.onError(error));
         }
     }

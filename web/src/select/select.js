@@ -2,10 +2,11 @@
 // neighbours, along loops and rings, and as named sets.
 
 import * as api from '../wire/api.js';
-import { byId, enable, formatMeasure, formatNumberOf } from '../kit/dom.js';
+import { byId, enable, formatCount, formatNumberOf } from '../kit/dom.js';
 import { allOf, noneOf, sizeOf } from '../geometry/sets.js';
 import { inside, polygonMask } from '../geometry/region.js';
 import { Lasso } from '../stage/lasso.js';
+import { formatSize, onUnit } from '../kit/units.js';
 import { Crowd, PLURALS } from '../open/crowd.js';
 import { Brush, Stroke } from './paint.js';
 import { CHANGES, around, combined } from './changes.js';
@@ -79,6 +80,7 @@ export class Select {
             byId(`select-${line}`).addEventListener('click', () => this.line(line));
         }
         byId('select-done').addEventListener('click', () => this.cancel());
+        onUnit(() => this.#say());
         byId('select-angle').addEventListener('keydown', (event) => {
             if (event.key === 'Enter' && this.#isReady) {
                 this.change('around');
@@ -88,17 +90,23 @@ export class Select {
 
     // Called when the session has changed; `what` is as in the constructor of Session.
     follow(what) {
-        const { shown, mesh, selection } = this.#session;
+        const { shown, mesh } = this.#session;
         if (what === 'mesh') {
             this.cancel();
         }
         if (shown !== null && ['mesh', 'content', 'change'].includes(what)) {
-            this.#sets.follow(mesh, what, shown.history.entries.slice(0, 1));
+            this.#sets.follow(mesh, what, shown.history);
         }
         if (['mesh', 'content', 'change', 'selection'].includes(what)) {
-            byId('select-said').textContent = shown === null ? '' : saidOf(selection, shown);
+            this.#say();
             this.#showPossible();
         }
+    }
+
+    // Says how much is selected.
+    #say() {
+        const { shown, selection } = this.#session;
+        byId('select-said').textContent = shown === null ? '' : saidOf(selection, shown);
     }
 
     // Sets whether there is a mesh to select in, and whether it may be edited.
@@ -352,8 +360,8 @@ function saidOf(selection, { geometry, summary }) {
     const sizeIn = (member) =>
         crowd === null ? sum(member) : sizeOf(kind, crowd.setIn(geometry), geometry);
     const size = {
-        face: () => `, area ${formatMeasure(sizeIn('area'), 5)}`,
-        edge: () => `, length ${formatMeasure(sizeIn('length'), 5)}`,
+        face: () => `, area ${formatSize(sizeIn('area'), 2, 5)}`,
+        edge: () => `, length ${formatSize(sizeIn('length'), 1, 5)}`,
     }[kind];
-    return `${what} of ${total.toLocaleString('en')}${size?.() ?? ''}`;
+    return `${what} of ${formatCount(total)}${size?.() ?? ''}`;
 }

@@ -110,24 +110,36 @@ export class Presence {
         }
     }
 
+    // Returns what is selected as the server takes it, or null. Of many faces or vertices it names only
+    // the first ones and the count. The ids of many edges are not known without asking the server.
+    #selected() {
+        const { chosen, crowd, kind, count } = this.#session.selection;
+        if (crowd === null) {
+            const ids = chosen.slice(-MOST_IDS).map(({ id }) => id);
+            return kind === null ? null : { kind, ids, count };
+        }
+        return crowd.flags === null ? null : { kind, ids: firstOf(crowd.flags, MOST_IDS), count };
+    }
+
     #shown() {
-        const { chosen, last } = this.#session.selection;
         const camera = this.#cameraNow();
         return {
             client: this.client,
             name: this.name,
-            selection:
-                last === undefined
-                    ? null
-                    : {
-                          kind: last.kind,
-                          ids: chosen.slice(-MOST_IDS).map(({ id }) => id),
-                          count: chosen.length,
-                      },
+            selection: this.#selected(),
             camera:
                 camera === undefined
                     ? null
                     : { position: camera.slice(0, 3), target: camera.slice(3), up: [0, 0, 1] },
         };
     }
+}
+
+// Returns the places of the first `most` ones in an array.
+function firstOf(flags, most) {
+    const found = [];
+    for (let at = flags.indexOf(1); at >= 0 && found.length < most; at = flags.indexOf(1, at + 1)) {
+        found.push(at);
+    }
+    return found;
 }
