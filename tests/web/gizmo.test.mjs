@@ -144,7 +144,12 @@ for (const [name, way, kind] of [
         const lines = (await readCanvas(page)).countOf(isPreview);
         const sent = page.waitForRequest(isEdit);
         await dragHandle(page, name, way, async () => {
-            while ((await readCanvas(page)).countOf(isPreview) < lines + 200);
+            let drawn = 0;
+            for (let frame = 0; frame < 300 && drawn < lines + 200; frame++) {
+                await page.evaluate(() => new Promise(requestAnimationFrame));
+                drawn = (await readCanvas(page)).countOf(isPreview);
+            }
+            assert.ok(drawn >= lines + 200, `${drawn} pixels of the preview are drawn`);
             const typed = await page.locator(`#gizmo-${kind} input`).evaluateAll((all) => all.map(({ value }) => value));
             assert.ok(typed.some((value) => value !== ''), `${typed}`);
             assert.equal((await get(daemon, `/${mesh}`)).revision, 1);

@@ -7,6 +7,7 @@ import { isReady, showName, showState } from './stage/bar.js';
 import { Colouring } from './colour/colouring.js';
 import { colourByDeviation, nextAfter } from './edit/offers.js';
 import { Comparing } from './edit/comparing.js';
+import { copyText } from './kit/clipboard.js';
 import { byId } from './kit/dom.js';
 import { fileNameOf, save } from './kit/download.js';
 import { Editing } from './edit/editing.js';
@@ -327,11 +328,11 @@ const guide = new Guide(
 );
 const share = new Share();
 share.register('look', {
-    get: () => linkOf(look.state),
+    get: (isShared) => linkOf(look.state, isShared),
     set: (text) => {
         const state = text === null ? null : stateOfLink(text);
         if (state !== null) {
-            look.state = { ...state, hurry: look.state.hurry };
+            look.visit({ ...state, hurry: look.state.hurry });
         }
     },
 });
@@ -435,7 +436,7 @@ function update(what, change) {
         showFacts();
     }
     if (isChanged || what === 'history') {
-        history.show(session.shown.history);
+        history.show(session.shown.history, what === 'mesh');
     }
     if (isChanged) {
         comparing.forget();
@@ -516,7 +517,7 @@ function goBack(revision) {
 }
 
 async function copyLink() {
-    await navigator.clipboard.writeText(address.link);
+    await copyText(address.link);
     toasts.tell('Link copied', 'It shows this mesh as you see it now.');
 }
 

@@ -23,9 +23,11 @@ const MOST_TRIED = 100000;
 const MOST_MARKED = 1000;
 
 // If more elements are selected than MOST_TRIED_IDS, an operation on them gets no dry run. If there
-// are more than MOST_SENT, their ids are not sent: they become a set, which the operation takes.
+// are more than MOST_SENT, their ids are not sent: they become a set named SENT, which the operation
+// takes. The page keeps this name to itself, so that no set of the user is replaced.
 const MOST_TRIED_IDS = 20000;
 const MOST_SENT = 500000;
+const SENT = 'hedge_page_selection';
 
 // The operation whose form is shown if a tool of the view cannot work on the selected elements, by
 // the name of the tool.
@@ -239,16 +241,18 @@ export class Editing {
         const isDear =
             this.#tools.isWhole(operation.op) && content?.summary.counts.faces > MOST_TRIED;
         if (mesh === null || busy) {
-            return null;
+            return { words: null, isKnown: false };
         }
         if (isDear) {
-            return 'No preview: this operation may take long on a mesh of this size.';
+            const words = 'No preview: this operation may take long on a mesh of this size.';
+            return { words, isKnown: false };
         }
         if (namesSelection(operation) && this.#session.selection.count > MOST_TRIED_IDS) {
-            return 'No preview for so many elements.';
+            return { words: 'No preview for so many elements.', isKnown: false };
         }
         try {
-            return wordsOf(await api.tryEdit(mesh, await this.#expand(operation), signal));
+            const answer = await api.tryEdit(mesh, await this.#expand(operation), signal);
+            return { words: wordsOf(answer), isKnown: answer !== null };
         } catch (error) {
             if (!signal.aborted) {
                 this.#tools.mark(error.pointer ?? '');
@@ -292,8 +296,13 @@ export class Editing {
         if (ids.length <= MOST_SENT) {
             return ids;
         }
-        const set = { domain: name, name: 'selected' };
-        await this.#session.saveSet(set, ids);
+        const set = { domain: name, name: SENT };
+        if ((await this.#session.saveSet(set, ids)) === null) {
+            throw new api.Problem({
+                title: 'Not sent',
+                detail: 'Another edit is in progress. Try again when it is done.',
+            });
+        }
         return { [set.name]: true };
     }
 

@@ -16,8 +16,8 @@ export class Trial {
     #asked = null; // the operation of the last dry run
     #onKnown;
 
-    // `attempt(operation, signal)` makes a dry run and returns a promise of the text to show, or of
-    // null if there is nothing to show. `onKnown(operation)` is called with an operation that a dry
+    // `attempt(operation, signal)` makes a dry run and returns a promise of {words, isKnown}: the text to
+    // show, or null if there is nothing to show, and whether it is known that the operation is possible. `onKnown(operation)` is called with an operation that a dry
     // run has found possible, and with null when it is not known any more whether the form is.
     constructor(box, attempt, onKnown) {
         this.#box = box;
@@ -78,10 +78,10 @@ export class Trial {
         const running = new AbortController();
         this.#running = running;
         try {
-            const words = await this.#attempt(operation, running.signal);
+            const { words, isKnown } = await this.#attempt(operation, running.signal);
             if (!running.signal.aborted) {
                 this.#say(words ?? '', false);
-                this.#onKnown(operation);
+                this.#onKnown(isKnown ? operation : null);
             }
         } catch (error) {
             // Status 0 means a lost connection, which the page shows in its bar and not in the

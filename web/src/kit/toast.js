@@ -63,9 +63,9 @@ export class Toasts {
         // pointer of an error begins, is not shown.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
-        const toast = this.#add('alert', title, `${detail}${where}`, error.mesh ?? null);
+        const { toast, isNew } = this.#add('alert', title, `${detail}${where}`, error.mesh ?? null);
         const { element } = error;
-        if (toast !== null && element && error.code !== 'no_such_element' && error.mesh === this.#mesh) {
+        if (isNew && element && error.code !== 'no_such_element' && error.mesh === this.#mesh) {
             const { kind, id } = element;
             const onclick = () => this.#actions.onElement(kind, id);
             const label = `Show ${kind === 'halfedge' ? 'half-edge' : kind} ${id}`;
@@ -108,20 +108,21 @@ export class Toasts {
     // until it is closed, unless `next` has `isOffer`, because it can be done at any other time, too.
     // If there are several things to do, `next` is a list of them, of which some may be null.
     tell(title, detail, next = null) {
-        const toast = this.#add('status', title, detail, this.#mesh);
-        if (toast === null) {
-            return;
-        }
+        const { toast, isNew } = this.#add('status', title, detail, this.#mesh);
         const all = [next].flat().filter((one) => one !== null);
-        if (all.every(({ isOffer }) => isOffer === true)) {
+        if (isNew && all.every(({ isOffer }) => isOffer === true)) {
             this.#closeLater(toast);
         }
+        // The buttons of an earlier message with the same words are about what was then.
+        toast.querySelectorAll('.next').forEach((button) => button.remove());
         for (const { label, run } of all) {
             const onclick = () => {
                 this.#close(toast);
                 run();
             };
-            toast.firstElementChild.append(make('button', { type: 'button', onclick }, label));
+            toast.firstElementChild.append(
+                make('button', { type: 'button', className: 'next', onclick }, label),
+            );
         }
     }
 
@@ -130,8 +131,8 @@ export class Toasts {
         return [...this.#region.querySelectorAll('.toast:not(.waits)')];
     }
 
-    // Adds a message above all others, and returns its element. If the same message is there, counts
-    // it once more and returns null.
+    // Adds a message above all others, and returns {toast, isNew}: its element, and whether it is new. If
+    // the same message is there, counts it once more.
     #add(role, title, text, mesh) {
         const same = this.#toasts.find(
             (one) =>
@@ -142,7 +143,7 @@ export class Toasts {
         );
         if (same !== undefined) {
             this.#repeat(same);
-            return null;
+            return { toast: same, isNew: false };
         }
         const toast = make('div', { className: role === 'alert' ? 'toast' : 'toast well', role });
         toast.dataset.mesh = mesh ?? '';
@@ -162,7 +163,7 @@ export class Toasts {
         );
         this.#region.prepend(toast);
         this.#arrange();
-        return toast;
+        return { toast, isNew: true };
     }
 
     // Shows that a message was repeated: counts it, and makes it the newest one.

@@ -80,6 +80,11 @@ export class Look {
         this.#set(toState(value));
     }
 
+    // Shows a look that somebody else has shared. It is not remembered as that of the visitor.
+    visit(value) {
+        this.#show(toState(value));
+    }
+
     // Whether something that the look needs is being computed.
     get isBusy() {
         return this.#normals.isRunning || this.#proxy.isRunning || this.#cutting.isRunning;
@@ -168,8 +173,12 @@ export class Look {
     }
 
     #set(state) {
-        this.#state = state;
         remember(NAME, { ...state, section: null });
+        this.#show(state);
+    }
+
+    #show(state) {
+        this.#state = state;
         setUnit(state.unit);
         try {
             this.#renderer?.setLook(state);

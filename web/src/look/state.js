@@ -113,13 +113,14 @@ export function rangeOf(normal, { low, high }, { origin, scale }) {
     return [sum(0), sum(1)];
 }
 
-// Returns a look as the text of a link, or null if it is the look of the first visit: what differs from
-// that, as JSON. What is drawn while the camera moves is left to each visitor.
-export function linkOf(state) {
+// Returns a look as the text of a link: what differs from the look of the first visit, as JSON. If
+// nothing does, returns null, or with `isShared` the text that says so, because others may have another
+// look. What is drawn while the camera moves is left to each visitor.
+export function linkOf(state, isShared = false) {
     const differs = Object.entries(state).filter(
         ([name, value]) => name !== 'hurry' && JSON.stringify(value) !== JSON.stringify(FIRST[name]),
     );
-    return differs.length === 0 ? null : JSON.stringify(Object.fromEntries(differs));
+    return differs.length === 0 && !isShared ? null : JSON.stringify(Object.fromEntries(differs));
 }
 
 // Returns the look that the text of a link says, or null if it says none.

@@ -15,21 +15,22 @@ export class Address {
     }
 
     // Writes the open mesh, the selection, the camera and all parts into the page's address. It replaces the
-    // newest entry of the browser's history, so that moving the camera does not fill the history.
-    write() {
+    // newest entry of the browser's history, so that moving the camera does not fill the history. If
+    // `isShared` is true, parts in their usual state are written, too, see share.js.
+    write(isShared = false) {
         const { mesh, selection } = this.#session;
         if (mesh !== null) {
             const kind = selection.last?.kind;
             const ids = selection.chosen.map(({ id }) => id);
             const { camera } = this.#stage;
-            const link = formatLink({ mesh, kind, ids, camera, parts: this.#share.parts });
+            const link = formatLink({ mesh, kind, ids, camera, parts: this.#share.parts(isShared) });
             window.history.replaceState(null, '', link);
         }
     }
 
     // Returns the whole address of what is shown now.
     get link() {
-        this.write();
+        this.write(true);
         return window.location.href;
     }
 
@@ -47,13 +48,17 @@ export class Address {
         if (session.mesh === mesh && camera !== null) {
             this.#stage.camera = camera;
         }
-        if (session.mesh === mesh && ids.length > 1) {
-            await session.selection.selectAll(kind, ids);
-        } else if (session.mesh === mesh && kind !== null) {
-            await session.selection.select(kind, ids[0]);
-        }
-        if (session.mesh === mesh) {
-            await this.#share.show(parts);
+        // The parts are shown even if the element does not exist any more.
+        try {
+            if (session.mesh === mesh && ids.length > 1) {
+                await session.selection.selectAll(kind, ids);
+            } else if (session.mesh === mesh && kind !== null) {
+                await session.selection.select(kind, ids[0]);
+            }
+        } finally {
+            if (session.mesh === mesh) {
+                await this.#share.show(parts);
+            }
         }
     }
 }

@@ -88,10 +88,13 @@ export class Content {
         return change;
     }
 
+    // The returned function takes `onlyNewer`: whether a history is left that is newer than this one.
     async readHistory(signal) {
         const history = await api.getHistory(this.mesh, null, signal);
-        return () => {
-            this.history = history;
+        return (onlyNewer = false) => {
+            if (!onlyNewer || history.revision >= this.history.revision) {
+                this.history = history;
+            }
         };
     }
 

@@ -24,7 +24,7 @@ export class Session {
     selection;
     loading = null; // fraction of a mesh to open that has been read, 0 to 1; null if none is opened
     busy = false; // whether an edit of this page is in progress
-    own = 0; // the newest revision that an edit of this page has made
+    own = new Set(); // the revisions of the open mesh that edits of this page have made
 
     #onChange;
     #onError;
@@ -104,6 +104,7 @@ export class Session {
             this.#followed = followed;
             this.shown = shown;
             this.selection.reset(mesh);
+            this.own.clear();
             this.#onChange('mesh');
             this.#heardOf(followed, 0);
             this.#catchUp(followed);
@@ -191,7 +192,7 @@ export class Session {
         const { shown } = this;
         const put = await shown.readHistory();
         if (this.shown === shown) {
-            put();
+            put(true); // changes may have been fetched meanwhile
             this.#onChange('history');
         }
     }
@@ -396,7 +397,9 @@ export class Session {
             if (answer !== null) {
                 followed.lineage.note(answer);
                 followed.latest = Math.max(followed.latest, answer.revision);
-                this.own = answer.revision;
+                if (followed === this.#followed) {
+                    this.own.add(answer.revision);
+                }
             }
             if (followed === this.#followed) {
                 await this.#fetch({});

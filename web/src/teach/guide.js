@@ -83,6 +83,9 @@ export class Guide {
         const summary = await api.create(example.document, null);
         [this.#example, this.#mesh, this.#at] = [example, summary.id, 0];
         await this.#actions.onMade(summary);
+        if (this.#mesh !== summary.id) {
+            return; // the guide was ended, or another example begun
+        }
         this.#show();
         this.#nodes.next.focus({ preventScroll: true });
     }
@@ -107,11 +110,12 @@ export class Guide {
         try {
             const { steps } = this.#example;
             const again = await steps[this.#at].while?.(await readTriangles(this.#mesh));
-            if (!again) {
-                this.#at += 1;
-            }
-            await this.#act(steps[this.#at].act);
-            if (this.#example !== null) {
+            const mesh = this.#mesh;
+            const at = again ? this.#at : this.#at + 1;
+            await this.#act(steps[at].act);
+            // If the step has failed, the guide stays where it was.
+            if (mesh !== null && mesh === this.#mesh) {
+                this.#at = at;
                 this.#show();
             }
         } finally {

@@ -2,6 +2,7 @@
 // a dry run has found that the operation is possible.
 
 import { enable } from '../kit/dom.js';
+import { Problem } from '../wire/api.js';
 import { showLesson } from './lesson.js';
 import { readRegion } from './region.js';
 
@@ -37,14 +38,28 @@ export class Offering {
         if (operation === null || mesh === null) {
             return;
         }
+        const { revision } = shown;
         const region = await readRegion(mesh, operation, shown.summary.counts.faces);
         if (this.#session.mesh === mesh) {
             showLesson({
                 operation,
                 doc: this.#docs.get(operation.op) ?? '',
                 region,
-                onApply: () => this.#actions.onApply(operation),
+                onApply: () => this.#apply(operation, mesh, revision),
             });
         }
+    }
+
+    // Applies the operation, unless another mesh or another revision is shown than the steps are about.
+    #apply(operation, mesh, revision) {
+        if (this.#session.mesh === mesh && this.#session.shown.revision === revision) {
+            this.#actions.onApply(operation);
+            return;
+        }
+        const detail =
+            this.#session.mesh === mesh
+                ? 'The mesh has changed since its steps were shown. Show them again.'
+                : 'Another mesh is open now than the one whose steps were shown.';
+        this.#actions.onError(new Problem({ title: 'Not applied', detail }));
     }
 }

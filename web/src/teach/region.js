@@ -24,12 +24,34 @@ export async function readRegion(mesh, operation, faces) {
     if (changes === null || changes.replaced || edges.size > MOST_EDGES) {
         throw tooLarge(`Only operations that change at most ${MOST_EDGES} edges can be shown step by step.`);
     }
-    const copy = await api.copy(mesh, 'step by step');
+    return withCopy(mesh, async (copy) => {
+        await api.edit(copy, operation);
+        return withoutIdle(...(await readBoth([mesh, copy], changes)));
+    });
+}
+
+// Calls act(copy) with the id of a copy of a mesh, deletes the copy, also if the page is left meanwhile,
+// and returns the result.
+async function withCopy(mesh, act) {
+    const { id } = await api.copy(mesh, 'step by step').catch((error) => {
+        if (error.status === 401 || error.status === 403) {
+            const words = 'The steps are read from a copy of the mesh, and the server lets this page make none.';
+            error.detail = `${words} ${error.detail ?? ''}`.trim();
+        }
+        throw error;
+    });
+    // Nobody else has changed the copy, so it is deleted in whatever state it is.
+    const leave = () => api.remove(id, '*', true).catch(() => {});
+    window.addEventListener('pagehide', leave);
     try {
-        await api.edit(copy.id, operation);
-        return withoutIdle(...(await readBoth([mesh, copy.id], changes)));
+        const result = await act(id);
+        await api.remove(id, '*');
+        return result;
+    } catch (error) {
+        await api.remove(id, '*').catch(() => {}); // the first error is the one to show
+        throw error;
     } finally {
-        await api.remove(copy.id, await api.getTag(copy.id));
+        window.removeEventListener('pagehide', leave);
     }
 }
 

@@ -1,11 +1,12 @@
 // flash.js - marks for a moment what another client has changed.
 
 import { shapeOfFaces } from '../geometry/changed.js';
+import { COLORS } from '../gl/colors.js';
+import { theme } from '../look/theme.js';
 
 // Whether the user has asked for a page without motion.
 const wantsRest = window.matchMedia('(prefers-reduced-motion: reduce)');
 
-const COLOR = 0xf4f6fa;
 const MILLIS = 900;
 const MOST_FACES = 20000; // a change of more faces is seen without a mark
 
@@ -34,10 +35,10 @@ export class Flash {
         }
         const seen = this.#told.filter(({ revision }) => revision <= shown.revision);
         this.#told = this.#told.filter(({ revision }) => revision > shown.revision);
-        const faces = seen.filter(({ revision }) => revision !== own).flatMap((one) => one.faces);
+        const faces = seen.filter(({ revision }) => !own.has(revision)).flatMap((one) => one.faces);
         if (faces.length > 0) {
             const shape = shapeOfFaces(shown.geometry, [...new Set(faces)]);
-            this.#stage.tint('flash', [{ color: COLOR, ...shape }]);
+            this.#stage.tint('flash', [{ color: COLORS[theme()].flash, ...shape }]);
             clearTimeout(this.#timer);
             this.#timer = setTimeout(() => this.#stage.tint('flash', []), MILLIS);
         }
