@@ -436,7 +436,7 @@ function update(what, change) {
         showFacts();
     }
     if (isChanged || what === 'history') {
-        history.show(session.shown.history, what === 'mesh');
+        history.show(session.shown.history);
     }
     if (isChanged) {
         comparing.forget();

@@ -16,7 +16,6 @@ export class History {
     #onReturn;
     #acts;
     #shown = null; // the history whose entries are in the list
-    #waiting = null; // the newest history, while the user writes a name into the list
     #isEnabled = true;
     #hasFocus = false; // a button of the list was pressed, so the list keeps the focus
     #beginning = null; // the revision before the first step that can be undone
@@ -31,7 +30,7 @@ export class History {
         this.#readPage = readPage;
         this.#onUndo = onUndo;
         this.#onReturn = onReturn;
-        this.#acts = { onLook, onName, onError, onEnd: () => this.#showWaiting() };
+        this.#acts = { onLook, onName, onError };
         more.addEventListener('click', () => this.#readOn().catch(onError));
         document.addEventListener('visibilitychange', () => this.#tellTimes());
     }
@@ -44,16 +43,8 @@ export class History {
         }
     }
 
-    // Shows the first page of the history, as the server sent it. While the user writes a name of a
-    // revision, the list stays as it is, unless the history is that of another mesh (`isOther`).
-    show(history, isOther = false) {
-        const field = this.#list.querySelector('.moment-name');
-        if (field !== null && !isOther) {
-            this.#waiting = history;
-            return;
-        }
-        field?.dispatchEvent(new Event('cancel'));
-        this.#waiting = null;
+    // Shows the first page of the history, as the server sent it.
+    show(history) {
         const hadFocus = this.#hasFocus || this.#list.contains(document.activeElement);
         this.#hasFocus = false;
         this.#shown = history;
@@ -73,16 +64,6 @@ export class History {
             const below = row.getBoundingClientRect().bottom - this.#list.getBoundingClientRect().bottom;
             this.#list.scrollTop += Math.max(below, 0);
         }
-    }
-
-    // Called when the user has written a name; shows what has changed meanwhile, after the focus has gone
-    // to where it goes then.
-    #showWaiting() {
-        queueMicrotask(() => {
-            if (this.#waiting !== null) {
-                this.show(this.#waiting);
-            }
-        });
     }
 
     setEnabled(enabled) {

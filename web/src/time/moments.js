@@ -7,11 +7,10 @@ const MOST_BYTES = 200;
 
 // Returns the buttons of an entry of the history: one looks at the revision, one names it.
 // `onLook(revision)` and `onName(revision, name)` are called; the latter returns a promise, and
-// `name` is null if the revision loses its name. `onEnd()` is called when the field for the name is
-// gone; the event `cancel` takes it away without a name.
+// `name` is null if the revision loses its name.
 export function momentButtons(
     { revision, name = '' },
-    { onLook, onName, onError, onEnd },
+    { onLook, onName, onError },
     isEnabled,
 ) {
     const look = small('Look', `Look at revision ${revision}`, () => onLook(revision));
@@ -34,7 +33,6 @@ export function momentButtons(
             if (!isOver) {
                 isOver = true;
                 field.replaceWith(look, write);
-                onEnd();
             }
         };
         const save = async () => {
@@ -46,7 +44,6 @@ export function momentButtons(
             end();
             await onName(revision, text === '' ? null : text);
         };
-        field.addEventListener('cancel', end);
         field.addEventListener('input', () => {
             const tooLong = new TextEncoder().encode(field.value.trim()).length > MOST_BYTES;
             field.setCustomValidity(tooLong ? `A name has at most ${MOST_BYTES} bytes.` : '');
