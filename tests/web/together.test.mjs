@@ -111,13 +111,19 @@ test('a change by another client is marked for a moment, an own one is not', asy
     const { daemon, mesh, page } = await openMesh(t, GRID, options);
     const isMark = [244, 246, 250];
     await page.clock.install();
-    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 5 });
-    await waitForFrame(page, { revision: 2 });
+    await page.clock.pauseAt(new Date(Date.now() + 1e6));
     await page.locator('#canvas').blur();
+    await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 5 });
+    // The clock is turned a little at a time, so that the mark is still there when it is seen.
+    const shown = page.locator('#canvas[data-revision="2"]');
+    for (let steps = 0; steps < 3000 && (await shown.count()) === 0; steps++) {
+        await page.clock.runFor(16);
+    }
     assert.ok((await countOf(page, isMark)) > 10);
     // The mark goes away by itself.
     await page.clock.runFor(2000);
     assert.equal(await countOf(page, isMark), 0);
+    await page.clock.resume();
     await goTo(page, 'face', 9);
     await page.getByRole('button', { name: 'Split' }).click();
     await waitForFrame(page, { revision: 3 });
