@@ -355,9 +355,11 @@ static void every_other_route_answers(void **state)
     assert_true(strlen(reply_string(&r, "version")) > 0);
     reply_free(&r);
     reply_done(reply_expect(200, client_get(http, "/")));
-    r = reply_expect(303, client_get(http, "/problems/link_condition"));
+    /* a page of the manual, which only the daemon that is built with it has */
+    r = client_get(http, "/problems/link_condition");
+    assert_true(r.status == 200 || r.status == 303);
     assert_string_equal(reply_header(&r, "Location", value, sizeof value),
-                        "../docs/problems/link_condition");
+                        r.status == 303 ? "../docs/problems/link_condition" : "");
     reply_free(&r);
     reply_done(reply_expect(404, client_get(http, "/problems/none")));
     r = reply_expect(405, client_send(http, "DELETE", "/v1/meshes", NULL, NULL));
