@@ -666,7 +666,8 @@ static void beside_an_edge_of_two_hubs_the_sign_is_right(void **state)
     he_mesh *orange = dense_built(&soup);
     he_soup_init(&soup, NULL);
     for (int i = 0; i < POINTS; i++) {
-        (void)dense_add_vertex(&soup, -0.02 * (i + 1), 0, 0.05 * (double)(i - POINTS / 2));
+        const int above = i - POINTS / 2;
+        (void)dense_add_vertex(&soup, -0.02 * (i + 1), 0, 0.05 * above);
     }
     he_mesh *m = dense_built(&soup);
     (void)deviate(m, orange);

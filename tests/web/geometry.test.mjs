@@ -259,11 +259,11 @@ test('registered parts of the page join a link', async () => {
     const seen = [];
     share.register('look', { get: () => look, set: (text) => seen.push(text) });
     share.register('colour', { get: () => null, set: (text) => seen.push(text) });
-    assert.deepEqual(share.parts, { look: 'flat' });
+    assert.deepEqual(share.parts(false), { look: 'flat' });
     await share.show({ colour: 'area', other: 'x' });
     assert.deepEqual(seen, [null, 'area']);
     look = null;
-    assert.deepEqual(share.parts, {});
+    assert.deepEqual(share.parts(false), {});
 });
 
 // --- changes ---
