@@ -1,7 +1,6 @@
 #include "system/memory.h"
 
 #include "base/mem.h"
-#include "system/kept_blocks.h"
 
 #include <malloc.h>
 #include <stdatomic.h>
@@ -75,7 +74,7 @@ static void *resize(void *context, void *memory, size_t size)
     (void)context;
     size_t before = memory == NULL ? 0 : block_bytes(memory);
     if (size == 0) {
-        st_kept_free(memory);
+        free(memory);
         give_back(before);
         return NULL;
     }
@@ -84,7 +83,7 @@ static void *resize(void *context, void *memory, size_t size)
         atomic_store_explicit(&over_budget, true, memory_order_relaxed);
         return NULL;
     }
-    void *resized = memory == NULL ? st_kept_alloc(size) : realloc(memory, size);
+    void *resized = realloc(memory, size);
     if (resized == NULL) {
         atomic_store_explicit(&over_budget, false, memory_order_relaxed);
         give_back(growth);

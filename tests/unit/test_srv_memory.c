@@ -6,7 +6,6 @@
 #include "base/mem.h"
 #include "system/memory.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -24,74 +23,6 @@ static void pages_are_given_back_once_after_work_when_it_rests(void **state)
     assert_false(st_memory_rests(&rest, 518 * MILLIS));
     assert_true(st_memory_rests(&rest, 519 * MILLIS)); /* 20 ms of work since memory was returned */
     assert_false(st_memory_rests(&rest, 520 * MILLIS));
-}
-
-/* Allocates and frees blocks of every size that a thread keeps, more than it keeps of each. Each
- * block must have its bytes for itself, and the counter must end where it began. */
-static void *use_kept_blocks(void *context)
-{
-    enum { LARGEST = 9000, AT_ONCE = 5 };
-    unsigned char *blocks[AT_ONCE];
-    for (size_t size = 900; size <= LARGEST; size += 37) {
-        for (size_t i = 0; i < AT_ONCE; i++) {
-            blocks[i] = he_mem_alloc(size + i);
-            assert_non_null(blocks[i]);
-            memset(blocks[i], (int)i + 1, size + i);
-        }
-        for (size_t i = 0; i < AT_ONCE; i++) {
-            for (size_t at = 0; at < size + i; at++) {
-                assert_int_equal(blocks[i][at], i + 1);
-            }
-            he_mem_free(blocks[i]);
-        }
-    }
-    return context;
-}
-
-static void blocks_that_threads_keep_are_whole_and_not_counted(void **state)
-{
-    (void)state;
-    pthread_t threads[2];
-    st_memory_install(0);
-    const uint64_t before = st_memory_used();
-    for (size_t i = 0; i < 2; i++) {
-        assert_int_equal(pthread_create(&threads[i], NULL, use_kept_blocks, NULL), 0);
-    }
-    (void)use_kept_blocks(NULL);
-    for (size_t i = 0; i < 2; i++) {
-        assert_int_equal(pthread_join(threads[i], NULL), 0);
-    }
-    assert_int_equal(st_memory_used(), before);
-}
-
-/* A block may be freed by another thread than the one that allocated it, and grow after it was
- * kept. */
-static void *free_block(void *block)
-{
-    he_mem_free(block);
-    unsigned char *grown = he_mem_alloc(2000);
-    assert_non_null(grown);
-    memset(grown, 7, 2000);
-    grown = he_mem_resize(grown, 20000);
-    assert_non_null(grown);
-    assert_int_equal(grown[1999], 7);
-    return grown;
-}
-
-static void a_kept_block_moves_between_threads(void **state)
-{
-    (void)state;
-    pthread_t thread;
-    void *grown = NULL;
-    st_memory_install(0);
-    const uint64_t before = st_memory_used();
-    void *block = he_mem_alloc(2000);
-    assert_non_null(block);
-    assert_int_equal(pthread_create(&thread, NULL, free_block, block), 0);
-    assert_int_equal(pthread_join(thread, &grown), 0);
-    assert_true(st_memory_used() >= before + 20000);
-    he_mem_free(grown);
-    assert_int_equal(st_memory_used(), before);
 }
 
 /* The sanitizers replace the allocator of the C library, so the test measures nothing if a
@@ -213,8 +144,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_refusal_names_the_budget_if_that_is_used_up),
         cmocka_unit_test(pages_are_given_back_once_after_work_when_it_rests),
-        cmocka_unit_test(blocks_that_threads_keep_are_whole_and_not_counted),
-        cmocka_unit_test(a_kept_block_moves_between_threads),
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
         cmocka_unit_test(what_is_freed_between_used_blocks_goes_back_to_the_system),
         cmocka_unit_test(large_blocks_have_huge_pages_only_in_mappings_of_their_own),
