@@ -147,8 +147,9 @@ for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c
 
-# The check of pages needs only the names of the tests, which are not in the copy.
-for file in $(cd "$OLDPWD" && find tests -type f -not -path '*/.*'); do
+# The check of pages needs only the names of the tests and of the manual's sources, which are not in
+# the copy.
+for file in $(cd "$OLDPWD" && find tests web/manual -type f -not -path '*/.*'); do
     mkdir -p "$(dirname "$file")" && : >"$file"
 done
 cp "$OLDPWD/tests/README.md" tests/README.md
