@@ -22,7 +22,7 @@ try {
     await post(daemon, '?id=cube', { name: 'cube', shape: 'cube' });
     const torus = { name: 'torus', shape: 'torus', major_segments: 20, minor_segments: 9 };
     const { id: mesh } = await post(daemon, '?id=torus', torus);
-    const page = await openPageIn(run, browser, daemon, { viewport: { width: 960, height: 540 } });
+    const page = await openPageIn(run, browser, daemon, { viewport: { width: 940, height: 470 } });
     await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await setMode(page, 'Half-edge');
