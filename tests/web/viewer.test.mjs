@@ -444,7 +444,7 @@ test('a file that cannot be read is refused with its line', async (t) => {
 
 test('a mesh that is gone and a server that is gone are said', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE, {
-        allowed: [/status of 404/, /ERR_CONNECTION_REFUSED/],
+        allowed: [/status of 404/, /ERR_CONNECTION_(REFUSED|RESET)/],
     });
     const { id: other } = await post(daemon, '', { name: 'other', shape: 'torus' });
     await page.getByRole('button', { name: 'Refresh' }).click();
