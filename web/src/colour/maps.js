@@ -69,8 +69,6 @@ const FORMULAS = {
     categorical,
 };
 
-export const MAPS = Object.keys(FORMULAS);
-
 // Returns the colours of a map, four bytes each: red, green, blue and 255.
 export function mapOf(name) {
     const bytes = new Uint8Array(4 * COLOURS);

@@ -1,5 +1,7 @@
 // related.js - which elements of a kind belong to the selected elements. Pure.
 
+import { KIND_OF } from '../geometry/kinds.js';
+
 // The members of an element, as the server sends it, that have ids of elements of a kind.
 const MEMBERS = {
     vertices: ['vertices', 'origin', 'target'],
@@ -8,13 +10,11 @@ const MEMBERS = {
     edges: ['edge'],
 };
 
-const KINDS = { vertices: 'vertex', faces: 'face', halfedges: 'halfedge', edges: 'edge' };
-
 // Returns the ids of the selected elements of this kind or, if the selected elements are of another
 // kind, of the elements of this kind beside them. `chosen` are elements {kind, id, element}.
 export function relatedTo(chosen, kind) {
     const ids = chosen.flatMap(({ kind: own, id, element }) => {
-        if (own === KINDS[kind]) {
+        if (own === KIND_OF[kind]) {
             return [id];
         }
         const found = MEMBERS[kind].flatMap((member) => element[member] ?? []);

@@ -7,6 +7,7 @@ import { SELECTION } from '../kit/controls.js';
 import { Direct } from './direct.js';
 import { byId, enable } from '../kit/dom.js';
 import { begin, drag } from './gesture.js';
+import { PLURALS } from '../geometry/kinds.js';
 import { slip } from '../kit/numbers.js';
 import { Lasso } from '../stage/lasso.js';
 import { isIn, markOf, readAll } from '../open/selection.js';
@@ -41,10 +42,8 @@ const AMOUNTS = {
     face_inset: 'factor',
 };
 
-// The words for the elements that the user has to click, by kind: NAMES for one element, PLURALS
-// for several.
+// The words for one element that the user has to click, by kind.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
-const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
 
 // The kinds of elements by the names of parameters that take one element or a list.
 const KINDS = Object.fromEntries(

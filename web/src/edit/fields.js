@@ -1,6 +1,7 @@
 // fields.js - chooses the control of each parameter of an operation, and writes what the form says
 // about the parameter.
 
+import { KIND_OF } from '../geometry/kinds.js';
 import {
     Choice,
     Color,
@@ -17,15 +18,14 @@ import {
 import { matrix } from '../kit/matrix.js';
 import { MeshChoice } from '../kit/mesh_choice.js';
 
-const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
-export const KINDS = Object.values(PLURALS);
+export const KINDS = Object.values(KIND_OF);
 
 // The types of parameters that can be filled with the position of a clicked vertex.
 const PLACES = ['point', 'points'];
 
 // Returns the kind of element that the user can click to fill this parameter, or null.
 export function kindOf({ type }) {
-    const kind = PLURALS[type] ?? type;
+    const kind = KIND_OF[type] ?? type;
     if (PLACES.includes(type)) {
         return 'vertex';
     }
@@ -38,7 +38,7 @@ export function isPlace({ type }) {
 
 // Returns whether the parameter takes several elements.
 export function isList({ plural, type }) {
-    return plural !== undefined || type in PLURALS;
+    return plural !== undefined || type in KIND_OF;
 }
 
 // Returns how many elements of these kinds an operation takes; of parameters that are alternatives,

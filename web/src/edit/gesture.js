@@ -5,6 +5,7 @@
 
 import { edgesOfTriangles, hasVertex, normalOfFace, pointAt, trianglesOfFace } from '../geometry/geometry.js';
 import { membersOf } from '../geometry/sets.js';
+import { add, dot, unit } from '../geometry/vectors.js';
 import { middleOf, pixelAtOne, reachFrom } from '../geometry/view.js';
 
 // The amount that a tool applies after a click without a drag, as a fraction of the selection's
@@ -25,9 +26,8 @@ const MOST_CROWD = 20000;
 // The largest number of lines that preview an edit.
 const MOST_LINES = 20000;
 
-const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-const unit = (a) => a.map((value) => value / (Math.hypot(...a) || 1));
+// Returns the vector of length 1 with the direction of `a`, or `a` if it has none.
+const directionOf = (a) => unit(a) ?? a;
 
 // The operation that a tool runs for each kind of element.
 const OPERATIONS = {
@@ -113,7 +113,7 @@ export function drag(gesture, view, moved) {
     }
     if (gesture.op === 'edge_extrude') {
         const out = Math.hypot(...gesture.middle) > 0 ? gesture.middle : view.up;
-        const usual = unit(out).map((value) => USUAL * gesture.reach * value);
+        const usual = directionOf(out).map((value) => USUAL * gesture.reach * value);
         return drawOut(gesture, moved === null ? usual : across(gesture, view, moved));
     }
     return gesture.op === 'face_extrude'
@@ -139,9 +139,9 @@ function across(gesture, view, [dx, dy]) {
 // Returns the distance by which faces must move along their normals to follow the pointer.
 function along(gesture, view, [dx, dy]) {
     const sum = gesture.chosen
-        .map(({ id }) => unit(normalOfFace(gesture.geometry, id)))
+        .map(({ id }) => directionOf(normalOfFace(gesture.geometry, id)))
         .reduce((a, b) => add(a, b));
-    const normal = unit(sum);
+    const normal = directionOf(sum);
     const seen = [dot(normal, view.right), dot(normal, view.up)];
     const square = dot(seen, seen);
     const [x, y] =
@@ -198,7 +198,7 @@ function pull(gesture, length) {
     const [distance] = inMesh(gesture, [length]);
     const lines = gesture.regions.flatMap(({ faces, rim, inner }) => {
         const normals = faces.map((face) => normalOfFace(geometry, face));
-        const normal = unit(normals.reduce((a, b) => add(a, b)));
+        const normal = directionOf(normals.reduce((a, b) => add(a, b)));
         const place = (point) => add(point, normal, length);
         return [...sidesOf(geometry, rim, place), ...tops(geometry, inner, place)];
     });

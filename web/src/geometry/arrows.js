@@ -9,6 +9,7 @@
 // `spread`, which is multiplied by a scale from 0 to 1.
 
 import { normalOfFace, pointAt } from './geometry.js';
+import { add, cross, subtract, unit } from './vectors.js';
 
 // Where an arrow begins and ends along its edge, as fractions of the edge's length.
 const START = 0.16;
@@ -24,21 +25,6 @@ const THIN = 2.2; // the length they are parts of is at most this times the mean
 // An arrow is at most as thick as the arrow of an edge that is this many CSS pixels long.
 export const MOST_PIXELS = 130;
 
-const subtract = (a, b) => a.map((value, i) => value - b[i]);
-const along = (a, b, t) => a.map((value, i) => value + t * b[i]);
-
-function cross(a, b) {
-    return [0, 1, 2].map((i) => {
-        const [u, v] = [(i + 1) % 3, (i + 2) % 3];
-        return a[u] * b[v] - a[v] * b[u];
-    });
-}
-
-function unit(a) {
-    const length = Math.hypot(...a);
-    return length > 0 ? a.map((value) => value / length) : null;
-}
-
 // Returns the arrow of a half-edge as nine points (three triangles): {size, places, spreads}; null
 // if the edge has length 0 or the face has no normal. `halfedge` is {origin, target, face, across};
 // `across` is the face of its twin, in whose plane the arrow of a boundary half-edge is drawn.
@@ -53,9 +39,9 @@ export function arrowOf(geometry, { origin, target, face, across }) {
     }
     const length = Math.hypot(...edge);
     const size = Math.min(length, (THIN * Math.hypot(...area)) / 2 / length);
-    const [start, end] = [START, END].map((t) => along(from, edge, t));
+    const [start, end] = [START, END].map((t) => add(from, edge, t));
     const spread = (back, side) =>
-        along(
+        add(
             edge.map((value) => (-back * size * value) / length),
             left,
             (OFFSET + side) * size,
@@ -80,11 +66,11 @@ export function arrowOf(geometry, { origin, target, face, across }) {
 
 // Returns the points of an arrow whose spreads are multiplied by `scale`.
 export function pointsOf({ places, spreads }, scale) {
-    return places.map((place, i) => along(place, spreads[i], scale));
+    return places.map((place, i) => add(place, spreads[i], scale));
 }
 
 // Returns the middle of an arrow's body, the point where tests check the arrow's colour.
 export function middleOf(arrow, scale) {
     const [first, , third] = pointsOf(arrow, scale);
-    return along(first, subtract(third, first), 0.5);
+    return add(first, subtract(third, first), 0.5);
 }

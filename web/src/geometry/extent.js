@@ -17,7 +17,7 @@ export function boxOf({ vertices, vertexCount }) {
 }
 
 // Returns the corner of a box that has the high coordinate on those axes whose bit is set.
-export function cornerOf({ low, high }, bits) {
+function cornerOf({ low, high }, bits) {
     return [0, 1, 2].map((axis) => ((bits >> axis) & 1 ? high : low)[axis]);
 }
 

@@ -4,15 +4,9 @@
 // A change is {move, rotate, scale}: a vector in view coordinates, angles around the axes in degrees,
 // and factors, as compose() in affine.js takes them.
 
+import { add, cross, dot } from '../geometry/vectors.js';
 import { pixelAtOne } from '../geometry/view.js';
 import { AXES, SIZES, pixelAt } from './shape.js';
-
-const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-const cross = (a, b) => [0, 1, 2].map((i) => {
-    const [u, v] = [(i + 1) % 3, (i + 2) % 3];
-    return a[u] * b[v] - a[v] * b[u];
-});
 
 export const NOTHING = Object.freeze({ move: [0, 0, 0], rotate: [0, 0, 0], scale: [1, 1, 1] });
 

@@ -4,6 +4,7 @@
 // and in its middle a disc, which scales evenly. Its size on the screen is always the same. Places
 // are in view coordinates, see geometry.js.
 
+import { add, dot } from '../geometry/vectors.js';
 import { pixelAtOne, placeOnScreen } from '../geometry/view.js';
 
 // Sizes in CSS pixels, at the distance of the middle: where arrows begin and end, where boxes are,
@@ -17,9 +18,6 @@ export const AXES = [
     [0, 1, 0],
     [0, 0, 1],
 ];
-
-const add = (a, b, factor) => a.map((value, i) => value + factor * b[i]);
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
 
 // Returns the length of a CSS pixel at a place, in view coordinates; 0 if the place is behind the
 // camera. `view` is Renderer.view.

@@ -305,7 +305,13 @@ export class Surface {
             object.geometry.dispose();
             object.material.dispose();
         }
-        Object.values(this.#ways).forEach((material) => material.dispose());
+        for (const ways of [this.#ways, this.#proxyWays]) {
+            Object.values(ways).forEach((material) => material.dispose());
+        }
+        this.#proxyLook.triangles.value?.dispose();
+        this.#proxyLook.normals.value?.dispose();
+        this.values.dispose();
+        this.look.dispose();
     }
 
     // Called when the contents of the graphics memory are lost: all textures are uploaded again.

@@ -123,6 +123,11 @@ export class SurfaceLook {
         this.uniforms.paper.value.setHex(paper, NoColorSpace);
     }
 
+    // Frees the graphics memory.
+    dispose() {
+        this.uniforms.normals.value.dispose();
+    }
+
     forget() {
         this.uniforms.normals.value.forget();
     }

@@ -76,6 +76,12 @@ export class Values {
         this.uniforms.valueShade.value = isShaded ? 1 : 0;
     }
 
+    // Frees the graphics memory.
+    dispose() {
+        this.uniforms.values.value.dispose();
+        this.uniforms.colours.value.dispose();
+    }
+
     // Called when the contents of the graphics memory are lost.
     forget() {
         this.uniforms.values.value.forget();

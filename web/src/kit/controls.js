@@ -108,7 +108,7 @@ export class Color extends Text {
 
 // What a user writes into a field to name all elements that are selected in the page, and the value
 // that such a field has, until the page replaces it by their ids.
-export const SELECTION_NAME = 'the selection';
+const SELECTION_NAME = 'the selection';
 export const SELECTION = Object.freeze({ [SELECTION_NAME]: true });
 
 // Returns the set that a text names: "selected" means {selected: true}, the elements whose bool

@@ -5,6 +5,7 @@
 // The newest messages are shown, and a button shows the earlier ones. A message that is repeated is
 // shown once, with a count. A message about a mesh goes away when another mesh is opened.
 
+import { SINGULARS } from '../geometry/kinds.js';
 import { make } from './dom.js';
 
 // How many messages are shown at once, and how many are kept.
@@ -68,7 +69,7 @@ export class Toasts {
         if (isNew && element && error.code !== 'no_such_element' && error.mesh === this.#mesh) {
             const { kind, id } = element;
             const onclick = () => this.#actions.onElement(kind, id);
-            const label = `Show ${kind === 'halfedge' ? 'half-edge' : kind} ${id}`;
+            const label = `Show ${SINGULARS[kind]} ${id}`;
             toast.firstElementChild.append(make('button', { type: 'button', onclick }, label));
         }
     }

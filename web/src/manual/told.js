@@ -2,7 +2,7 @@
 
 const KINDS = ['vertex', 'edge', 'face'];
 
-export const pluralOf = (kind) => (kind === 'vertex' ? 'vertices' : `${kind}s`);
+const pluralOf = (kind) => (kind === 'vertex' ? 'vertices' : `${kind}s`);
 
 // Lists of more ids than this are only counted.
 const MOST_IDS = 8;

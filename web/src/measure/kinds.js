@@ -11,18 +11,17 @@
 //   points   points to draw
 //   at       where the label stands
 
+import { add, subtract } from '../geometry/vectors.js';
 import * as api from '../wire/api.js';
 import { formatNumberOf } from '../kit/dom.js';
 import { formatAngle, formatArea, formatLength } from '../kit/lengths.js';
 import { askAll } from '../open/crowd.js';
 import {
-    along,
     angleAt,
     angleBetween,
     circleThrough,
     distance,
     middle,
-    minus,
     pairsOf,
     pointsOf,
 } from './shapes.js';
@@ -147,7 +146,7 @@ async function pointsAt({ mesh }, refs) {
 async function measureDistance(place, refs) {
     const points = await pointsAt(place, refs);
     const [a, b] = points;
-    const parts = minus(b, a).map((part, i) => `${'xyz'[i]} ${formatLength(part)}`);
+    const parts = subtract(b, a).map((part, i) => `${'xyz'[i]} ${formatLength(part)}`);
     return made(distance(a, b), formatLength, {
         note: parts.join(', '),
         lines: [a, b],
@@ -261,7 +260,7 @@ async function measureWall({ mesh, size }, [{ face, point }]) {
         return made(null, formatLength, { note, points: [from], at: from });
     }
     const direction = normal.map((part) => -part);
-    const origin = along(from, direction, SKIN * size);
+    const origin = add(from, direction, SKIN * size);
     const [{ hit }] = answersOf(await api.query(mesh, [{ ray: { origin, direction } }]));
     if (hit === null) {
         const note = 'There is no surface on the other side.';

@@ -1,19 +1,9 @@
 // shapes.js - computes lengths, angles and circles from points [x, y, z]. Pure.
 
-export const minus = (a, b) => a.map((value, i) => value - b[i]);
-export const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-export const along = (origin, direction, t) => origin.map((value, i) => value + t * direction[i]);
-
-export function cross(a, b) {
-    return [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ];
-}
+import { add, cross, dot, subtract } from '../geometry/vectors.js';
 
 export function distance(a, b) {
-    return Math.hypot(...minus(a, b));
+    return Math.hypot(...subtract(a, b));
 }
 
 export function middle(points) {
@@ -31,13 +21,13 @@ export function angleBetween(a, b) {
 
 // Returns the angle at the point `at` between two other points; null if one of them is `at`.
 export function angleAt(from, at, to) {
-    return angleBetween(minus(from, at), minus(to, at));
+    return angleBetween(subtract(from, at), subtract(to, at));
 }
 
 // Returns the circle through three points, {center, radius, axes}, where `axes` are two vectors of
 // length 1 in its plane; null if the points are on a line.
 export function circleThrough(a, b, c) {
-    const [u, v] = [minus(b, a), minus(c, a)];
+    const [u, v] = [subtract(b, a), subtract(c, a)];
     const normal = cross(u, v);
     const square = dot(normal, normal);
     const longest = Math.max(dot(u, u), dot(v, v));
@@ -46,21 +36,21 @@ export function circleThrough(a, b, c) {
     }
     // The centre is where the planes that halve both sides meet, in the plane of the points.
     const toCenter = cross(
-        minus(v.map((x) => x * dot(u, u)), u.map((x) => x * dot(v, v))),
+        subtract(v.map((x) => x * dot(u, u)), u.map((x) => x * dot(v, v))),
         normal,
     ).map((x) => x / (2 * square));
     const radius = Math.hypot(...toCenter);
     const first = toCenter.map((x) => -x / radius);
     const up = normal.map((x) => x / Math.sqrt(square));
-    return { center: along(a, toCenter, 1), radius, axes: [first, cross(up, first)] };
+    return { center: add(a, toCenter, 1), radius, axes: [first, cross(up, first)] };
 }
 
 // Returns points on a circle, the first one again at the end.
 export function pointsOf({ center, radius, axes }, count) {
     return Array.from({ length: count + 1 }, (_, i) => {
         const angle = (2 * Math.PI * i) / count;
-        return along(
-            along(center, axes[0], radius * Math.cos(angle)),
+        return add(
+            add(center, axes[0], radius * Math.cos(angle)),
             axes[1],
             radius * Math.sin(angle),
         );

@@ -3,12 +3,11 @@
 // Each sentence is {text, elements}; `elements` has groups {kind, ids, more} of the elements of the
 // mesh that the sentence is about, where `more` is the number of elements that are not listed.
 
+import { PLURALS } from '../geometry/kinds.js';
 import { formatCount, formatNumberOf } from '../kit/dom.js';
 
 // A sentence lists at most this many numbers of the file.
 const MOST = 12;
-
-const PLURALS = { vertex: 'vertices', face: 'faces' };
 
 const count = (number, kind) => formatNumberOf(number, kind, PLURALS[kind]);
 

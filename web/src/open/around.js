@@ -9,21 +9,11 @@
 //              is the face of the twin, `role` says what the half-edge is to a selected one:
 //              'self', 'next', 'prev', 'twin', or 'near' for all others
 
+import { cross, dot, length, subtract } from '../geometry/vectors.js';
 import { formatMeasure } from '../kit/dom.js';
 
 // The largest number of arrows that are drawn for one selection.
 const MOST = 64;
-
-const subtract = (a, b) => a.map((value, i) => value - b[i]);
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-const length = (a) => Math.hypot(...a);
-
-function cross(a, b) {
-    return [0, 1, 2].map((i) => {
-        const [u, v] = [(i + 1) % 3, (i + 2) % 3];
-        return a[u] * b[v] - a[v] * b[u];
-    });
-}
 
 // Returns the angle between two vectors, in degrees.
 export function angleBetween(a, b) {

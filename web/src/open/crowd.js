@@ -10,8 +10,6 @@ import { hasVertex, trianglesOfFace } from '../geometry/geometry.js';
 import { countOf, membersOf, noneOf, verticesOf } from '../geometry/sets.js';
 import { edgesBetween, topologyOf } from '../geometry/topology.js';
 
-export const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
-
 // The largest number of questions that the server answers in one request.
 const MOST_ASKED = 10000;
 

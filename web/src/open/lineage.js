@@ -1,11 +1,11 @@
 // lineage.js - remembers which elements have replaced deleted elements, as far as edits have
 // reported it. Pure.
 
+import { KIND_OF } from '../geometry/kinds.js';
+
 // The maximum number of entries in each map of replaced elements; beyond it the oldest entries are
 // dropped.
 const MOST = 10000;
-
-const KINDS = { vertices: 'vertex', edges: 'edge', faces: 'face' };
 
 export class Lineage {
     #merged = new Map(); // 'face:3' -> the id of the face into which it was merged
@@ -18,7 +18,7 @@ export class Lineage {
         for (const [map, told] of [[this.#merged, merged], [this.#parents, parents]]) {
             for (const [plural, pairs] of Object.entries(told)) {
                 for (const [id, other] of pairs) {
-                    put(map, `${KINDS[plural]}:${id}`, other);
+                    put(map, `${KIND_OF[plural]}:${id}`, other);
                 }
             }
         }

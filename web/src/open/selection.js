@@ -10,7 +10,8 @@
 
 import * as api from '../wire/api.js';
 import { describe } from './around.js';
-import { Crowd, PLURALS } from './crowd.js';
+import { Crowd } from './crowd.js';
+import { PLURALS } from '../geometry/kinds.js';
 import { hasVertex, trianglesOfFace } from '../geometry/geometry.js';
 
 // If more elements are selected than this, their data is not read from the server.

@@ -3,7 +3,7 @@
 
 import { formatMeasure, formatNumberOf, make } from '../kit/dom.js';
 import { unitText } from '../kit/units.js';
-import { PLURALS } from '../open/crowd.js';
+import { PLURALS } from '../geometry/kinds.js';
 import { TITLES, linkTo, shortened } from '../kit/element_links.js';
 import { explained } from '../kit/words.js';
 

@@ -109,10 +109,6 @@ export class Brush {
         listen('pointerleave', () => this.#ring.setAttribute('r', 0));
     }
 
-    get isArmed() {
-        return this.#isArmed;
-    }
-
     arm() {
         this.#isArmed = true;
         this.#canvas.focus();

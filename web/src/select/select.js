@@ -7,7 +7,8 @@ import { allOf, noneOf, sizeOf } from '../geometry/sets.js';
 import { inside, polygonMask } from '../geometry/region.js';
 import { Lasso } from '../stage/lasso.js';
 import { formatSize, onUnit } from '../kit/units.js';
-import { Crowd, PLURALS } from '../open/crowd.js';
+import { Crowd } from '../open/crowd.js';
+import { PLURALS, SINGULARS } from '../geometry/kinds.js';
 import { Brush, Stroke } from './paint.js';
 import { CHANGES, around, combined } from './changes.js';
 import { Hover } from './hover.js';
@@ -355,7 +356,7 @@ function saidOf(selection, { geometry, summary }) {
         return '';
     }
     const total = summary.counts[kind === 'halfedge' ? 'halfedges' : PLURALS[kind]];
-    const what = formatNumberOf(count, kind === 'halfedge' ? 'half-edge' : kind, PLURALS[kind]);
+    const what = formatNumberOf(count, SINGULARS[kind], PLURALS[kind]);
     const sum = (member) => chosen.reduce((size, { element }) => size + element[member], 0);
     const sizeIn = (member) =>
         crowd === null ? sum(member) : sizeOf(kind, crowd.setIn(geometry), geometry);

@@ -4,6 +4,8 @@
 // The drawing looks along the average normal of the faces. Each half-edge is an arrow beside its
 // edge, on the side of its face.
 
+import { add, cross, dot, scale, subtract, unit } from '../geometry/vectors.js';
+
 // The size of the drawing, and the free space at its border.
 export const WIDTH = 640;
 export const HEIGHT = 420;
@@ -15,22 +17,6 @@ const BESIDE = 0.05;
 const SHORTER = 0.14;
 const MOST_BESIDE = 9;
 const MOST_SHORTER = 30;
-
-const subtract = (a, b) => a.map((value, i) => value - b[i]);
-const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-const scale = (a, by) => a.map((value) => value * by);
-
-function cross(a, b) {
-    return [0, 1, 2].map((i) => {
-        const [u, v] = [(i + 1) % 3, (i + 2) % 3];
-        return a[u] * b[v] - a[v] * b[u];
-    });
-}
-
-function unit(a) {
-    const length = Math.hypot(...a);
-    return length > 0 ? scale(a, 1 / length) : null;
-}
 
 // Returns a function from a position in space to a point [x, y] of the drawing, in which all vertices
 // of the states fit.
@@ -45,7 +31,7 @@ export function projection(states) {
         unit(
             states
                 .flatMap((state) => [...loopsOf(state).values()].map((loop) => areaOf(state, loop, local)))
-                .reduce((sum, area) => sum.map((value, i) => value + area[i]), [0, 0, 0]),
+                .reduce((sum, area) => add(sum, area), [0, 0, 0]),
         ) ?? [0, 0, 1];
     // The drawing is upright where the view is: the vertical axis is z, or y for what lies flat.
     const up = Math.abs(normal[2]) > 0.9 ? [0, 1, 0] : [0, 0, 1];
@@ -80,7 +66,7 @@ function areaOf({ halfedges, vertices }, loop, local) {
     const corners = loop.map((id) => local(vertices.get(halfedges.get(id).origin)));
     return corners
         .map((corner, i) => cross(corner, corners[(i + 1) % corners.length]))
-        .reduce((sum, part) => sum.map((value, i) => value + part[i]), [0, 0, 0]);
+        .reduce((sum, part) => add(sum, part), [0, 0, 0]);
 }
 
 // Returns the loops of half-edges that are whole: a map from faces to lists of half-edges, in the

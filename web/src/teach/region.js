@@ -5,6 +5,7 @@
 // face is null at a boundary; `vertices` maps ids to positions; `counts` are the numbers of vertices,
 // edges and faces of the whole mesh. Elements that a state lacks do not exist in it.
 
+import { formatCount } from '../kit/dom.js';
 import * as api from '../wire/api.js';
 import { Problem } from '../wire/api.js';
 
@@ -16,7 +17,7 @@ const MOST_FACES = 200000;
 // with a Problem if the operation is refused, or changes too much to be drawn.
 export async function readRegion(mesh, operation, faces) {
     if (faces > MOST_FACES) {
-        const limit = MOST_FACES.toLocaleString('en');
+        const limit = formatCount(MOST_FACES);
         throw tooLarge(`Meshes of more than ${limit} faces cannot be shown step by step.`);
     }
     const changes = await api.tryEdit(mesh, operation);

@@ -6,7 +6,7 @@
 // {kind, id}; `links` lists changed links as {halfedge, from, to}, half-edges of which the second or
 // the third may be null.
 
-const PLURALS = { vertex: 'vertices', edge: 'edges', face: 'faces' };
+import { PLURALS } from '../geometry/kinds.js';
 
 // Returns the steps from one state to another. The first step shows the mesh before the edit, the
 // last one the mesh after it.

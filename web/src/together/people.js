@@ -1,12 +1,11 @@
 // people.js - the list of the clients that are at the open mesh, with their colours and what they
 // have selected, and the name that this page shows to them.
 
+import { PLURALS, SINGULARS } from '../geometry/kinds.js';
 import { formatNumberOf, make } from '../kit/dom.js';
 import { recall, remember } from '../kit/storage.js';
 
 const STORED = 'hedge-name';
-const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
-const SINGULARS = { vertex: 'vertex', halfedge: 'half-edge', edge: 'edge', face: 'face' };
 const MOST_BYTES = 64; // of a name, as the server allows
 
 export class People {

@@ -1,11 +1,10 @@
 // api.js - the only module that talks to the server. Paths are relative, so that the page works
 // behind any prefix.
 
+import { API_PLURALS } from '../geometry/kinds.js';
 import { EventReader } from './events.js';
 import { HEADER_BYTES, headerOf } from '../geometry/geometry.js';
 import { renewToken, token } from './token.js';
-
-const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
 // Number of edits in one page of a mesh's history.
 const HISTORY_PAGE = 20;
@@ -263,7 +262,7 @@ export async function getElements(mesh, kinds) {
 }
 
 export function getElement(mesh, kind, id) {
-    return getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}`);
+    return getJson(`${meshPath(mesh)}/${API_PLURALS[kind]}/${id}`);
 }
 
 // Sends several queries about one revision of a mesh in one request and returns the answers in
@@ -455,7 +454,7 @@ export async function getOperations() {
 
 // Returns the ids of an element's neighbours of some kind, such as the faces of a vertex.
 export async function getAdjacent(mesh, kind, id, relation) {
-    return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
+    return (await getJson(`${meshPath(mesh)}/${API_PLURALS[kind]}/${id}/${relation}`)).ids;
 }
 
 // Returns the half-edge from one vertex to another, or null if there is none.
