@@ -5,37 +5,17 @@
 #include "geometry/geometry.h"
 #include "mesh/marks.h"
 #include "op/op.h"
-#include "remesh/remesh.h"
+#include "tests/unit/remeshed.h"
 
 #include <float.h>
 #include <math.h>
 
 static const double PI = 3.14159265358979323846;
 
-static he_remesh_options usual(double edge_length)
-{
-    return (he_remesh_options){.by = edge_length > 0 ? HE_REMESH_BY_LENGTH : HE_REMESH_BY_FACES,
-                               .edge_length = edge_length,
-                               .steps = HE_REMESH_STEPS_USUAL,
-                               .project = true,
-                               .crease = HE_REMESH_CREASE};
-}
-
-static he_remeshed remesh(he_mesh *m, const he_remesh_options *options)
-{
-    he_remeshed out = {.stop = HE_REMESH_STOP_COUNT};
-    he_error err = {0};
-    if (he_remesh(m, options, &out, &err) != HE_OK) {
-        fail_msg("%s", err.text);
-    }
-    fixture_check(m);
-    return out;
-}
-
 static he_remeshed remesh_evenly(he_mesh *m, double edge_length)
 {
-    he_remesh_options options = usual(edge_length);
-    return remesh(m, &options);
+    he_remesh_options options = remesh_options(edge_length);
+    return remesh_mesh(m, &options);
 }
 
 static double degrees(double radians)
@@ -153,9 +133,9 @@ static void the_boundary_of_a_disc_stays(void **state)
         }
         assert_near(measure(m).area, measure(first).area, lengths[i] * lengths[i]);
         assert_true(done.smallest_angle > PI / 7);
-        he_remesh_options options = usual(lengths[i]);
+        he_remesh_options options = remesh_options(lengths[i]);
         options.fixed_boundary = true;
-        (void)remesh(first, &options);
+        (void)remesh_mesh(first, &options);
         for (uint32_t k = 0; k < 40; k++) {
             assert_true(he_mesh_is_live(first, HE_VERTEX, 281 + k));
         }
@@ -199,9 +179,9 @@ static void the_number_of_faces_is_met(void **state)
     static const uint32_t targets[] = {500, 2000, 7200, 30000};
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
         he_mesh *m = dense_torus(60);
-        he_remesh_options options = usual(0);
+        he_remesh_options options = remesh_options(0);
         options.target_faces = targets[i];
-        he_remeshed done = remesh(m, &options);
+        he_remeshed done = remesh_mesh(m, &options);
         tell("faces", &done);
         assert_near(done.faces, targets[i], 0.03);
         assert_int_equal(he_mesh_faces(m), done.faces);
@@ -223,8 +203,8 @@ static void what_a_length_makes_is_foreseen(void **state)
         args[0].given = true; /* edge_length */
         args[0].number = lengths[i];
         assert_true(fabs(he_op_growth(op, m, args) - fmax(1, told / before)) < 1e-12);
-        const he_remesh_options options = usual(lengths[i]);
-        const double after = remesh(m, &options).faces;
+        const he_remesh_options options = remesh_options(lengths[i]);
+        const double after = remesh_mesh(m, &options).faces;
         assert_true(told > 0.6 * after && told < 3 * after);
         he_mesh_free(m);
     }

@@ -5,32 +5,12 @@
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 #include "mesh/write.h"
-#include "remesh/remesh.h"
 #include "tests/unit/backwards.h"
+#include "tests/unit/remeshed.h"
 
 #include <math.h>
 
 enum { SIDE = 20, ACROSS = SIDE + 1 };
-
-static he_remesh_options usual(double edge_length)
-{
-    return (he_remesh_options){.by = HE_REMESH_BY_LENGTH,
-                               .edge_length = edge_length,
-                               .steps = HE_REMESH_STEPS_USUAL,
-                               .project = true,
-                               .crease = HE_REMESH_CREASE};
-}
-
-static he_remeshed remesh(he_mesh *m, const he_remesh_options *options)
-{
-    he_remeshed out = {.stop = HE_REMESH_STOP_COUNT};
-    he_error err = {0};
-    if (he_remesh(m, options, &out, &err) != HE_OK) {
-        fail_msg("%s", err.text);
-    }
-    fixture_check(m);
-    return out;
-}
 
 static he_column *add_column(he_mesh *m, const he_column_schema *schema)
 {
@@ -124,8 +104,8 @@ static void a_feature_line_is_divided_anew_and_its_corners_stay(void **state)
         mark_line(m);
         he_mesh *first = dense_copy(m);
         const line before = line_of(m);
-        const he_remesh_options options = usual(lengths[i]);
-        (void)remesh(m, &options);
+        const he_remesh_options options = remesh_options(lengths[i]);
+        (void)remesh_mesh(m, &options);
         const line after = line_of(m);
         const he_column *feature = he_mesh_find_column(m, HE_EDGE, "feature");
         assert_int_equal(before.edges, 17);
@@ -200,8 +180,8 @@ static void values_stay_on_their_side_of_a_line(void **state)
                 set_value(corner, h.i, side_of(m, f));
             }
         }
-        const he_remesh_options options = usual(lengths[i]);
-        (void)remesh(m, &options);
+        const he_remesh_options options = remesh_options(lengths[i]);
+        (void)remesh_mesh(m, &options);
         const he_column *corner_after = he_mesh_find_column(m, HE_HALFEDGE, "seam");
         const he_column *face_after = he_mesh_find_column(m, HE_FACE, "part");
         for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
@@ -227,14 +207,14 @@ static void faces_outside_the_set_keep_every_bit(void **state)
     static const double lengths[] = {0.3, 2.2};
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         he_mesh *m = dense_grid(SIDE, dense_waves, 1), *first = dense_copy(m);
-        he_remesh_options options = usual(lengths[i]);
+        he_remesh_options options = remesh_options(lengths[i]);
         options.faces = ids;
         for (uint32_t f = 0; f < 2 * SIDE * SIDE; f++) {
             if (side_of(m, f) == 1) {
                 ids[options.face_count++] = f;
             }
         }
-        const he_remeshed done = remesh(m, &options);
+        const he_remeshed done = remesh_mesh(m, &options);
         assert_int_equal(done.faces_before, options.face_count);
         assert_true(done.faces != done.faces_before);
         for (uint32_t f = 0; f < 2 * SIDE * SIDE; f++) {
@@ -256,9 +236,9 @@ static void faces_outside_the_set_keep_every_bit(void **state)
 static void require_bound(const char *what, he_mesh *takes, double length, bool project)
 {
     he_mesh *first = dense_copy(takes);
-    he_remesh_options options = usual(length);
+    he_remesh_options options = remesh_options(length);
     options.project = project;
-    const he_remeshed done = remesh(takes, &options);
+    const he_remeshed done = remesh_mesh(takes, &options);
     const double farthest = dense_measure(takes, first).farthest;
     printf("note: %s, edges of %g: at most %g away, the farthest point of samples %g\n", what,
            length, done.distance, farthest);
@@ -290,9 +270,9 @@ static void a_closed_convex_surface_keeps_its_volume(void **state)
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         he_mesh *m = dense_shape("icosphere", "subdivisions", 5);
         he_measures before, after;
-        const he_remesh_options options = usual(lengths[i]);
+        const he_remesh_options options = remesh_options(lengths[i]);
         assert_int_equal(he_mesh_measure(m, &before, NULL), HE_OK);
-        (void)remesh(m, &options);
+        (void)remesh_mesh(m, &options);
         assert_int_equal(he_mesh_measure(m, &after, NULL), HE_OK);
         const double change = after.volume / before.volume - 1, h = lengths[i];
         printf("note: sphere, edges of %g: the volume changes by %g, %g h^2\n", h, change,
@@ -309,12 +289,12 @@ static void the_order_of_the_parts_does_not_matter(void **state)
     he_mesh *m = dense_torus(120), *alone = dense_copy(m);
     he_progress progress;
     uint32_t count;
-    const he_remesh_options options = usual(0.06);
+    const he_remesh_options options = remesh_options(0.06);
     backwards_lend(&progress, &count);
     he_mesh_set_progress(m, &progress);
-    const he_remeshed done = remesh(m, &options);
+    const he_remeshed done = remesh_mesh(m, &options);
     he_mesh_set_progress(m, NULL);
-    const he_remeshed alone_done = remesh(alone, &options);
+    const he_remeshed alone_done = remesh_mesh(alone, &options);
     assert_true(count >= 4);
     assert_true(he_mesh_equal(m, alone));
     assert_true(done.distance == alone_done.distance);
