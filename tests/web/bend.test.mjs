@@ -9,7 +9,7 @@ import { unpack } from '../../web/src/geometry/geometry.js';
 import { heldAround, neighboursOf, waysFrom } from '../../web/src/bend/ways.js';
 import { checkAccessible, isChosen, projector, readCanvas, waitForFrame } from './browser.mjs';
 import { get, getAll, getGeometry, post, startDaemon } from './daemon.mjs';
-import { goTo, isEdit, press } from './page.mjs';
+import { click, isEdit, press, setMode } from './page.mjs';
 import { openMesh } from './visit.mjs';
 
 const GRID = { name: 'sheet', shape: 'grid', columns: 20, rows: 20 };
@@ -188,9 +188,15 @@ test('places are in the coordinates of the view', () => {
 const START = [60, 60];
 
 // Selects the vertex in the middle, turns bending on and drags by some pixels without releasing.
-async function beginDrag(page, by) {
-    await goTo(page, 'vertex', MIDDLE);
-    await page.getByRole('button', { name: 'Fit view' }).click();
+// Returns the place of the vertex before. It is picked by a click, which does not move the camera.
+async function beginDrag({ daemon, mesh, page }, by) {
+    const from = (await projector(page, daemon, mesh)).at([MIDDLE]);
+    // A selection that comes later would put the tool down, so nothing is selected at first.
+    await press(page, 'Escape');
+    await waitForFrame(page, { selection: '' });
+    await setMode(page, 'Vertex');
+    await click(page, from);
+    await waitForFrame(page, { selection: `vertex:${MIDDLE}` });
     await page.locator('#canvas').focus();
     await press(page, 'g');
     await page.getByLabel('Bend what is around').check();
@@ -200,6 +206,7 @@ async function beginDrag(page, by) {
     await page.mouse.down();
     await page.mouse.move(x + by[0] / 2, y + by[1] / 2);
     await page.mouse.move(x + by[0], y + by[1]);
+    return from;
 }
 
 // Waits until the canvas passes a test of its pixels, for some thousand frames.
@@ -232,7 +239,8 @@ const positionsOf = async (daemon, mesh) =>
     (await getAll(daemon, mesh, 'vertices')).map(({ position }) => position);
 
 test('a drag shows the bent mesh before there is an edit, and the edit is one step', async (t) => {
-    const { daemon, mesh, page } = await openMesh(t, GRID);
+    const context = await openMesh(t, GRID);
+    const { daemon, mesh, page } = context;
     const before = await positionsOf(daemon, mesh);
     const [asked, edits] = [[], []];
     page.on('request', (request) => {
@@ -242,11 +250,7 @@ test('a drag shows the bent mesh before there is an edit, and the edit is one st
             edits.push(request.postDataJSON());
         }
     });
-    await goTo(page, 'vertex', MIDDLE);
-    await page.getByRole('button', { name: 'Fit view' }).click();
-    const place = await projector(page, daemon, mesh);
-    await beginDrag(page, [80, -50]);
-    const from = place.atPlace(before[MIDDLE]);
+    const from = await beginDrag(context, [80, -50]);
     await waitForPicture(
         page,
         'the moved vertex',
@@ -281,12 +285,9 @@ test('a drag shows the bent mesh before there is an edit, and the edit is one st
 });
 
 test('Esc during a drag shows the mesh as it is, and nothing was edited', async (t) => {
-    const { daemon, mesh, page } = await openMesh(t, GRID);
-    await goTo(page, 'vertex', MIDDLE);
-    await page.getByRole('button', { name: 'Fit view' }).click();
-    const place = await projector(page, daemon, mesh);
-    const from = place.at([MIDDLE]);
-    await beginDrag(page, [70, -60]);
+    const context = await openMesh(t, GRID);
+    const { daemon, mesh, page } = context;
+    const from = await beginDrag(context, [70, -60]);
     await waitForPicture(page, 'the moved vertex', (canvas) =>
         isChosen(canvas.colour(from.x + 70, from.y - 60)),
     );
@@ -304,7 +305,8 @@ test('Esc during a drag shows the mesh as it is, and nothing was edited', async 
 });
 
 test('the slider says how far the bending reaches, up to all', async (t) => {
-    const { page } = await openMesh(t, GRID);
+    const context = await openMesh(t, GRID);
+    const { page } = context;
     const asked = [];
     page.on('request', (request) => {
         if (request.url().endsWith('/deform')) {
@@ -313,7 +315,7 @@ test('the slider says how far the bending reaches, up to all', async (t) => {
     });
     const answered = () => page.waitForResponse((answer) => answer.url().endsWith('/deform'));
     const first = answered();
-    await beginDrag(page, [20, 20]);
+    await beginDrag(context, [20, 20]);
     await first;
     await page.keyboard.press('Escape');
     await page.mouse.up();
@@ -327,7 +329,7 @@ test('the slider says how far the bending reaches, up to all', async (t) => {
     await page.keyboard.press('Escape');
     assert.equal(await page.locator('#direct-note').isVisible(), false);
     const second = answered();
-    await beginDrag(page, [20, 20]);
+    await beginDrag(context, [20, 20]);
     await second;
     assert.ok(near > 0 && asked.at(-1) > 0 && near !== asked.at(-1), `${asked}`);
     await page.keyboard.press('Escape');
