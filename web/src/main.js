@@ -8,7 +8,7 @@ import { Colouring } from './colour/colouring.js';
 import { colourByDeviation, nextAfter } from './edit/offers.js';
 import { Comparing } from './edit/comparing.js';
 import { copyText } from './kit/clipboard.js';
-import { byId } from './kit/dom.js';
+import { byId, partsOf } from './kit/dom.js';
 import { fileNameOf, save } from './kit/download.js';
 import { Editing } from './edit/editing.js';
 import { askExport } from './meshes/exporting.js';
@@ -59,9 +59,7 @@ const signIn = new SignIn(() => showWhatMayBeDone());
 const statistics = new Statistics({ sizes: byId('sizes'), facts: byId('facts') });
 const inspector = new Inspector(
     {
-        title: byId('element-title'),
-        hint: byId('element-hint'),
-        gone: byId('element-gone'),
+        ...partsOf('element', ['title', 'hint', 'gone']),
         members: byId('members'),
         around: byId('around'),
     },
@@ -73,10 +71,7 @@ const inspector = new Inspector(
 const report = new ImportReport(
     {
         dialog: byId('report'),
-        file: byId('report-file'),
-        close: byId('report-close'),
-        repairs: byId('report-repairs'),
-        warnings: byId('report-warnings'),
+        ...partsOf('report', ['file', 'close', 'repairs', 'warnings']),
         opener: byId('report-open'),
     },
     { onFollow: (kind, id) => flyTo(kind, id).catch(fail) },
@@ -99,17 +94,14 @@ const history = new History(
 const comparing = new Comparing(
     {
         form: byId('compare'),
-        kind: byId('compare-kind'),
+        ...partsOf('compare', ['kind', 'revision', 'button', 'result']),
         other: byId('compare-mesh'),
-        revision: byId('compare-revision'),
-        button: byId('compare-button'),
-        result: byId('compare-result'),
     },
     {
         compare: (other) => editing.watch('compare', (work) => api.compare(session.mesh, other, work)),
         meshes: async () => (await api.listMeshes()).items,
         color: (other) => colourByDeviation(other, { colouring, editing, session }),
-        onPlace: (face) => session.selection.select('face', face).then(frameSelection).catch(fail),
+        onPlace: (face) => flyTo('face', face).catch(fail),
         onError: fail,
     },
 );
@@ -191,27 +183,13 @@ const look = new Look(
     stage,
     {
         panel: {
-            button: byId('view-button'),
+            ...partsOf('view', ['button', 'close', 'form', 'reset']),
             box: byId('view-panel'),
-            close: byId('view-close'),
-            form: byId('view-form'),
-            reset: byId('view-reset'),
         },
-        section: {
-            axes: byId('section-axes'),
-            box: byId('section-box'),
-            slider: byId('section-slider'),
-            at: byId('section-at'),
-            unit: byId('section-unit'),
-            flip: byId('section-flip'),
-            free: byId('section-free'),
-            turn: byId('section-turn'),
-            tilt: byId('section-tilt'),
-            view: byId('section-view'),
-            length: byId('section-length'),
-            area: byId('section-area'),
-            loops: byId('section-loops'),
-        },
+        section: partsOf('section', [
+            'axes', 'box', 'slider', 'at', 'unit', 'flip', 'free', 'turn', 'tilt', 'view', 'length',
+            'area', 'loops',
+        ]),
         labels: { box: byId('view-labels'), grid: byId('view-grid'), cross: byId('view-cross') },
         needs: byId('look-needs'),
     },
@@ -225,12 +203,7 @@ const colouring = new Colouring(
     {
         section: byId('colour'),
         select: byId('colour-by'),
-        part: byId('colour-part'),
-        scale: byId('colour-scale'),
-        shade: byId('colour-shade'),
-        said: byId('colour-said'),
-        values: byId('colour-values'),
-        key: byId('colour-key'),
+        ...partsOf('colour', ['part', 'scale', 'shade', 'said', 'values', 'key']),
         canvas,
     },
     session,
@@ -240,9 +213,7 @@ const colouring = new Colouring(
 const editing = new Editing(canvas, session, stage, toasts, {
     onPicking: () => {
         refining.end();
-        measuring.stop();
-        select.cancel();
-        gizmo.hide();
+        putToolsDown('editing');
     },
     onKnown: (operation) => offering.offer(operation),
     nextAfter: (operation, before) =>
@@ -250,61 +221,33 @@ const editing = new Editing(canvas, session, stage, toasts, {
 });
 const measuring = new Measuring(
     {
-        button: byId('measure-button'),
+        ...partsOf('measure', [
+            'button', 'kind', 'hint', 'form', 'ids', 'results', 'said', 'done', 'clear', 'labels',
+        ]),
         section: byId('measure'),
-        kind: byId('measure-kind'),
-        hint: byId('measure-hint'),
-        form: byId('measure-form'),
-        ids: byId('measure-ids'),
-        results: byId('measure-results'),
-        said: byId('measure-said'),
-        done: byId('measure-done'),
-        clear: byId('measure-clear'),
-        labels: byId('measure-labels'),
     },
     session,
     stage,
-    {
-        onStart: () => {
-            editing.stop();
-            select.cancel();
-            gizmo.hide();
-        },
-        onError: fail,
-    },
+    { onStart: () => putToolsDown('measuring'), onError: fail },
 );
 const select = new Select(canvas, session, stage, {
     isFree: () => !editing.isDragging,
-    onArm: () => {
-        editing.stop();
-        gizmo.hide();
-        if (byId('measure-kind').value !== 'area') {
-            measuring.stop();
-        }
-    },
+    // What is selected can be measured at the same time.
+    onArm: () => putToolsDown('select', byId('measure-kind').value === 'area' ? 'measuring' : ''),
     onTell: (title, detail) => toasts.tell(title, detail),
     onError: fail,
 });
 const gizmo = new Gizmo(canvas, session, stage, {
-    onArm: () => {
-        editing.stop();
-        select.cancel();
-        measuring.stop();
-    },
+    onArm: () => putToolsDown('gizmo'),
     onRun: (operation) => editing.run(operation, true),
     onError: fail,
 });
 const lens = new Lens(
     {
         section: byId('lens'),
-        run: byId('lens-run'),
-        meets: byId('lens-meets'),
-        said: byId('lens-said'),
-        groups: byId('lens-groups'),
+        ...partsOf('lens', ['run', 'meets', 'said', 'groups']),
         box: byId('lens-work'),
-        label: byId('lens-work-label'),
-        progress: byId('lens-work-progress'),
-        cancel: byId('lens-work-cancel'),
+        ...partsOf('lens-work', ['label', 'progress', 'cancel']),
     },
     session,
     {
@@ -318,10 +261,7 @@ const lens = new Lens(
 const guide = new Guide(
     {
         box: byId('guide'),
-        title: byId('guide-title'),
-        text: byId('guide-text'),
-        next: byId('guide-next'),
-        end: byId('guide-end'),
+        ...partsOf('guide', ['title', 'text', 'next', 'end']),
     },
     session,
     { onMade: openNew, onRun: (operations) => session.run(operations), onError: fail },
@@ -368,13 +308,8 @@ const time = new Time(
         box: byId('time'),
         slider: byId('time-slider'),
         at: byId('time-at'),
-        note: byId('past-note'),
-        said: byId('past-said'),
-        compare: byId('past-compare'),
-        wipe: byId('past-wipe'),
+        ...partsOf('past', ['note', 'said', 'compare', 'wipe', 'undo', 'done']),
         line: byId('wiper'),
-        undo: byId('past-undo'),
-        done: byId('past-done'),
     },
     stage,
     {
@@ -397,11 +332,7 @@ const refining = new Refining(
         button: byId('progressive'),
         box: byId('levels'),
         slider: byId('level'),
-        faces: byId('level-faces'),
-        hint: byId('level-hint'),
-        progress: byId('level-progress'),
-        play: byId('level-play'),
-        done: byId('level-done'),
+        ...partsOf('level', ['faces', 'hint', 'progress', 'play', 'done']),
     },
     stage,
     {
@@ -651,12 +582,15 @@ function mayEdit() {
     return signIn.mayEdit && !isEmbedded;
 }
 
-// Ends all that waits for clicks or drags in the view.
-function putToolsDown() {
-    editing.stop();
-    select.cancel();
-    gizmo.hide();
-    measuring.stop();
+// Ends all that waits for clicks or drags in the view, except the named tools.
+function putToolsDown(...kept) {
+    const tools = {
+        editing: () => editing.stop(),
+        select: () => select.cancel(),
+        gizmo: () => gizmo.hide(),
+        measuring: () => measuring.stop(),
+    };
+    Object.entries(tools).forEach(([name, putDown]) => kept.includes(name) || putDown());
 }
 
 // Handles the Esc key: ends what is going on in the view, or else clears the selection.

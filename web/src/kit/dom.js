@@ -6,6 +6,11 @@ export function byId(id) {
     return document.getElementById(id);
 }
 
+// Returns the page's elements whose ids are a prefix, a dash and one of these names, by name.
+export function partsOf(prefix, names) {
+    return Object.fromEntries(names.map((name) => [name, byId(`${prefix}-${name}`)]));
+}
+
 // Makes an element, as in make('button', {className: 'link', 'aria-label': 'x'}, 'text', child,
 // ...). Names with a dash are attributes, other names are properties.
 export function make(tag, properties = {}, ...children) {
