@@ -13,6 +13,7 @@ uint64_t seed_of_run(void)
     uint64_t seed = given != NULL ? strtoull(given, NULL, 10)
                                   : (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec;
     printf("note: SEED=%" PRIu64 "\n", seed);
+    (void)fflush(stdout); /* a test that hangs is ended, and then nothing else would write it */
     return seed;
 }
 
