@@ -307,8 +307,6 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* The history has a budget of 0 and keeps nothing, so an event that was dropped from the listener's
- * queue cannot be sent again. */
 /* Presences that are put faster than listeners may be told of them are collected; the newest one is
  * told although nothing follows it. */
 static void the_newest_presence_is_told_and_not_each_one(void **state)
@@ -348,6 +346,8 @@ static void the_newest_presence_is_told_and_not_each_one(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+/* The history has a budget of 0 and keeps nothing, so edits that a
+ * listener missed cannot be told to it later. */
 static void a_gap_in_the_history_is_a_resync(void **state)
 {
     (void)state;
