@@ -1,6 +1,7 @@
 #include "format/io/format.h"
 
 #include "format/gltf/gltf.h"
+#include "format/io/pieces.h"
 #include "format/obj/mtl.h"
 #include "format/obj/obj.h"
 #include "format/off/off.h"
@@ -327,6 +328,7 @@ he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
 struct he_writer {
     const he_writing *writing;
     void *state;
+    he_pieces *pieces; /* NULL if one thread writes the document */
     bool ended;
     he_warnings warnings;
     /* Bytes of the document that did not fit into the caller's last buffer; the next call returns
@@ -352,6 +354,7 @@ he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t enc
         he_mem_free(writer);
         return status;
     }
+    writer->pieces = he_pieces_new(writer->writing, mesh, progress);
     *out = writer;
     return HE_OK;
 }
@@ -359,6 +362,7 @@ he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t enc
 void he_writer_free(he_writer *writer)
 {
     if (writer != NULL) {
+        he_pieces_free(writer->pieces);
         writer->writing->close(writer->state);
         he_mem_free(writer);
     }
@@ -370,7 +374,11 @@ static size_t fill(he_writer *writer, char *buffer, size_t room)
 {
     char *p = buffer, *end = buffer + room;
     while (!writer->ended && end - p >= HE_WRITE_ROOM) {
-        writer->ended = !writer->writing->step(writer->state, &p, end);
+        if (!he_pieces_write(writer->pieces, writer->state, &p, end)) {
+            /* With pieces, a step is short, so that it soon comes to the beginning of a row. */
+            const char *stop = writer->pieces != NULL ? p + HE_WRITE_ROOM : end;
+            writer->ended = !writer->writing->step(writer->state, &p, stop);
+        }
     }
     return (size_t)(p - buffer);
 }

@@ -421,4 +421,9 @@ static bool glb_step(void *state, char **p, const char *end)
     return w->stage != END;
 }
 
-const he_writing he_glb_writing = {glb_open, glb_step, glb_close, true};
+const he_writing he_glb_writing = {
+    .open = glb_open,
+    .step = glb_step,
+    .close = glb_close,
+    .cuts = true,
+};

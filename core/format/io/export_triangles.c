@@ -88,3 +88,14 @@ bool he_export_triangles_next(const he_export_triangles *triangles, he_export_tr
     walk->face += walk->left == 0;
     return true;
 }
+
+void he_export_triangles_skip(const he_export_triangles *triangles, he_export_triangle_walk *walk,
+                              uint32_t face)
+{
+    const he_mesh *m = triangles->mesh;
+    for (; walk->face < face; walk->face++) {
+        he_face f = {walk->face};
+        uint32_t degree = he_face_is_live(m, f) ? he_face_degree(m, f) : 3;
+        walk->corner += degree > 3 ? 3 * ((size_t)degree - 2) : 0;
+    }
+}

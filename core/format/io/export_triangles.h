@@ -37,5 +37,9 @@ typedef struct he_export_triangle_walk {
 /* Gets the three vertices of the next triangle of the walk. Returns false after the last one. */
 bool he_export_triangles_next(const he_export_triangles *triangles, he_export_triangle_walk *walk,
                               uint32_t vertices[3]);
+/* Moves the walk to the first triangle of the face `face`, which is none that the walk has passed.
+ * The walk must have returned all triangles of the face before. */
+void he_export_triangles_skip(const he_export_triangles *triangles, he_export_triangle_walk *walk,
+                              uint32_t face);
 
 #endif

@@ -71,6 +71,13 @@ typedef struct he_writing {
                       he_warnings *warnings, void **state, he_error *err);
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
+    /* Takes the next rows out of the document, at most `rows`, so that another thread can write
+     * them: `piece`, which has room for `state_bytes` bytes, becomes a state that writes these rows
+     * and no others, and `state` goes on after them. The piece uses the memory of `state`, and is
+     * not closed. Returns false, and changes nothing, if no row begins where the document stands.
+     * NULL if the writer cannot do so. */
+    bool (*cut)(void *state, void *piece, uint32_t rows);
+    size_t state_bytes; /* size of the struct to which `state` points */
     bool cuts; /* true if the writer cuts polygons into triangles (export_triangles.h); the caller
                 * may then first fill the mesh's cache of long faces (long_faces.h) */
 } he_writing;
@@ -137,7 +144,9 @@ HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_er
 typedef struct he_writer he_writer;
 
 /* Makes a writer of a mesh in a format. `encoding` is an index into the format's list of encodings.
- * The call takes time linear in the mesh, and reports progress to `progress`, which may be NULL.
+ * The call takes time linear in the mesh, and reports progress to `progress`, which may be NULL. If
+ * `progress` lends threads, they must be there as long as the writer: he_writer_read then writes
+ * large meshes on several threads. The file is the same, byte by byte.
  * Returns HE_UNSUPPORTED if the format cannot be written.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the work was cancelled. */

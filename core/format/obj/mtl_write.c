@@ -122,4 +122,8 @@ static bool mtl_step(void *state, char **at, const char *end)
     return true;
 }
 
-const he_writing he_mtl_writing = {mtl_open, mtl_step, mtl_close, false};
+const he_writing he_mtl_writing = {
+    .open = mtl_open,
+    .step = mtl_step,
+    .close = mtl_close,
+};

@@ -35,6 +35,7 @@ typedef struct obj_writer {
                             * line; HE_NONE before the first one */
     part part;
     uint32_t row;      /* the next vertex, value or face to write */
+    uint32_t stop;     /* the row before which a piece of the document ends; HE_NONE: no piece */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
     he_obj_name name;
     const char *libraries[HE_COLUMN_COMPONENTS];
@@ -126,7 +127,7 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_progress *pro
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the OBJ file");
     }
     w->mesh = mesh;
-    w->halfedge = HE_NONE;
+    w->halfedge = w->stop = HE_NONE;
     w->uv.keyword = "vt";
     w->normal.keyword = "vn";
     w->said[OBJECT] = w->said[GROUP] = w->said[MATERIAL] = HE_NONE;
@@ -223,22 +224,44 @@ static bool has_row(const obj_writer *w, const values *v, uint32_t row)
     return (v != NULL && v->of_corners) || he_vertex_is_live(w->mesh, (he_vertex){row});
 }
 
-static uint32_t row_count(const obj_writer *w, const values *v)
+static uint32_t value_count(const obj_writer *w, const values *v)
 {
-    if (v == NULL) {
-        return w->mesh->c.vertices.issued;
-    }
     if (v->column == NULL) {
         return 0;
     }
     return v->of_corners ? (uint32_t)v->distinct.first.count : w->mesh->c.vertices.issued;
 }
 
+/* Returns the number of rows of the part that is being written, or the row at which it ends. */
+static uint32_t end_of_part(const obj_writer *w)
+{
+    uint32_t count = 0;
+    switch (w->part) {
+    case VERTICES:
+        count = w->mesh->c.vertices.issued;
+        break;
+    case UVS:
+        count = value_count(w, &w->uv);
+        break;
+    case NORMALS:
+        count = value_count(w, &w->normal);
+        break;
+    case FACES:
+        count = w->mesh->c.faces.issued;
+        break;
+    case HEADER:
+    case LIBRARIES:
+    case END:
+        break;
+    }
+    return w->stop < count ? w->stop : count;
+}
+
 /* Writes the lines of a part of the document: vertices, or, if `v` is not NULL, texture coordinates
  * or normals. */
 static char *write_rows(obj_writer *w, const values *v, char *p, const char *end)
 {
-    uint32_t count = row_count(w, v);
+    uint32_t count = end_of_part(w);
     while (w->row < count && end - p >= HE_WRITE_ROOM) {
         uint32_t row = w->row++;
         if (has_row(w, v, row)) {
@@ -247,7 +270,7 @@ static char *write_rows(obj_writer *w, const values *v, char *p, const char *end
     }
     if (w->row == count) {
         w->row = 0;
-        w->part++;
+        w->part = w->stop == HE_NONE ? w->part + 1 : END;
     }
     return p;
 }
@@ -313,6 +336,7 @@ static char *write_corner(const obj_writer *w, uint32_t h, char *p)
 static char *write_faces(obj_writer *w, char *p, const char *end)
 {
     const he_content *c = &w->mesh->c;
+    uint32_t count = end_of_part(w);
     while (end - p >= HE_WRITE_ROOM) {
         if (w->name.rest != NULL) {
             p = he_obj_name_write(&w->name, p, end);
@@ -324,7 +348,7 @@ static char *write_faces(obj_writer *w, char *p, const char *end)
                 w->halfedge = HE_NONE;
                 w->row++;
             }
-        } else if (w->row == c->faces.issued) {
+        } else if (w->row == count) {
             w->part = END;
             break;
         } else if (c->face_halfedge[w->row] == HE_DEAD) {
@@ -370,4 +394,41 @@ static bool obj_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_obj_writing = {obj_open, obj_step, obj_close, false};
+/* Notes the values of the last live face before `end`, at or after the row of the writer, as if its
+ * lines had been written. */
+static void skip_spans(obj_writer *w, uint32_t end)
+{
+    uint32_t face = end;
+    while (face > w->row && w->mesh->c.face_halfedge[face - 1] == HE_DEAD) {
+        face--;
+    }
+    for (size_t i = 0; i < GROUPS && face > w->row; i++) {
+        if (w->groups[i] != NULL) {
+            memcpy(&w->said[i], he_column_value(w->groups[i], face - 1), sizeof w->said[i]);
+        }
+    }
+}
+
+static bool obj_cut(void *state, void *piece, uint32_t rows)
+{
+    obj_writer *w = state, *out = piece;
+    uint32_t count = end_of_part(w);
+    if (w->row >= count || w->halfedge != HE_NONE || w->name.rest != NULL) {
+        return false;
+    }
+    *out = *w;
+    out->stop = count - w->row < rows ? count : w->row + rows;
+    if (w->part == FACES) {
+        skip_spans(w, out->stop);
+    }
+    w->row = out->stop;
+    return true;
+}
+
+const he_writing he_obj_writing = {
+    .open = obj_open,
+    .step = obj_step,
+    .close = obj_close,
+    .cut = obj_cut,
+    .state_bytes = sizeof(obj_writer),
+};

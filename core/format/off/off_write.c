@@ -14,6 +14,7 @@ typedef struct off_writer {
     const he_column *normal, *color, *uv, *face_color;
     part part;
     uint32_t row;      /* the next vertex or face */
+    uint32_t stop;     /* the row before which a piece of the document ends; HE_NONE: no piece */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
 } off_writer;
 
@@ -34,7 +35,7 @@ static he_status off_open(const he_mesh *mesh, size_t encoding, he_progress *pro
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to write the OFF file");
     }
     w->mesh = mesh;
-    w->halfedge = HE_NONE;
+    w->halfedge = w->stop = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status != HE_OK) {
         off_close(w);
@@ -104,18 +105,28 @@ static char *write_vertex(const off_writer *w, uint32_t v, char *p)
     return p;
 }
 
+/* Returns the row at which the part that is being written ends; 0 in a part without rows. */
+static uint32_t end_of_part(const off_writer *w)
+{
+    const he_content *c = &w->mesh->c;
+    uint32_t count = w->part == VERTICES ? c->vertices.issued
+                     : w->part == FACES  ? c->faces.issued
+                                         : 0;
+    return w->stop < count ? w->stop : count;
+}
+
 static char *write_vertices(off_writer *w, char *p, const char *end)
 {
-    uint32_t issued = w->mesh->c.vertices.issued;
-    while (w->row < issued && end - p >= HE_WRITE_ROOM) {
+    uint32_t count = end_of_part(w);
+    while (w->row < count && end - p >= HE_WRITE_ROOM) {
         uint32_t v = w->row++;
         if (he_vertex_is_live(w->mesh, (he_vertex){v})) {
             p = write_vertex(w, v, p);
         }
     }
-    if (w->row == issued) {
+    if (w->row == count) {
         w->row = 0;
-        w->part = FACES;
+        w->part = w->stop == HE_NONE ? FACES : END;
     }
     return p;
 }
@@ -123,6 +134,7 @@ static char *write_vertices(off_writer *w, char *p, const char *end)
 static char *write_faces(off_writer *w, char *p, const char *end)
 {
     const he_content *c = &w->mesh->c;
+    uint32_t count = end_of_part(w);
     while (end - p >= HE_WRITE_ROOM) {
         if (w->halfedge != HE_NONE) {
             uint32_t id = c->origin[w->halfedge];
@@ -137,7 +149,7 @@ static char *write_faces(off_writer *w, char *p, const char *end)
                 w->halfedge = HE_NONE;
                 w->row++;
             }
-        } else if (w->row == c->faces.issued) {
+        } else if (w->row == count) {
             w->part = END;
             break;
         } else if (c->face_halfedge[w->row] == HE_DEAD) {
@@ -170,4 +182,22 @@ static bool off_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_off_writing = {off_open, off_step, off_close, false};
+static bool off_cut(void *state, void *piece, uint32_t rows)
+{
+    off_writer *w = state, *out = piece;
+    uint32_t count = end_of_part(w);
+    if (w->row >= count || w->halfedge != HE_NONE) {
+        return false;
+    }
+    *out = *w;
+    out->stop = w->row = count - w->row < rows ? count : w->row + rows;
+    return true;
+}
+
+const he_writing he_off_writing = {
+    .open = off_open,
+    .step = off_step,
+    .close = off_close,
+    .cut = off_cut,
+    .state_bytes = sizeof(off_writer),
+};

@@ -41,6 +41,7 @@ typedef struct ply_writer {
     part part;
     size_t line;       /* index in `outputs` of the next property to write in the header */
     uint32_t row;      /* the next vertex, copy or face */
+    uint32_t stop;     /* the row before which a piece of the document ends; HE_NONE: no piece */
     size_t output;     /* index in `outputs` of the next number to write in the row */
     bool in_list;      /* true if the texture coordinates of the row have begun */
     bool in_face;      /* true if the corners of the row have begun */
@@ -253,7 +254,7 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     }
     w->mesh = mesh;
     w->encoding = encodings[encoding];
-    w->halfedge = HE_NONE;
+    w->halfedge = w->stop = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status == HE_OK) {
         status = choose_outputs(w, progress, warnings, err);
@@ -401,10 +402,21 @@ static char *end_row(ply_writer *w, size_t first, char *p)
     return p;
 }
 
+/* Returns the row at which the part that is being written ends; 0 in a part without rows. */
+static uint32_t end_of_part(const ply_writer *w)
+{
+    const he_content *c = &w->mesh->c;
+    uint32_t count = w->part == VERTICES ? c->vertices.issued
+                     : w->part == COPIES ? (uint32_t)w->splits.copies.count
+                     : w->part == FACES  ? c->faces.issued
+                                         : 0;
+    return w->stop < count ? w->stop : count;
+}
+
 static char *write_vertices(ply_writer *w, char *p, const char *end)
 {
-    uint32_t issued = w->mesh->c.vertices.issued;
-    while (w->row < issued && end - p >= VALUE_ROOM) {
+    uint32_t count = end_of_part(w);
+    while (w->row < count && end - p >= VALUE_ROOM) {
         if (!he_vertex_is_live(w->mesh, (he_vertex){w->row})) {
             w->row++;
             continue;
@@ -416,9 +428,9 @@ static char *write_vertices(ply_writer *w, char *p, const char *end)
             p = end_row(w, 0, p);
         }
     }
-    if (w->row == issued) {
+    if (w->row == count) {
         w->row = 0;
-        w->part = COPIES;
+        w->part = w->stop == HE_NONE ? COPIES : END;
     }
     return p;
 }
@@ -426,7 +438,8 @@ static char *write_vertices(ply_writer *w, char *p, const char *end)
 static char *write_copies(ply_writer *w, char *p, const char *end)
 {
     const he_ids *copies = &w->splits.copies;
-    while (w->row < copies->count && end - p >= VALUE_ROOM) {
+    uint32_t count = end_of_part(w);
+    while (w->row < count && end - p >= VALUE_ROOM) {
         uint32_t corner = copies->ids[w->row], vertex = w->mesh->c.origin[corner];
         p = write_output(w, vertex, corner, p);
         w->output++;
@@ -434,10 +447,10 @@ static char *write_copies(ply_writer *w, char *p, const char *end)
             p = end_row(w, 0, p);
         }
     }
-    if (w->row == copies->count) {
+    if (w->row == count) {
         w->row = 0;
         w->output = w->vertex_outputs;
-        w->part = FACES;
+        w->part = w->stop == HE_NONE ? FACES : END;
     }
     return p;
 }
@@ -490,6 +503,7 @@ static char *write_list(ply_writer *w, char *p)
 static char *write_faces(ply_writer *w, char *p, const char *end)
 {
     const he_content *c = &w->mesh->c;
+    uint32_t count = end_of_part(w);
     while (end - p >= VALUE_ROOM) {
         if (w->halfedge != HE_NONE) {
             p = write_list(w, p);
@@ -499,7 +513,7 @@ static char *write_faces(ply_writer *w, char *p, const char *end)
         } else if (w->in_face) {
             p = end_row(w, w->vertex_outputs, p);
             w->in_face = false;
-        } else if (w->row == c->faces.issued) {
+        } else if (w->row == count) {
             w->part = END;
             break;
         } else if (c->face_halfedge[w->row] == HE_DEAD) {
@@ -534,4 +548,23 @@ static bool ply_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_ply_writing = {ply_open, ply_step, ply_close, false};
+static bool ply_cut(void *state, void *piece, uint32_t rows)
+{
+    ply_writer *w = state, *out = piece;
+    uint32_t count = end_of_part(w);
+    size_t first = w->part == FACES ? w->vertex_outputs : 0;
+    if (w->row >= count || w->in_face || w->output != first) {
+        return false;
+    }
+    *out = *w;
+    out->stop = w->row = count - w->row < rows ? count : w->row + rows;
+    return true;
+}
+
+const he_writing he_ply_writing = {
+    .open = ply_open,
+    .step = ply_step,
+    .close = ply_close,
+    .cut = ply_cut,
+    .state_bytes = sizeof(ply_writer),
+};

@@ -19,6 +19,7 @@ typedef struct stl_writer {
     he_export_triangles cuts;
     he_export_triangle_walk walk;
     part part;
+    uint32_t stop; /* the face before which a piece of the document ends; HE_NONE: no piece */
 } stl_writer;
 
 static void stl_close(void *state)
@@ -145,6 +146,7 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_progress *pro
     }
     w->mesh = mesh;
     w->text = encoding != 0;
+    w->stop = HE_NONE;
     he_status status = he_export_triangles_make(mesh, progress, &w->cuts, err);
     if (status == HE_OK) {
         note_cuts(&w->cuts, warnings);
@@ -266,9 +268,9 @@ static char *write_facets(stl_writer *w, char *p, const char *end)
 {
     while (end - p >= HE_WRITE_ROOM) {
         uint32_t v[3];
-        if (!he_export_triangles_next(&w->cuts, &w->walk, v)) {
+        if (w->walk.face >= w->stop || !he_export_triangles_next(&w->cuts, &w->walk, v)) {
             w->part = END;
-            return w->text ? he_export_text("endsolid\n", p) : p;
+            return w->text && w->stop == HE_NONE ? he_export_text("endsolid\n", p) : p;
         }
         const he_vec3 *position = w->mesh->c.position;
         he_vec3 corners[3] = {position[v[0]], position[v[1]], position[v[2]]};
@@ -294,4 +296,30 @@ static bool stl_step(void *state, char **p, const char *end)
     return w->part != END;
 }
 
-const he_writing he_stl_writing = {stl_open, stl_step, stl_close, true};
+/* Ends a piece before a live face or at the end, because the walk passes dead faces only when it
+ * looks for the next triangle. */
+static bool stl_cut(void *state, void *piece, uint32_t rows)
+{
+    stl_writer *w = state, *out = piece;
+    uint32_t count = w->mesh->c.faces.issued, first = w->walk.face;
+    if (w->part != FACETS || w->walk.left > 0 || first >= count) {
+        return false;
+    }
+    uint32_t stop = count - first < rows ? count : first + rows;
+    while (stop < count && !he_face_is_live(w->mesh, (he_face){stop})) {
+        stop++;
+    }
+    *out = *w;
+    out->stop = stop;
+    he_export_triangles_skip(&w->cuts, &w->walk, stop);
+    return true;
+}
+
+const he_writing he_stl_writing = {
+    .open = stl_open,
+    .step = stl_step,
+    .close = stl_close,
+    .cut = stl_cut,
+    .state_bytes = sizeof(stl_writer),
+    .cuts = true,
+};
