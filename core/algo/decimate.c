@@ -2,6 +2,7 @@
 
 #include "algo/decimation.h"
 #include "algo/result_write.h"
+#include "base/parallel.h"
 #include "geometry/scale.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
@@ -127,23 +128,36 @@ static void heed_locks(const he_decimation *d, const he_marks *marks)
     }
 }
 
+/* Begins the nodes of vertices. The nodes of vertices without edges stay unwritten: writing would
+ * touch memory pages that were not used yet, which is slow. */
+static he_status begin_nodes(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const he_decimation *d = context;
+    const he_content *c = &d->mesh->c;
+    (void)part, (void)err;
+    for (size_t v = from; v < to; v++) {
+        if (c->vertex_halfedge[v] < 2 * c->edges.issued) {
+            d->nodes[v] = (he_node){.place = he_decimation_inside(d, c->position[v])};
+        }
+    }
+    return HE_OK;
+}
+
 static he_status weigh(he_decimation *d, he_error *err)
 {
     const he_mesh *m = d->mesh;
     he_marks marks;
-    he_status status = he_progress_phase(m->progress, "weighing faces", 0.15, err);
+    he_status status = he_progress_phase(m->progress, "preparing vertices", 0.05, err);
     find_frame(d);
     if (he_marks_find(m, &marks)) {
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* The nodes of vertices without edges stay unwritten: writing would touch memory pages that
-     * were not used yet, which is slow. */
-    for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
-        status = he_progress_at(m->progress, v, UINT64_MAX, err);
-        if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
-            d->nodes[v] = (he_node){.place = he_decimation_inside(d, m->c.position[v])};
-        }
+    if (status == HE_OK) {
+        status = he_run_ranges(m->progress, m->c.vertices.issued, begin_nodes, d, err);
+    }
+    if (status == HE_OK) {
+        status = he_progress_phase(m->progress, "weighing faces", 0.15, err);
     }
     for (uint32_t h = 0; h < 2 * m->c.edges.issued && status == HE_OK; h++) {
         if (he_edge_is_live(m, (he_edge){h >> 1})) {
@@ -160,19 +174,49 @@ static he_status weigh(he_decimation *d, he_error *err)
     return status;
 }
 
+/* The costs of all edges, before the first collapse. */
+typedef struct costs {
+    he_decimation *d;
+    float *priorities; /* those of the edges that belong in the queue */
+} costs;
+
+/* Computes where edges belong, and their priorities. */
+static he_status judge_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
+{
+    const costs *all = context;
+    (void)part, (void)err;
+    for (uint32_t e = (uint32_t)from; e < to; e++) {
+        he_candidate what;
+        if (he_edge_is_live(all->d->mesh, (he_edge){e})) {
+            he_edge_place place = he_decimation_judge(all->d, (he_edge){e}, &what);
+            all->d->places[e] = (uint8_t)place;
+            all->priorities[e] = place == HE_EDGE_QUEUED ? what.priority : 0;
+        }
+    }
+    return HE_OK;
+}
+
+/* Fills the queue. Several threads compute the costs; the edges are put into the queue in the order
+ * of their ids, so that the result does not depend on the number of threads. */
 static he_status fill_queue(he_decimation *d, he_error *err)
 {
     const he_mesh *m = d->mesh;
     uint32_t issued = m->c.edges.issued;
+    costs all = {d, he_mem_array(NULL, issued, sizeof *all.priorities)};
+    if (all.priorities == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for the costs of %u edges", issued);
+    }
     he_status status = he_progress_phase(m->progress, "computing costs of edges", 0.3, err);
+    if (status == HE_OK) {
+        status = he_run_ranges(m->progress, issued, judge_range, &all, err);
+    }
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
-        status = he_progress_at(m->progress, e, issued, err);
         if (he_edge_is_live(m, (he_edge){e})) {
-            he_candidate what;
-            he_edge_place place = he_decimation_judge(d, (he_edge){e}, &what);
-            he_decimation_put(d, (he_edge){e}, place, &what);
+            he_candidate what = {.priority = all.priorities[e]};
+            he_decimation_put(d, (he_edge){e}, (he_edge_place)d->places[e], &what);
         }
     }
+    he_mem_free(all.priorities);
     return status;
 }
 

@@ -2,6 +2,7 @@
  * the result must not depend on the number of threads. */
 #include "tests/unit/fixture.h"
 
+#include "algo/decimate.h"
 #include "algo/subdivide.h"
 #include "base/parallel.h"
 #include "geometry/geometry.h"
@@ -10,6 +11,7 @@
 #include "tests/failing.h"
 #include "tests/sanitized.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -255,17 +257,29 @@ static he_vec3 *normals_of(const he_mesh *mesh, he_progress *progress)
 
 enum { SCHEMES = HE_SQRT3 - HE_LOOP + 1 };
 
-/* The result of a subdivision, or its error, since the scheme `loop` refuses faces that are not
- * triangles. */
-typedef struct subdivided {
+/* The result of an operation on the whole mesh, or its error, since the scheme `loop` and
+ * decimation refuse faces that are not triangles. */
+typedef struct outcome {
     he_mesh *mesh;
     he_status status;
     he_error error;
-} subdivided;
+} outcome;
 
-static subdivided subdivide(const he_mesh *mesh, int scheme, he_progress *progress)
+/* Decimates a copy of the mesh to a third of its faces. */
+static outcome decimate(const he_mesh *mesh, he_progress *progress)
 {
-    subdivided s = {.mesh = NULL};
+    outcome s = {.mesh = NULL};
+    const he_decimate_options options = {he_mesh_faces(mesh) / 3, INFINITY, HE_BOUNDARY_WEIGHT};
+    assert_int_equal(he_mesh_copy(mesh, &s.mesh, NULL), HE_OK);
+    he_mesh_set_progress(s.mesh, progress);
+    s.status = he_decimate(s.mesh, &options, NULL, &s.error);
+    he_mesh_set_progress(s.mesh, NULL);
+    return s;
+}
+
+static outcome subdivide(const he_mesh *mesh, int scheme, he_progress *progress)
+{
+    outcome s = {.mesh = NULL};
     assert_int_equal(he_mesh_copy(mesh, &s.mesh, NULL), HE_OK);
     he_mesh_set_progress(s.mesh, progress);
     s.status = he_subdivide(s.mesh, (he_scheme)(HE_LOOP + scheme), 1, NULL, &s.error);
@@ -273,7 +287,7 @@ static subdivided subdivide(const he_mesh *mesh, int scheme, he_progress *progre
     return s;
 }
 
-static void expect_same_subdivision(const subdivided *alone, const subdivided *helped)
+static void expect_same_outcome(const outcome *alone, const outcome *helped)
 {
     assert_int_equal(alone->status, helped->status);
     assert_int_equal(alone->error.id, helped->error.id);
@@ -285,7 +299,7 @@ static void expect_same_subdivision(const subdivided *alone, const subdivided *h
 typedef struct expected {
     he_mesh *mesh;
     he_vec3 *normals; /* as normals_of() returns them */
-    subdivided subdivisions[SCHEMES];
+    outcome subdivisions[SCHEMES], decimation;
 } expected;
 
 static expected compute_alone(he_soup *soup)
@@ -295,6 +309,7 @@ static expected compute_alone(he_soup *soup)
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
         alone.subdivisions[scheme] = subdivide(alone.mesh, scheme, NULL);
     }
+    alone.decimation = decimate(alone.mesh, NULL);
     return alone;
 }
 
@@ -303,6 +318,7 @@ static void clear(expected *alone)
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
         he_mesh_free(alone->subdivisions[scheme].mesh);
     }
+    he_mesh_free(alone->decimation.mesh);
     free(alone->normals);
     he_mesh_free(alone->mesh);
 }
@@ -318,13 +334,16 @@ static void expect_same_results(const expected *alone, const he_parallel *parall
     assert_memory_equal(alone->normals, helped, count * sizeof *helped);
     free(helped);
     for (int scheme = 0; scheme < SCHEMES; scheme++) {
-        subdivided by_hands = subdivide(mesh, scheme, &progress);
-        expect_same_subdivision(&alone->subdivisions[scheme], &by_hands);
+        outcome by_hands = subdivide(mesh, scheme, &progress);
+        expect_same_outcome(&alone->subdivisions[scheme], &by_hands);
         he_mesh_free(by_hands.mesh);
     }
+    outcome by_hands = decimate(mesh, &progress);
+    expect_same_outcome(&alone->decimation, &by_hands);
+    he_mesh_free(by_hands.mesh);
 }
 
-static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **state)
+static void whole_operations_are_the_same_on_1_2_and_8_threads(void **state)
 {
     (void)state;
     for (int which = 0; which < 3; which++) {
@@ -452,7 +471,7 @@ int main(void)
         cmocka_unit_test(of_parts_that_fail_the_first_one_is_told),
         cmocka_unit_test(work_is_given_up_between_parts_on_its_own_thread),
         cmocka_unit_test(a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads),
-        cmocka_unit_test(normals_and_subdivision_are_the_same_on_1_2_and_8_threads),
+        cmocka_unit_test(whole_operations_are_the_same_on_1_2_and_8_threads),
         cmocka_unit_test(parts_may_end_in_any_order_even_if_one_fails),
         cmocka_unit_test(defects_are_the_same_on_1_2_and_8_threads),
         cmocka_unit_test(memory_that_runs_out_leaves_nothing_behind),
