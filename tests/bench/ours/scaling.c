@@ -2,12 +2,14 @@
  * with helping threads. Wall time is measured, because processor time adds up over threads. */
 #include "bench/ours/ours.h"
 
+#include "algo/decimate.h"
 #include "algo/subdivide.h"
 #include "compare/compare.h"
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 #include "system/parallel.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -143,6 +145,26 @@ static void compare(bench_side *side, bool helped, bench_result *out)
     he_mesh_free(bent);
 }
 
+/* Decimates to nine tenths of the faces, of which the costs of all edges are a large part. */
+static void decimate(bench_side *side, bool helped, bench_result *out)
+{
+    he_mesh *m;
+    he_progress progress;
+    bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
+    lend(&progress, helped);
+    he_mesh_set_progress(m, &progress);
+    const he_decimate_options options = {.faces = he_mesh_faces(m) / 10 * 9,
+                                         .max_error = INFINITY,
+                                         .boundary_weight = HE_BOUNDARY_WEIGHT};
+    double start = wall_seconds();
+    bench_require(he_decimate(m, &options, NULL, NULL));
+    out->value = wall_seconds() - start;
+    out->amount = side->input.faces;
+    he_mesh_set_progress(m, NULL);
+    bench_exact(out, bench_mesh_hash(m));
+    he_mesh_free(m);
+}
+
 static void loop(bench_side *side, bool helped, bench_result *out)
 {
     subdivide(side, HE_LOOP, helped, out);
@@ -182,6 +204,49 @@ static void import_ply(bench_side *side, bool helped, bench_result *out)
     import(side, "ply", "input.ply", helped, out);
 }
 
+/* Exports a file, in the pieces in which a download asks for it. */
+static void export(bench_side *side, const char *name, const char *encoding, bool helped,
+                   bench_result *out)
+{
+    static char buffer[128 * 1024];
+    he_writer *writer;
+    he_progress progress;
+    const he_mesh *mesh = bench_mesh(side);
+    const he_format *format = he_format_find(name);
+    uint64_t bytes = 0;
+    lend(&progress, helped);
+    double start = wall_seconds();
+    bench_require(he_writer_new(format, mesh, (size_t)he_format_encoding(format, encoding),
+                                &progress, &writer, NULL));
+    for (size_t n; (n = he_writer_read(writer, buffer, sizeof buffer)) > 0;) {
+        bytes += n;
+    }
+    out->value = wall_seconds() - start;
+    out->amount = he_mesh_faces(mesh);
+    bench_exact(out, bytes);
+    he_writer_free(writer);
+}
+
+static void export_obj(bench_side *side, bool helped, bench_result *out)
+{
+    export(side, "obj", "ascii", helped, out);
+}
+
+static void export_ply(bench_side *side, bool helped, bench_result *out)
+{
+    export(side, "ply", "binary", helped, out);
+}
+
+static void export_ply_text(bench_side *side, bool helped, bench_result *out)
+{
+    export(side, "ply", "ascii", helped, out);
+}
+
+static void export_off(bench_side *side, bool helped, bench_result *out)
+{
+    export(side, "off", "ascii", helped, out);
+}
+
 #define BOTH(row)                                            \
     static void row##_1(bench_side *side, bench_result *out) \
     {                                                        \
@@ -194,11 +259,16 @@ static void import_ply(bench_side *side, bool helped, bench_result *out)
 BOTH(build)
 BOTH(face_normals)
 BOTH(corner_normals)
+BOTH(decimate)
 BOTH(loop)
 BOTH(compare)
 BOTH(catmull_clark)
 BOTH(import_obj)
 BOTH(import_ply)
+BOTH(export_obj)
+BOTH(export_ply)
+BOTH(export_ply_text)
+BOTH(export_off)
 #undef BOTH
 
 const bench_row bench_scaling_rows[] = {{"build_1", build_1},
@@ -207,6 +277,8 @@ const bench_row bench_scaling_rows[] = {{"build_1", build_1},
                                         {"face_normals_2", face_normals_2},
                                         {"corner_normals_1", corner_normals_1},
                                         {"corner_normals_2", corner_normals_2},
+                                        {"decimate_1", decimate_1},
+                                        {"decimate_2", decimate_2},
                                         {"loop_1", loop_1},
                                         {"loop_2", loop_2},
                                         {"compare_1", compare_1},
@@ -217,4 +289,12 @@ const bench_row bench_scaling_rows[] = {{"build_1", build_1},
                                         {"import_obj_2", import_obj_2},
                                         {"import_ply_1", import_ply_1},
                                         {"import_ply_2", import_ply_2},
+                                        {"export_obj_1", export_obj_1},
+                                        {"export_obj_2", export_obj_2},
+                                        {"export_ply_1", export_ply_1},
+                                        {"export_ply_2", export_ply_2},
+                                        {"export_ply_text_1", export_ply_text_1},
+                                        {"export_ply_text_2", export_ply_text_2},
+                                        {"export_off_1", export_off_1},
+                                        {"export_off_2", export_off_2},
                                         {NULL, NULL}};
