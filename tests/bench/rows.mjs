@@ -56,6 +56,13 @@ const kernel = (name, order) => ({
     ],
 });
 
+// A row, and the same work as the first of a process, in memory that the system has to clear first.
+// Users of a daemon mostly see first runs.
+const laterAndFirst = (row) => [
+    row,
+    { ...row, title: `${row.title}, first run`, fresh: true, target: [['cgal', 1.5]] },
+];
+
 // A row whose title ends in `of a list` tells our kernel which edges come next, as delaunay does.
 // The other libraries have no such call, so the row is compared with our own edits without this
 // call. When edits are made one after another, each waits for memory: the links of a half-edge are
@@ -347,32 +354,28 @@ export const parts = [
         input: 'torus',
         order: 'natural',
         side: 400,
-        rows: [
-            {
-                title: 'Loop, one step',
-                ours: 'loop',
-                ...rate('M output faces/s'),
-                near: 1e-9,
-                target: [['cgal', 2.5]],
-                runs: 3,
-            },
-        ],
+        rows: laterAndFirst({
+            title: 'Loop, one step',
+            ours: 'loop',
+            ...rate('M output faces/s'),
+            near: 1e-9,
+            target: [['cgal', 2.5]],
+            runs: 3,
+        }),
     },
     {
         part: 'subdivide',
         input: 'grid',
         order: 'natural',
         side: 400,
-        rows: [
-            {
-                title: 'Catmull-Clark, one step',
-                ours: 'catmull_clark',
-                ...rate('M output faces/s'),
-                near: 1e-2,
-                target: [['cgal', 2.5]],
-                runs: 3,
-            },
-        ],
+        rows: laterAndFirst({
+            title: 'Catmull-Clark, one step',
+            ours: 'catmull_clark',
+            ...rate('M output faces/s'),
+            near: 1e-2,
+            target: [['cgal', 2.5]],
+            runs: 3,
+        }),
     },
     {
         part: 'decimate',
