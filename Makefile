@@ -111,7 +111,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
-        hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space bench-reshape report container fresh \
+        hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-fair bench-large bench-space bench-reshape report container fresh \
         screenshot examples \
         install uninstall clean ALWAYS
 
@@ -168,6 +168,7 @@ NEEDS.bench-store  := build durable bench-http
 NEEDS.bench-events := build
 NEEDS.bench-slow   := build bench-http bench-slow
 NEEDS.bench-flood  := build bench-slow
+NEEDS.bench-fair   := build bench-http
 NEEDS.bench-large  := build bench-http
 NEEDS.bench-space  := build
 NEEDS.bench-reshape := build node bench
@@ -517,12 +518,15 @@ bench-slow: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## a thousan
 bench-flood: $(HEDGED) $(BUILD)/tests/bench/http/paced | $(INSTALLED) ## one token far beyond its rate, 10,000 idle and 1,000 slow clients: what others wait for
 	@sh tests/bench/flood.sh $(HEDGED) $(BUILD)/tests/bench/http/paced
 
+bench-fair: $(HEDGED) $(BUILD)/tests/bench/http/paced | $(INSTALLED) ## small requests beside imports, exports, decimations and checks of a million faces: what they wait for
+	@sh tests/bench/fair.sh $(HEDGED) $(BUILD)/tests/bench/http/paced
+
 bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)
 
 # Runs each benchmark in REPORTS by itself, and writes what it printed into tests/bench/README.md.
 # RUNS, BENCH, SCALE, MINUTES and LOAD are passed on to the benchmarks.
-REPORTS  ?= bench bench-reshape bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space soak
+REPORTS  ?= bench bench-reshape bench-http bench-store bench-events bench-slow bench-flood bench-fair bench-large bench-space soak
 REPORTED  = $(strip make $(1) $(foreach v,BENCH RUNS SCALE MINUTES LOAD,$(if $(filter command%,$(origin $(v))),$(v)=$($(v)))))
 report: | $(INSTALLED) ## runs REPORTS="bench soak" and writes what they print into tests/bench/README.md
 	@mkdir -p build

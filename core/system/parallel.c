@@ -1,9 +1,9 @@
 #include "system/parallel.h"
 
 #include "base/mem.h"
+#include "system/thread_start.h"
 
 #include <pthread.h>
-#include <sys/prctl.h>
 
 /* A parallel loop, which runs in parts. The struct is on the stack of the thread that called
  * `run`. */
@@ -85,7 +85,7 @@ static void run_next(st_parallel *h, work *w)
 static void *help(void *context)
 {
     st_parallel *h = context;
-    prctl(PR_SET_NAME, "hedged-parts");
+    st_thread_name_nicer("hedged-parts");
     pthread_mutex_lock(&h->lock);
     while (!h->ending) {
         work *w = h->first;

@@ -1,10 +1,10 @@
 #include "system/thread_pool.h"
 
 #include "base/mem.h"
+#include "system/thread_start.h"
 
 #include <pthread.h>
 #include <string.h>
-#include <sys/prctl.h>
 
 /* The number of stamps (virtual times) that are kept for flows. A flow is all tasks of one client
  * for one mesh (thread_pool.h). Flows whose hashes have equal low bits share a stamp and are
@@ -162,7 +162,7 @@ static void run_next(st_pool *pool, st_share share)
 static void *run(void *context)
 {
     st_pool *pool = context;
-    prctl(PR_SET_NAME, pool->name);
+    st_thread_name_nicer(pool->name);
     pthread_mutex_lock(&pool->lock);
     while (!pool->ending || !is_empty(pool)) {
         st_share share = next_share(pool);

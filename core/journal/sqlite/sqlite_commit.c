@@ -12,9 +12,9 @@
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "system/clock.h"
+#include "system/thread_start.h"
 
 #include <stdio.h>
-#include <sys/prctl.h>
 
 enum {
     GROUP_RECORDS = 4096,
@@ -628,7 +628,7 @@ void *st_commit_thread(void *context)
 {
     st_sqlite *self = context;
     uint64_t tried = st_clock_micros();
-    prctl(PR_SET_NAME, "hedged-store");
+    st_thread_name("hedged-store");
     pthread_mutex_lock(&self->lock);
     for (;;) {
         if (has_work(self)) {
