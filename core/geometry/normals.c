@@ -121,12 +121,6 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
 
 /* --- normals of faces --- */
 
-/* The number of faces in a block. Normals are computed block by block, in three loops over the
- * faces of a block: the first loop finds the vertices of the corners and prefetches their
- * positions, the second computes the area vectors, and the third, which has no branches, the
- * lengths of these vectors. */
-enum { BLOCK = 64 };
-
 typedef struct faces {
     const he_mesh *m;
     /* True if all faces of the mesh are triangles. The third half-edge of a face is then not read,
@@ -168,18 +162,56 @@ static inline triple find_triple(const he_content *c, uint32_t f, bool triangles
     return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
 }
 
-static inline void block_triples(const he_content *c, size_t from, size_t to, bool triangles,
-                                 triple *out)
+/* Where the ids of a mesh are in no spatial order, each read of a face's links and of its corners'
+ * positions waits for memory. Each read needs the result of the one before, so the memory is
+ * prefetched in three steps, these numbers of faces ahead. */
+enum { LINKS_AHEAD = 24, CORNERS_AHEAD = 12, POSITIONS_AHEAD = 6 };
+
+static inline void prefetch_ahead(const he_content *c, size_t f, size_t to, bool triangles)
 {
-    for (size_t f = from; f < to; f++) {
-        triple t = find_triple(c, (uint32_t)f, triangles);
+    const uint32_t end = 2u * c->edges.issued;
+    if (f + LINKS_AHEAD < to) {
+        const uint32_t h = c->face_halfedge[f + LINKS_AHEAD];
+        if (h < end) {
+            __builtin_prefetch(&c->next[h]);
+            __builtin_prefetch(&c->origin[h]);
+        }
+    }
+    if (f + CORNERS_AHEAD < to) {
+        const uint32_t h = c->face_halfedge[f + CORNERS_AHEAD], i = h < end ? c->next[h] : HE_NONE;
+        if (i < end) {
+            __builtin_prefetch(&c->origin[i ^ 1u]);
+            if (!triangles) {
+                __builtin_prefetch(&c->next[i]);
+            }
+        }
+    }
+    if (f + POSITIONS_AHEAD < to) {
+        const triple t = find_triple(c, (uint32_t)(f + POSITIONS_AHEAD), triangles);
         if (t.a != HE_NONE) {
             __builtin_prefetch(&c->position[t.a]);
             __builtin_prefetch(&c->position[t.b]);
             __builtin_prefetch(&c->position[t.c]);
         }
-        out[f - from] = t;
     }
+}
+
+/* Returns true if successive faces of the range mostly have their corners far from one another in
+ * memory. Looks at a sample of the faces. */
+static bool is_scattered(const he_content *c, size_t from, size_t to)
+{
+    enum { SAMPLES = 32, FAR = 4096 };
+    const uint32_t end = 2u * c->edges.issued;
+    size_t step = (to - from) / SAMPLES, apart = 0, seen = 0;
+    for (size_t f = from; step > 0 && f + 1 < to; f += step) {
+        const uint32_t h = c->face_halfedge[f], k = c->face_halfedge[f + 1];
+        if (h < end && k < end) {
+            const uint32_t a = c->origin[h], b = c->origin[k];
+            apart += (a > b ? a - b : b - a) > FAR;
+            seen++;
+        }
+    }
+    return 2 * apart > seen;
 }
 
 static he_status one_normal(const he_mesh *m, uint32_t f, uint32_t *budget, he_vec3 *out,
@@ -197,41 +229,38 @@ static he_status one_normal(const he_mesh *m, uint32_t f, uint32_t *budget, he_v
     return HE_OK;
 }
 
-static he_status face_block(const faces *all, size_t from, size_t to, uint32_t *budget,
-                            he_error *err)
+/* Computes the normal of a triangular face. Returns false, and leaves the normal to one_normal, if
+ * the face is none or not of ordinary size. */
+static inline bool plain_normal(const he_content *c, const triple *t, he_vec3 *out)
+{
+    if (t->a == HE_NONE) {
+        return false;
+    }
+    const he_vec3 p = c->position[t->a];
+    const he_vec3 u = he_vec3_sub(c->position[t->b], p), v = he_vec3_sub(c->position[t->c], p);
+    const he_vec3 vector = he_vec3_cross(u, v);
+    const double square = he_vec3_dot(vector, vector);
+    *out = he_vec3_scale(vector, 1 / sqrt(square));
+    return is_plain(square, he_vec3_dot(u, u) * he_vec3_dot(v, v));
+}
+
+/* The loop over the faces of a range, which is compiled once for each value of `triangles` and
+ * `scattered`. */
+static inline __attribute__((always_inline)) he_status
+face_loop(const faces *all, size_t from, size_t to, bool triangles, bool scattered, he_error *err)
 {
     const he_content *c = &all->m->c;
-    triple corners[BLOCK] = {{0}};
-    double square[BLOCK] = {0};
-    if (all->triangles) {
-        block_triples(c, from, to, true, corners);
-    } else {
-        block_triples(c, from, to, false, corners);
-    }
-    for (size_t k = 0; k < to - from; k++) {
-        if (corners[k].a != HE_NONE) {
-            he_vec3 p = c->position[corners[k].a];
-            he_vec3 u = he_vec3_sub(c->position[corners[k].b], p);
-            he_vec3 v = he_vec3_sub(c->position[corners[k].c], p);
-            he_vec3 vector = he_vec3_cross(u, v);
-            double length = he_vec3_dot(vector, vector);
-            double reach = he_vec3_dot(u, u) * he_vec3_dot(v, v);
-            all->out[from + k] = vector;
-            square[k] = is_plain(length, reach) ? length : 0;
+    uint32_t budget = he_ring_budget(all->m);
+    for (size_t f = from; f < to; f++) {
+        if (scattered) {
+            prefetch_ahead(c, f, to, triangles);
         }
-    }
-    for (size_t k = 0; k < BLOCK; k++) {
-        square[k] = 1 / sqrt(square[k]);
-    }
-    for (size_t k = 0; k < to - from; k++) {
-        he_vec3 *out = &all->out[from + k];
-        if (square[k] < INFINITY) {
-            *out = he_vec3_scale(*out, square[k]);
-            continue;
-        }
-        he_status status = one_normal(all->m, (uint32_t)(from + k), budget, out, err);
-        if (status != HE_OK) {
-            return status;
+        const triple t = find_triple(c, (uint32_t)f, triangles);
+        if (!plain_normal(c, &t, &all->out[f])) {
+            he_status status = one_normal(all->m, (uint32_t)f, &budget, &all->out[f], err);
+            if (status != HE_OK) {
+                return status;
+            }
         }
     }
     return HE_OK;
@@ -240,13 +269,13 @@ static he_status face_block(const faces *all, size_t from, size_t to, uint32_t *
 static he_status face_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const faces *all = context;
-    uint32_t budget = he_ring_budget(all->m);
-    he_status status = HE_OK;
     (void)part;
-    for (size_t f = from; f < to && status == HE_OK; f += BLOCK) {
-        status = face_block(all, f, to - f < BLOCK ? to : f + BLOCK, &budget, err);
+    if (is_scattered(&all->m->c, from, to)) {
+        return all->triangles ? face_loop(all, from, to, true, true, err)
+                              : face_loop(all, from, to, false, true, err);
     }
-    return status;
+    return all->triangles ? face_loop(all, from, to, true, false, err)
+                          : face_loop(all, from, to, false, false, err);
 }
 
 he_status he_face_normals(const he_mesh *m, he_progress *progress, he_vec3 *out, he_error *err)
