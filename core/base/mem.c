@@ -37,8 +37,23 @@ static void ask_for_huge_pages(void *memory, size_t size)
     }
 }
 
+/* Rounds the size of a large block up, so that the mapping that the C library makes for it, with
+ * its header, is a whole number of huge pages. The system then puts the mapping at an address that
+ * is a multiple of a huge page. When a block grows, the system often moves its mapping; it moves
+ * whole huge pages only between such addresses, and otherwise breaks all of them up into small
+ * pages. */
+static size_t whole_huge_pages(size_t size)
+{
+    enum { HUGE_PAGE = 2 << 20 };
+    size_t room = size + 2 * HEADER + HUGE_PAGE - 1;
+    return room < size ? size : room / HUGE_PAGE * HUGE_PAGE - 2 * HEADER;
+}
+
 void *he_mem_resize(void *memory, size_t size)
 {
+    if (memory != NULL && size >= LARGE_BLOCK) {
+        size = whole_huge_pages(size);
+    }
     void *resized = hook.resize(hook.context, memory, size);
     if (size >= LARGE_BLOCK && resized != NULL) {
         ask_for_huge_pages(resized, size);
