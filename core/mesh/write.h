@@ -91,12 +91,25 @@ static inline he_record he_record_of(uint32_t column, uint32_t word, uint32_t ro
 {
     return (he_record){column & 0xFFFFFFu, word & 0xFFu, row, before, after};
 }
+/* Writes two words that lie side by side as one word of 64 bits, because the processor can hold
+ * only some sixty writes that wait for memory. All machines that hedge supports are
+ * little-endian. */
+static inline void he_write_two(void *to, uint32_t first, uint32_t second)
+{
+    const uint64_t both = (uint64_t)second << 32 | first;
+    memcpy(to, &both, sizeof both);
+}
+static inline void he_record_put(he_record *to, he_record r)
+{
+    const uint32_t words[4] = {r.column | (uint32_t)r.word << 24, r.row, r.before, r.after};
+    memcpy(to, words, sizeof words);
+}
 static inline void he_record_word(he_mesh *m, uint32_t column, uint32_t word, uint32_t row,
                                   uint32_t before, uint32_t after)
 {
     he_record *r = he_record_take(m, 1);
     if (r != NULL) {
-        *r = he_record_of(column, word, row, before, after);
+        he_record_put(r, he_record_of(column, word, row, before, after));
     }
 }
 
@@ -115,8 +128,8 @@ static inline void he_link(he_mesh *m, he_halfedge a, he_halfedge b)
 {
     he_record *r = he_record_take(m, 2);
     if (r != NULL) {
-        r[0] = he_record_of(HE_COL_NEXT, 0, a.i, m->c.next[a.i], b.i);
-        r[1] = he_record_of(HE_COL_PREV, 0, b.i, m->c.prev[b.i], a.i);
+        he_record_put(&r[0], he_record_of(HE_COL_NEXT, 0, a.i, m->c.next[a.i], b.i));
+        he_record_put(&r[1], he_record_of(HE_COL_PREV, 0, b.i, m->c.prev[b.i], a.i));
     }
     m->c.next[a.i] = b.i;
     m->c.prev[b.i] = a.i;
@@ -141,10 +154,10 @@ static inline void he_set_halfedge(he_mesh *m, he_halfedge h, he_halfedge next, 
     uint32_t before = c->face[h.i];
     he_record *r = he_record_take(m, 4);
     if (r != NULL) {
-        r[0] = he_record_of(HE_COL_NEXT, 0, h.i, c->next[h.i], next.i);
-        r[1] = he_record_of(HE_COL_PREV, 0, h.i, c->prev[h.i], prev.i);
-        r[2] = he_record_of(HE_COL_ORIGIN, 0, h.i, c->origin[h.i], origin.i);
-        r[3] = he_record_of(HE_COL_FACE, 0, h.i, before, f.i);
+        he_record_put(&r[0], he_record_of(HE_COL_NEXT, 0, h.i, c->next[h.i], next.i));
+        he_record_put(&r[1], he_record_of(HE_COL_PREV, 0, h.i, c->prev[h.i], prev.i));
+        he_record_put(&r[2], he_record_of(HE_COL_ORIGIN, 0, h.i, c->origin[h.i], origin.i));
+        he_record_put(&r[3], he_record_of(HE_COL_FACE, 0, h.i, before, f.i));
     }
     c->boundary_halfedges += (uint32_t)(f.i == HE_NONE) - (uint32_t)(before == HE_NONE);
     c->next[h.i] = next.i;

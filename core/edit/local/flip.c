@@ -1,7 +1,9 @@
 #include "edit/local/flip.h"
 
 #include "edit/local/cut.h"
+#include "edit/local/diamond.h"
 #include "mesh/marks.h"
+#include "mesh/pen.h"
 
 /* Checks that the origin of h, which loses one edge by the flip, keeps at least three edges or is
  * on the boundary. Three steps around the vertex decide whether its degree is at least 4; a walk
@@ -99,11 +101,15 @@ static void turn_end(he_mesh *m, he_halfedge h, he_halfedge side)
     he_set_origin(m, h, he_target(m, side));
 }
 
-he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err)
+/* Upper limit of the links that a flip writes. */
+enum { FLIP_LINKS = 20 };
+
+/* Flips any edge, or refuses to. */
+static __attribute__((noinline)) he_status flip_any(he_mesh *m, he_edge e, he_error *err)
 {
     he_status status = check(m, e, err);
     if (status == HE_OK) {
-        status = he_reserve(m, (he_reservation){.links = 20, .attributes = 2}, err);
+        status = he_reserve(m, (he_reservation){.links = FLIP_LINKS, .attributes = 2}, err);
     }
     if (status != HE_OK) {
         return status;
@@ -124,4 +130,108 @@ he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err)
     he_attributes_move(m, HE_HALFEDGE, h.i, from_d.i);
     he_attributes_move(m, HE_HALFEDGE, t.i, from_c.i);
     return HE_OK;
+}
+
+/* --- the common case: two triangles in a mesh without attributes --- */
+
+/* Prefetches what the flip will write but does not read before. */
+HE_PEN_INLINE void prefetch(const he_content *c, const he_diamond *q)
+{
+    __builtin_prefetch(&c->face[q->ad], 1);
+    __builtin_prefetch(&c->face[q->bc], 1);
+    __builtin_prefetch(&c->next[q->db], 1);
+    __builtin_prefetch(&c->prev[q->ad], 1);
+    __builtin_prefetch(&c->vertex_halfedge[q->a], 1);
+    __builtin_prefetch(&c->vertex_halfedge[q->b], 1);
+    __builtin_prefetch(&c->face_halfedge[q->f], 1);
+    __builtin_prefetch(&c->face_halfedge[q->g], 1);
+}
+
+/* Returns true if c has few edges and none of them leads to d. The function walks around c in both
+ * directions, beginning behind the two edges of the diamond. */
+HE_PEN_INLINE bool are_apart(const he_content *c, const he_diamond *q)
+{
+    enum { ROUNDS = 8 };
+    uint32_t up = q->bc ^ 1u, down = q->ca;
+    for (int round = 0; round < ROUNDS; round++) {
+        up = c->prev[up] ^ 1u;
+        if (up == down) {
+            return true;
+        }
+        if (c->origin[up ^ 1u] == q->d) {
+            return false;
+        }
+        down = c->next[down ^ 1u];
+        if (up == down) {
+            return true;
+        }
+        if (c->origin[down ^ 1u] == q->d) {
+            return false;
+        }
+    }
+    return false;
+}
+
+/* Returns true if the flip is certainly allowed: a and b keep at least three edges, and c and d are
+ * different vertices that no edge joins. */
+HE_PEN_INLINE bool may_flip(const he_content *c, const he_diamond *q)
+{
+    const uint32_t second_a = c->prev[q->ca ^ 1u] ^ 1u, second_b = c->prev[q->db ^ 1u] ^ 1u;
+    return !((q->c == q->d) | (second_a == q->h) | (second_a == q->ad) | (second_b == q->t) |
+             (second_b == q->bc)) &&
+           are_apart(c, q);
+}
+
+HE_PEN_INLINE void write_flip(he_pen *pen, const he_diamond *q)
+{
+    he_pen_face(pen, q->ad, q->g, q->f);
+    he_pen_face(pen, q->bc, q->f, q->g);
+    he_pen_origin(pen, q->h, q->a, q->d);
+    he_pen_origin(pen, q->t, q->b, q->c);
+    /* The loop of f becomes h, ca, ad; that of g becomes t, db, bc. */
+    he_pen_next(pen, q->h, q->bc, q->ca);
+    he_pen_prev(pen, q->h, q->ca, q->ad);
+    he_pen_next(pen, q->ca, q->h, q->ad);
+    he_pen_prev(pen, q->ca, q->bc, q->h);
+    he_pen_next(pen, q->ad, q->db, q->h);
+    he_pen_prev(pen, q->ad, q->t, q->ca);
+    he_pen_next(pen, q->t, q->ad, q->db);
+    he_pen_prev(pen, q->t, q->db, q->bc);
+    he_pen_next(pen, q->db, q->t, q->bc);
+    he_pen_prev(pen, q->db, q->ad, q->t);
+    he_pen_next(pen, q->bc, q->ca, q->t);
+    he_pen_prev(pen, q->bc, q->h, q->db);
+    he_pen_vertex_exchange(pen, q->a, q->h, q->ad);
+    he_pen_vertex_exchange(pen, q->b, q->t, q->bc);
+    he_pen_face_exchange(pen, q->f, q->bc, q->bc, q->h);
+    he_pen_face_exchange(pen, q->g, q->ad, q->ad, q->t);
+}
+
+/* Flips edge e, in the common case by straight code. `recording` says whether a delta records. The
+ * function is compiled once for each value of `recording`. */
+HE_PEN_INLINE he_status flip(he_mesh *m, he_edge e, bool recording, he_error *err)
+{
+    he_diamond q;
+    if (m->c.column_count > 0 || !he_diamond_read(m, e, &q) ||
+        (recording && m->delta->capacity - m->delta->count < FLIP_LINKS)) {
+        return flip_any(m, e, err);
+    }
+    prefetch(&m->c, &q);
+    if (!may_flip(&m->c, &q)) {
+        return flip_any(m, e, err);
+    }
+    he_pen pen = he_pen_begin(m, recording);
+    write_flip(&pen, &q);
+    he_pen_end(&pen, m);
+    return HE_OK;
+}
+
+static __attribute__((noinline)) he_status flip_recorded(he_mesh *m, he_edge e, he_error *err)
+{
+    return flip(m, e, true, err);
+}
+
+he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err)
+{
+    return m->delta != NULL ? flip_recorded(m, e, err) : flip(m, e, false, err);
 }
