@@ -155,4 +155,64 @@ HE_PEN_INLINE void he_pen_parent(he_pen *pen, he_kind kind, uint32_t child, uint
     he_pen_note(pen, he_record_of(HE_COL_PARENT, (uint32_t)kind, child, parent, 0));
 }
 
+/* Makes the links of both half-edges of an edge HE_DEAD, which deletes the edge. `was` has their
+ * present links. */
+HE_PEN_INLINE void he_pen_delete_edge(he_pen *pen, uint32_t e, const he_halfedge_links was[2])
+{
+    const uint32_t h = 2 * e;
+    for (uint32_t side = 0; side < 2; side++) {
+        const he_halfedge_links *now = &was[side];
+        he_pen_note(pen, he_record_of(HE_COL_NEXT, 0, h + side, now->next, HE_DEAD));
+        he_pen_note(pen, he_record_of(HE_COL_PREV, 0, h + side, now->prev, HE_DEAD));
+        he_pen_note(pen, he_record_of(HE_COL_ORIGIN, 0, h + side, now->origin, HE_DEAD));
+        he_pen_note(pen, he_record_of(HE_COL_FACE, 0, h + side, now->face, HE_DEAD));
+    }
+    he_write_two(&pen->content->next[h], HE_DEAD, HE_DEAD);
+    he_write_two(&pen->content->prev[h], HE_DEAD, HE_DEAD);
+    he_write_two(&pen->content->origin[h], HE_DEAD, HE_DEAD);
+    he_write_two(&pen->content->face[h], HE_DEAD, HE_DEAD);
+    pen->content->edges.live--;
+}
+/* Deletes a face. */
+HE_PEN_INLINE void he_pen_delete_face(he_pen *pen, uint32_t f)
+{
+    uint32_t *link = &pen->content->face_halfedge[f];
+    if (pen->record != NULL) {
+        he_pen_note(pen, he_record_of(HE_COL_FACE_HALFEDGE, 0, f, *link, HE_DEAD));
+    }
+    *link = HE_DEAD;
+    pen->content->faces.live--;
+}
+/* Moves a vertex. */
+HE_PEN_INLINE void he_pen_position(he_pen *pen, uint32_t v, he_vec3 position)
+{
+    he_vec3 *at = &pen->content->position[v];
+    if (pen->record != NULL) {
+        uint32_t before[HE_POSITION_RECORDS], after[HE_POSITION_RECORDS];
+        memcpy(before, at, sizeof before);
+        memcpy(after, &position, sizeof after);
+        for (uint32_t i = 0; i < HE_POSITION_RECORDS; i++) {
+            he_record_put(pen->record, he_record_of(HE_COL_POSITION, i, v, before[i], after[i]));
+            pen->record += before[i] != after[i];
+        }
+    }
+    *at = position;
+}
+/* Deletes a vertex. */
+HE_PEN_INLINE void he_pen_delete_vertex(he_pen *pen, uint32_t v)
+{
+    uint32_t *link = &pen->content->vertex_halfedge[v];
+    if (pen->record != NULL) {
+        he_pen_note(pen, he_record_of(HE_COL_VERTEX_HALFEDGE, 0, v, *link, HE_DEAD));
+    }
+    *link = HE_DEAD;
+    he_pen_position(pen, v, (he_vec3){0, 0, 0});
+    pen->content->vertices.live--;
+}
+/* Records that element `gone` was merged into element `into`. */
+HE_PEN_INLINE void he_pen_merged(he_pen *pen, he_kind kind, uint32_t gone, uint32_t into)
+{
+    he_pen_note(pen, he_record_of(HE_COL_MERGED, (uint32_t)kind, gone, into, 0));
+}
+
 #endif

@@ -1,9 +1,11 @@
 #include "edit/local/collapse.h"
 
 #include "edit/local/cut.h"
+#include "edit/local/diamond.h"
 #include "edit/piece/point.h"
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
+#include "mesh/pen.h"
 
 static he_status refuse(he_error *err, he_halfedge h, const char *rule, const char *kind,
                         uint32_t id)
@@ -357,8 +359,9 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     }
 }
 
-static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to, double mix,
-                          he_error *err)
+/* Collapses any edge, or refuses to. */
+static __attribute__((noinline)) he_status
+collapse_any(he_mesh *m, he_halfedge h, double t, const he_vec3 *to, double mix, he_error *err)
 {
     he_status status = check(m, h, err);
     if (status != HE_OK) {
@@ -388,6 +391,147 @@ static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to
     /* Nothing below can fail. */
     commit(m, h, place, mix);
     return HE_OK;
+}
+
+/* --- the common case: triangles inside a mesh without attributes --- */
+
+/* The most links that write_collapse writes in elements that stay, beside the origins of the edges
+ * that move to the target. */
+enum { COLLAPSE_LINKS = 16 };
+
+/* Prefetches what write_collapse reads or writes and may_collapse does not read before. */
+HE_PEN_INLINE void prefetch(const he_content *c, const he_diamond *q)
+{
+    __builtin_prefetch(&c->position[q->a], 1);
+    __builtin_prefetch(&c->position[q->b], 1);
+    __builtin_prefetch(&c->face[q->ca], 1);
+    __builtin_prefetch(&c->face[q->bc], 1);
+    __builtin_prefetch(&c->face[q->ad], 1);
+    __builtin_prefetch(&c->face[q->db], 1);
+    __builtin_prefetch(&c->face_halfedge[q->f], 1);
+    __builtin_prefetch(&c->face_halfedge[q->g], 1);
+    __builtin_prefetch(&c->vertex_halfedge[q->c], 1);
+    __builtin_prefetch(&c->vertex_halfedge[q->d], 1);
+}
+
+/* Gathers the half-edges around both ends of h. Returns true if the collapse is certainly allowed:
+ * both ends are inside the mesh and have few edges, the origin has at least four and only triangles
+ * around it, and the ends have no common neighbour but the opposite corners of the two triangles
+ * beside the edge. */
+HE_PEN_INLINE bool may_collapse(const he_mesh *m, const he_diamond *q, ring *of_u, ring *of_v)
+{
+    const he_content *c = &m->c;
+    if (c->face[c->vertex_halfedge[q->a]] == HE_NONE ||
+        c->face[c->vertex_halfedge[q->b]] == HE_NONE ||
+        !gather(m, (he_halfedge){q->h}, of_u, of_v) || of_u->count < 4) {
+        return false;
+    }
+    for (uint32_t i = 1; i + 1 < of_u->count; i++) {
+        const uint32_t k = of_u->out[i], side = of_u->out[i + 1] ^ 1u;
+        if (c->prev[side] != c->next[k] || (i > 1 && is_in(of_v, of_u->target[i]))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Puts half-edge `kept` in place of `outer` into the loop of the triangle to the left of `outer`.
+ */
+HE_PEN_INLINE void replace_side(he_pen *pen, uint32_t kept, he_halfedge_links was, uint32_t outer,
+                                he_halfedge_links to)
+{
+    he_pen_next(pen, kept, was.next, to.next);
+    he_pen_prev(pen, kept, was.prev, to.prev);
+    he_pen_face(pen, kept, was.face, to.face);
+    he_pen_prev(pen, to.next, outer, kept);
+    he_pen_next(pen, to.prev, outer, kept);
+    he_pen_face_exchange(pen, to.face, outer, outer, kept);
+}
+
+/* Writes what commit() writes. In the names of a diamond, a is the vertex that is deleted: its
+ * edges `h`, `ca` and `ad` are deleted, `bc` and `db` stay. */
+HE_PEN_INLINE void write_collapse(he_pen *pen, const he_diamond *q, const ring *of_a, he_vec3 place)
+{
+    he_content *c = pen->content;
+    const uint32_t ac = q->ca ^ 1u, da = q->ad ^ 1u;
+    const he_halfedge_links beyond_c = {c->next[ac], c->prev[ac], q->a, c->face[ac]};
+    const he_halfedge_links beyond_d = {c->next[da], c->prev[da], q->d, c->face[da]};
+    const he_halfedge_links h = {q->bc, q->ca, q->a, q->f}, t = {q->ad, q->db, q->b, q->g};
+    const he_halfedge_links ca = {q->h, q->bc, q->c, q->f}, ad = {q->db, q->t, q->a, q->g};
+    for (uint32_t i = 2; i + 1 < of_a->count; i++) {
+        he_pen_origin(pen, of_a->out[i], q->a, q->b);
+    }
+    replace_side(pen, q->bc, (he_halfedge_links){q->ca, q->h, q->b, q->f}, ac, beyond_c);
+    replace_side(pen, q->db, (he_halfedge_links){q->t, q->ad, q->d, q->g}, da, beyond_d);
+    he_pen_vertex_exchange(pen, q->c, q->ca, q->bc ^ 1u);
+    he_pen_vertex_exchange(pen, q->d, da, q->db);
+    he_pen_vertex_exchange(pen, q->b, q->t, q->bc);
+    const bool left = (q->h & 1u) == 0;
+    he_pen_delete_edge(pen, q->h >> 1, (const he_halfedge_links[2]){left ? h : t, left ? t : h});
+    const bool first = (q->ca & 1u) == 0;
+    he_pen_delete_edge(pen, q->ca >> 1,
+                       (const he_halfedge_links[2]){first ? ca : beyond_c, first ? beyond_c : ca});
+    const bool second = (q->ad & 1u) == 0;
+    he_pen_delete_edge(
+        pen, q->ad >> 1,
+        (const he_halfedge_links[2]){second ? ad : beyond_d, second ? beyond_d : ad});
+    he_pen_delete_face(pen, q->f);
+    he_pen_delete_face(pen, q->g);
+    he_pen_position(pen, q->b, place);
+    he_pen_delete_vertex(pen, q->a);
+    he_pen_merged(pen, HE_EDGE, q->ca >> 1, q->bc >> 1);
+    he_pen_merged(pen, HE_EDGE, q->ad >> 1, q->db >> 1);
+    he_pen_merged(pen, HE_VERTEX, q->a, q->b);
+}
+
+/* Collapses the edge of half-edge h in the common case. Returns false, and does nothing, in any
+ * other case. `recording` says whether a delta records. The function is compiled once for each
+ * value of `recording`. */
+HE_PEN_INLINE bool collapse_common(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
+                                   bool recording)
+{
+    he_diamond q;
+    ring of_u, of_v;
+    static const he_reservation need = {.deleted_vertices = 1,
+                                        .deleted_edges = 3,
+                                        .deleted_faces = 2,
+                                        .links = SMALL_RING + COLLAPSE_LINKS,
+                                        .positions = 1,
+                                        .lineage = 3};
+    if (!he_has_room(m, &need) || !(t >= 0 && t <= 1) || (to != NULL && !he_point_is_finite(*to)) ||
+        !he_diamond_read_from(m, h, &q)) {
+        return false;
+    }
+    prefetch(&m->c, &q);
+    if (!may_collapse(m, &q, &of_u, &of_v)) {
+        return false;
+    }
+    he_vec3 place = to != NULL ? *to : he_point_between(m->c.position[q.a], m->c.position[q.b], t);
+    he_pen pen = he_pen_begin(m, recording);
+    write_collapse(&pen, &q, &of_u, place);
+    he_pen_end(&pen, m);
+    return true;
+}
+
+static __attribute__((noinline)) bool collapse_unrecorded(he_mesh *m, he_halfedge h, double t,
+                                                          const he_vec3 *to)
+{
+    return collapse_common(m, h, t, to, false);
+}
+
+static __attribute__((noinline)) bool collapse_recorded(he_mesh *m, he_halfedge h, double t,
+                                                        const he_vec3 *to)
+{
+    return collapse_common(m, h, t, to, true);
+}
+
+static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to, double mix,
+                          he_error *err)
+{
+    if (m->delta == NULL ? collapse_unrecorded(m, h, t, to) : collapse_recorded(m, h, t, to)) {
+        return HE_OK;
+    }
+    return collapse_any(m, h, t, to, mix, err);
 }
 
 he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
