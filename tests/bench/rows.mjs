@@ -78,7 +78,7 @@ const waits = (deep, lines, work) => {
         'begins of the next edit meanwhile'
     );
 };
-const whys = { split: waits(2, 26, 115), flip: waits(4, 40, 53), collapse: waits(4, 70, 141) };
+const whys = { split: waits(2, 26, 50), flip: waits(4, 40, 33), collapse: waits(4, 70, 71) };
 
 // From some point on, CGAL collapses other edges than our kernel does: cgal_edits.cc says why.
 const edit = (title, ours, target, theirs = ours) => ({
