@@ -164,7 +164,9 @@ static he_status solve(he_patch *p, domain *d, unsigned k, he_error *err)
     }
     he_laplacian_clear(&l);
     if (status == HE_OK) {
-        status = he_harmonic_solve(system, d->values, 3, NULL, err);
+        /* A second pass would only make up for the roundings of the first one: what the equations
+         * make of the roundings in the positions of the rim is as large. */
+        status = he_harmonic_solve(system, d->values, 3, true, NULL, err);
     }
     he_harmonic_free(system);
     for (uint32_t v = p->rim; v < p->vertices && status == HE_OK; v++) {

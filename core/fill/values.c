@@ -64,7 +64,7 @@ static he_status interpolate(const he_patch *p, const he_column *column, const h
             values[v] = v < p->rim ? he_column_number(column, corner_id(p, v), k) : 0;
         }
         he_error why = {.status = HE_OK};
-        status = he_harmonic_solve(system, values, 1, NULL, &why);
+        status = he_harmonic_solve(system, values, 1, false, NULL, &why);
         const bool solved = status == HE_OK; /* else this component is that of a near corner */
         status = he_patch_must_stop(status, &why, err) ? status : HE_OK;
         for (uint32_t v = p->rim; v < p->vertices && solved; v++) {

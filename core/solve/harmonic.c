@@ -1,7 +1,8 @@
 #include "solve/harmonic.h"
 
 struct he_harmonic {
-    he_sparse whole;   /* the operator of order k over all vertices */
+    he_sparse whole;   /* the operator of order k over all vertices; only columns of free vertices
+                          are needed, and these are not sorted */
     he_sparse part;    /* its rows and columns of free vertices */
     uint32_t *numbers; /* the row of a vertex in `part`; UINT32_MAX: the vertex is fixed */
     uint32_t free;     /* number of free vertices */
@@ -31,9 +32,9 @@ size_t he_harmonic_bytes(const he_harmonic *h)
            h->whole.n * sizeof *h->numbers;
 }
 
-/* Makes L, L (1/m) L, or L (1/m) L (1/m) L. */
-static he_status make_power(const he_laplacian *l, unsigned k, he_sparse *out,
-                            he_progress *progress, he_error *err)
+/* Makes the columns of free vertices of L, L (1/m) L, or L (1/m) L (1/m) L. */
+static he_status make_power(const he_laplacian *l, unsigned k, const uint64_t *fixed,
+                            he_sparse *out, he_progress *progress, he_error *err)
 {
     const he_sparse *base = &l->matrix;
     double *inverse = he_mem_array(NULL, (size_t)base->n + 1, sizeof *inverse);
@@ -49,11 +50,13 @@ static he_status make_power(const he_laplacian *l, unsigned k, he_sparse *out,
     if (status == HE_OK && k == 1) {
         status = he_sparse_copy(base, &power, err);
     } else if (status == HE_OK) {
-        status = he_sparse_product(base, inverse, base, &power, progress, err);
+        const he_product square = {base, base, inverse, fixed};
+        status = he_sparse_columns(&square, &power, progress, err);
     }
     if (status == HE_OK && k == 3) {
+        const he_product product = {base, &power, inverse, fixed};
         he_sparse cube;
-        status = he_sparse_product(base, inverse, &power, &cube, progress, err);
+        status = he_sparse_columns(&product, &cube, progress, err);
         he_sparse_clear(&power);
         power = status == HE_OK ? cube : power;
     }
@@ -129,7 +132,7 @@ he_status he_harmonic_make(const he_laplacian *l, unsigned k, const uint64_t *fi
     }
     he_status status = check_components(&l->matrix, fixed, err);
     if (status == HE_OK) {
-        status = make_power(l, k, &h->whole, progress, err);
+        status = make_power(l, k, fixed, &h->whole, progress, err);
     }
     if (status == HE_OK) {
         status = number_free(h, fixed, err);
@@ -165,8 +168,8 @@ static void move_fixed(const he_harmonic *h, const double *values, double *right
     }
 }
 
-he_status he_harmonic_solve(const he_harmonic *h, double *values, uint32_t sides, double *residual,
-                            he_error *err)
+he_status he_harmonic_solve(const he_harmonic *h, double *values, uint32_t sides, bool once,
+                            double *residual, he_error *err)
 {
     const size_t n = h->whole.n;
     double *right = he_mem_array(NULL, (size_t)h->free * sides + 1, sizeof *right);
@@ -177,7 +180,7 @@ he_status he_harmonic_solve(const he_harmonic *h, double *values, uint32_t sides
         move_fixed(h, values + side * n, right + (size_t)side * h->free);
     }
     he_status status = he_factor_solve(h->factor, &h->part,
-                                       (he_right_sides){right, right, sides, false}, residual, err);
+                                       (he_right_sides){right, right, sides, once}, residual, err);
     for (uint32_t side = 0; side < sides && status == HE_OK; side++) {
         for (uint32_t v = 0; v < n; v++) {
             if (h->numbers[v] != UINT32_MAX) {

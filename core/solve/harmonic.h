@@ -24,11 +24,11 @@ void he_harmonic_free(he_harmonic *h);
 size_t he_harmonic_bytes(const he_harmonic *h);
 
 /* Replaces the values of the free vertices. `values` has `sides` functions of one number for each
- * vertex, function after function; the fixed ones are read. If `residual` is not NULL, it receives
- * that of he_factor_solve.
+ * vertex, function after function; the fixed ones are read. `once` and `residual` are those of
+ * he_factor_solve.
  * Returns HE_NOT_FINITE if a value is not finite, or HE_NO_MEMORY; the values of free vertices then
  * have no meaning. */
 HE_NODISCARD he_status he_harmonic_solve(const he_harmonic *h, double *values, uint32_t sides,
-                                         double *residual, he_error *err);
+                                         bool once, double *residual, he_error *err);
 
 #endif

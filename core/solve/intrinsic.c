@@ -16,6 +16,7 @@ void he_intrinsic_clear(he_intrinsic *t)
     he_mem_free(t->corners);
     he_mem_free(t->twins);
     he_mem_free(t->lengths);
+    he_mem_free(t->cotangents);
     *t = (he_intrinsic){0};
 }
 
@@ -121,20 +122,22 @@ static he_status find_twins(he_intrinsic *t, uint32_t vertices, he_error *err)
 
 /* --- lengths --- */
 
+static double distance(he_vec3 p, he_vec3 q)
+{
+    static const double LEAST = 0x1p-500, MOST = 0x1p500; /* their squares are normal numbers */
+    const double x = q.x - p.x, y = q.y - p.y, z = q.z - p.z;
+    const double length = sqrt(x * x + y * y + z * z);
+    return length > LEAST && length < MOST ? length : hypot(hypot(x, y), z);
+}
+
 static he_status measure(he_intrinsic *t, const he_surface *surface, he_error *err)
 {
     const uint32_t sides = 3 * t->triangles;
     double sum = 0;
     for (uint32_t s = 0; s < sides; s++) {
-        /* Both sides of an edge are measured in the same direction, to get the same bits. */
-        uint32_t a = t->corners[s], b = t->corners[next_of(s)];
-        if (a > b) {
-            const uint32_t swap = a;
-            a = b;
-            b = swap;
-        }
-        const he_vec3 p = surface->points[a], q = surface->points[b];
-        t->lengths[s] = hypot(hypot(q.x - p.x, q.y - p.y), q.z - p.z);
+        const uint32_t a = t->corners[s], b = t->corners[next_of(s)];
+        t->lengths[s] = t->twins[s] < s ? t->lengths[t->twins[s]]
+                                        : distance(surface->points[a], surface->points[b]);
         if (!isfinite(t->lengths[s])) {
             return he_fail(err, HE_NOT_FINITE, HE_VERTEX, a,
                            "the distance of the vertices %u and %u is too large for a number", a,
@@ -163,43 +166,6 @@ static void lengthen(he_intrinsic *t)
     for (uint32_t s = 0; s < sides && missing > 0; s++) {
         t->lengths[s] += missing;
     }
-}
-
-he_status he_intrinsic_make(const he_surface *surface, he_intrinsic *out, he_error *err)
-{
-    const size_t sides = 3 * (size_t)surface->triangles;
-    if (sides > 1 << 30) {
-        return he_fail_plain(err, HE_LIMIT, "a surface of %u triangles is too large",
-                             surface->triangles);
-    }
-    for (size_t s = 0; s < sides; s++) {
-        if (surface->corners[s] >= surface->vertices) {
-            return he_fail_plain(err, HE_BAD_INDEX, "corner %zu is not one of the %u vertices", s,
-                                 surface->vertices);
-        }
-    }
-    he_intrinsic t = {.triangles = surface->triangles,
-                      .corners = he_mem_array(NULL, sides + 1, sizeof *t.corners),
-                      .twins = he_mem_array(NULL, sides + 1, sizeof *t.twins),
-                      .lengths = he_mem_array(NULL, sides + 1, sizeof *t.lengths)};
-    he_status status = HE_OK;
-    if (t.corners == NULL || t.twins == NULL || t.lengths == NULL) {
-        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a surface of %u triangles",
-                               surface->triangles);
-    } else {
-        memcpy(t.corners, surface->corners, sides * sizeof *t.corners);
-        status = find_twins(&t, surface->vertices, err);
-    }
-    if (status == HE_OK) {
-        status = measure(&t, surface, err);
-    }
-    if (status != HE_OK) {
-        he_intrinsic_clear(&t);
-        return status;
-    }
-    lengthen(&t);
-    *out = t;
-    return HE_OK;
 }
 
 /* --- angles --- */
@@ -231,11 +197,59 @@ double he_intrinsic_area(const he_intrinsic *t, uint32_t triangle)
     return four_areas(l[0], l[1], l[2]) / 4;
 }
 
-double he_intrinsic_cotangent(const he_intrinsic *t, uint32_t side)
+/* Computes the cotangents of the angles of a triangle. */
+static void find_cotangents(he_intrinsic *t, uint32_t triangle)
 {
-    const double a = t->lengths[side], b = t->lengths[next_of(side)], c = t->lengths[prev_of(side)];
+    const double *l = t->lengths + 3 * (size_t)triangle;
+    double *out = t->cotangents + 3 * (size_t)triangle;
+    const double area = four_areas(l[0], l[1], l[2]);
     /* (b^2 + c^2 - a^2) / (4 A), without the loss of digits in a difference of squares */
-    return ((b - a) * (b + a) + c * c) / four_areas(a, b, c);
+    out[0] = ((l[1] - l[0]) * (l[1] + l[0]) + l[2] * l[2]) / area;
+    out[1] = ((l[2] - l[1]) * (l[2] + l[1]) + l[0] * l[0]) / area;
+    out[2] = ((l[0] - l[2]) * (l[0] + l[2]) + l[1] * l[1]) / area;
+}
+
+/* --- the triangulation --- */
+
+he_status he_intrinsic_make(const he_surface *surface, he_intrinsic *out, he_error *err)
+{
+    const size_t sides = 3 * (size_t)surface->triangles;
+    if (sides > 1 << 30) {
+        return he_fail_plain(err, HE_LIMIT, "a surface of %u triangles is too large",
+                             surface->triangles);
+    }
+    for (size_t s = 0; s < sides; s++) {
+        if (surface->corners[s] >= surface->vertices) {
+            return he_fail_plain(err, HE_BAD_INDEX, "corner %zu is not one of the %u vertices", s,
+                                 surface->vertices);
+        }
+    }
+    he_intrinsic t = {.triangles = surface->triangles,
+                      .corners = he_mem_array(NULL, sides + 1, sizeof *t.corners),
+                      .twins = he_mem_array(NULL, sides + 1, sizeof *t.twins),
+                      .lengths = he_mem_array(NULL, sides + 1, sizeof *t.lengths),
+                      .cotangents = he_mem_array(NULL, sides + 1, sizeof *t.cotangents)};
+    he_status status = HE_OK;
+    if (t.corners == NULL || t.twins == NULL || t.lengths == NULL || t.cotangents == NULL) {
+        status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a surface of %u triangles",
+                               surface->triangles);
+    } else {
+        memcpy(t.corners, surface->corners, sides * sizeof *t.corners);
+        status = find_twins(&t, surface->vertices, err);
+    }
+    if (status == HE_OK) {
+        status = measure(&t, surface, err);
+    }
+    if (status != HE_OK) {
+        he_intrinsic_clear(&t);
+        return status;
+    }
+    lengthen(&t);
+    for (uint32_t i = 0; i < t.triangles; i++) {
+        find_cotangents(&t, i);
+    }
+    *out = t;
+    return HE_OK;
 }
 
 /* --- flips --- */
@@ -264,7 +278,7 @@ static bool may_flip(const he_intrinsic *t, uint32_t side)
 {
     const uint32_t twin = t->twins[side];
     return twin != UINT32_MAX && side / 3 != twin / 3 &&
-           he_intrinsic_cotangent(t, side) + he_intrinsic_cotangent(t, twin) < NOT_DELAUNAY;
+           t->cotangents[side] + t->cotangents[twin] < NOT_DELAUNAY;
 }
 
 /* Returns the length of the other diagonal of the two triangles at a side; 0 if they are too thin
@@ -335,6 +349,8 @@ static void flip(he_intrinsic *t, uint32_t s, double length)
              : twin == jk ? sides[3]
                           : twin);
     }
+    find_cotangents(t, s / 3);
+    find_cotangents(t, r / 3);
     t->flips++;
 }
 
@@ -350,7 +366,9 @@ he_status he_intrinsic_flip(he_intrinsic *t, he_progress *progress, he_error *er
                                t->triangles);
     }
     for (uint32_t s = 0; s < sides && status == HE_OK; s++) {
-        push(t, &work, s);
+        if (may_flip(t, s)) {
+            push(t, &work, s);
+        }
     }
     for (uint64_t steps = 0; work.count > 0 && status == HE_OK && t->flips < most; steps++) {
         const uint32_t s = work.sides[--work.count];

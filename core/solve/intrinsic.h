@@ -18,10 +18,11 @@
 
 typedef struct he_intrinsic {
     uint32_t triangles;
-    uint32_t *corners; /* a vertex for each side: the one where it begins */
-    uint32_t *twins;   /* the side of the other triangle at the same edge; UINT32_MAX: none */
-    double *lengths;   /* of each side, in units of `unit` */
-    double unit;       /* the mean length of the sides of the surface; 1 if that is 0 */
+    uint32_t *corners;  /* a vertex for each side: the one where it begins */
+    uint32_t *twins;    /* the side of the other triangle at the same edge; UINT32_MAX: none */
+    double *lengths;    /* of each side, in units of `unit` */
+    double *cotangents; /* of the angle opposite to each side */
+    double unit;        /* the mean length of the sides of the surface; 1 if that is 0 */
     uint64_t flips;
 } he_intrinsic;
 
@@ -49,7 +50,5 @@ HE_NODISCARD he_status he_intrinsic_flip(he_intrinsic *t, he_progress *progress,
 
 /* Returns the area of a triangle, in the square of `unit`. */
 double he_intrinsic_area(const he_intrinsic *t, uint32_t triangle);
-/* Returns the cotangent of the angle opposite to a side. */
-double he_intrinsic_cotangent(const he_intrinsic *t, uint32_t side);
 
 #endif

@@ -9,31 +9,28 @@ void he_laplacian_clear(he_laplacian *l)
     *l = (he_laplacian){0};
 }
 
-/* Writes the entries of an edge, which its two ends share. */
-static void put_edge(he_entry *entries, size_t *count, uint32_t a, uint32_t b, double weight)
+/* Adds the weight of each edge to the diagonal, and writes its entry. Returns how many there are.
+ */
+static size_t put_edges(const he_intrinsic *t, double *diagonal, he_entry *entries)
 {
-    if (a != b) {
-        entries[(*count)++] = (he_entry){a, a, weight};
-        entries[(*count)++] = (he_entry){b, b, weight};
-        entries[(*count)++] = (he_entry){a, b, -weight};
-    }
-}
-
-static void put_sides(const he_intrinsic *t, he_entry *entries, size_t *count)
-{
+    size_t count = 0;
     for (uint32_t s = 0; s < 3 * t->triangles; s++) {
         const uint32_t twin = t->twins[s], next = s % 3 == 2 ? s - 2 : s + 1;
-        if (twin != UINT32_MAX && twin < s) {
-            continue; /* the edge was written for its other side */
+        const uint32_t a = t->corners[s], b = t->corners[next];
+        if (a == b || (twin != UINT32_MAX && twin < s)) {
+            continue; /* a loop, or the edge was written for its other side */
         }
-        double weight = he_intrinsic_cotangent(t, s) / 2;
+        double weight = t->cotangents[s] / 2;
         if (twin != UINT32_MAX) {
             /* Less than 0 is a rounding error here, which beside masses of almost 0 would leave a
              * matrix that is not positive definite. */
-            weight = fmax(weight + he_intrinsic_cotangent(t, twin) / 2, 0);
+            weight = fmax(weight + t->cotangents[twin] / 2, 0);
         }
-        put_edge(entries, count, t->corners[s], t->corners[next], weight);
+        diagonal[a] += weight;
+        diagonal[b] += weight;
+        entries[count++] = (he_entry){a, b, -weight};
     }
+    return count;
 }
 
 static void put_masses(const he_intrinsic *t, double *masses)
@@ -61,26 +58,27 @@ static he_status check_masses(const double *masses, uint32_t vertices, he_error 
 static he_status assemble(const he_surface *surface, const he_intrinsic *t, he_laplacian *out,
                           he_error *err)
 {
-    const size_t room = 9 * (size_t)t->triangles + surface->vertices + 1;
-    he_entry *entries = he_mem_array(NULL, room, sizeof *entries);
-    double *masses = he_mem_zero((size_t)surface->vertices + 1, sizeof *masses);
-    size_t count = 0;
+    const size_t rows = surface->vertices;
+    he_entry *entries = he_mem_array(NULL, rows + 3 * (size_t)t->triangles + 1, sizeof *entries);
+    double *masses = he_mem_zero(rows + 1, sizeof *masses);
+    double *diagonal = he_mem_zero(rows + 1, sizeof *diagonal);
     he_status status = HE_OK;
-    if (entries == NULL || masses == NULL) {
+    if (entries == NULL || masses == NULL || diagonal == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the Laplacian of %u vertices",
                                surface->vertices);
     } else {
+        const size_t count = rows + put_edges(t, diagonal, entries + rows);
         for (uint32_t v = 0; v < surface->vertices; v++) {
-            entries[count++] = (he_entry){v, v, 0};
+            entries[v] = (he_entry){v, v, diagonal[v]};
         }
-        put_sides(t, entries, &count);
         put_masses(t, masses);
         status = check_masses(masses, surface->vertices, err);
-    }
-    if (status == HE_OK) {
-        status = he_sparse_make(surface->vertices, entries, count, &out->matrix, err);
+        if (status == HE_OK) {
+            status = he_sparse_make(surface->vertices, entries, count, &out->matrix, err);
+        }
     }
     he_mem_free(entries);
+    he_mem_free(diagonal);
     if (status != HE_OK) {
         he_mem_free(masses);
         return status;

@@ -253,30 +253,48 @@ static he_status take_column(he_sparse *m, size_t *capacity, uint32_t j, const c
     return HE_OK;
 }
 
-he_status he_sparse_product(const he_sparse *a, const double *d, const he_sparse *b, he_sparse *out,
-                            he_progress *progress, he_error *err)
+he_status he_sparse_columns(const he_product *product, he_sparse *out, he_progress *progress,
+                            he_error *err)
 {
+    const he_sparse *a = product->a, *b = product->b;
     size_t capacity = 4 * a->starts[a->n];
-    he_sparse unsorted = {0}, sorted;
+    he_sparse m = {0};
     column c;
     if (!make_column(a->n, &c)) {
         clear_column(&c);
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a product of matrices");
     }
     capacity = capacity < HE_SPARSE_ENTRIES ? capacity : HE_SPARSE_ENTRIES;
-    he_status status = allocate(a->n, capacity, &unsorted, err);
+    he_status status = allocate(a->n, capacity, &m, err);
     for (uint32_t j = 0; j < a->n && status == HE_OK; j++) {
         status = he_progress_at(progress, j, a->n, err);
-        if (status == HE_OK) {
-            multiply_column(a, d, b, j, &c);
-            status = take_column(&unsorted, &capacity, j, &c, err);
+        if (status == HE_OK && product->skipped != NULL && he_bits_get(product->skipped, j)) {
+            m.starts[j + 1] = m.starts[j];
+        } else if (status == HE_OK) {
+            multiply_column(a, product->d, b, j, &c);
+            status = take_column(&m, &capacity, j, &c, err);
         }
     }
     clear_column(&c);
     if (status == HE_OK) {
-        /* The product is symmetric, so its transpose is the product with sorted columns. */
-        status = transpose(&unsorted, &sorted, err);
+        *out = m;
+    } else {
+        he_sparse_clear(&m);
     }
+    return status;
+}
+
+he_status he_sparse_product(const he_sparse *a, const double *d, const he_sparse *b, he_sparse *out,
+                            he_progress *progress, he_error *err)
+{
+    const he_product product = {.a = a, .d = d, .b = b};
+    he_sparse unsorted, sorted;
+    he_status status = he_sparse_columns(&product, &unsorted, progress, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    /* The product is symmetric, so its transpose is the product with sorted columns. */
+    status = transpose(&unsorted, &sorted, err);
     he_sparse_clear(&unsorted);
     if (status == HE_OK) {
         *out = sorted;
@@ -286,33 +304,40 @@ he_status he_sparse_product(const he_sparse *a, const double *d, const he_sparse
 
 /* --- parts --- */
 
+/* Counts the entries that the columns of a part will have, and returns their sum. */
+static size_t count_part(const he_sparse *a, const uint32_t *numbers, size_t *counts)
+{
+    size_t sum = 0;
+    for (uint32_t j = 0; j < a->n; j++) {
+        size_t count = 0;
+        for (size_t i = a->starts[j]; i < a->starts[j + 1] && numbers[j] != UINT32_MAX; i++) {
+            count += numbers[a->rows[i]] != UINT32_MAX;
+        }
+        if (numbers[j] != UINT32_MAX && counts != NULL) {
+            counts[numbers[j]] = count;
+        }
+        sum += count;
+    }
+    return sum;
+}
+
 he_status he_sparse_part(const he_sparse *a, const uint32_t *numbers, uint32_t n, he_sparse *out,
                          he_error *err)
 {
     he_sparse unsorted, sorted;
-    size_t entries = 0;
-    for (uint32_t j = 0; j < a->n; j++) {
-        for (size_t i = a->starts[j]; i < a->starts[j + 1] && numbers[j] != UINT32_MAX; i++) {
-            entries += numbers[a->rows[i]] != UINT32_MAX;
-        }
-    }
-    he_status status = allocate(n, entries, &unsorted, err);
+    he_status status = allocate(n, count_part(a, numbers, NULL), &unsorted, err);
     if (status != HE_OK) {
         return status;
     }
-    for (int pass = 0; pass < 2; pass++) {
-        for (uint32_t j = 0; j < a->n; j++) {
-            for (size_t i = a->starts[j]; i < a->starts[j + 1] && numbers[j] != UINT32_MAX; i++) {
-                const uint32_t row = numbers[a->rows[i]];
-                if (row != UINT32_MAX && pass == 0) {
-                    unsorted.starts[numbers[j] + 1]++;
-                } else if (row != UINT32_MAX) {
-                    append(&unsorted, numbers[j], row, a->values[i]);
-                }
+    (void)count_part(a, numbers, unsorted.starts + 1);
+    begin_columns(&unsorted);
+    for (uint32_t j = 0; j < a->n; j++) {
+        const uint32_t number = numbers[j];
+        for (size_t i = a->starts[j]; i < a->starts[j + 1] && number != UINT32_MAX; i++) {
+            const uint32_t row = numbers[a->rows[i]];
+            if (row != UINT32_MAX) {
+                append(&unsorted, number, row, a->values[i]);
             }
-        }
-        if (pass == 0) {
-            begin_columns(&unsorted);
         }
     }
     status = transpose(&unsorted, &sorted, err);

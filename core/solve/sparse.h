@@ -53,8 +53,24 @@ void he_sparse_multiply(const he_sparse *a, const double *x, double *y);
 HE_NODISCARD he_status he_sparse_product(const he_sparse *a, const double *d, const he_sparse *b,
                                          he_sparse *out, he_progress *progress, he_error *err);
 
+/* The product A D B of two symmetric matrices of equal size with a diagonal matrix between them,
+ * which `d` lists. */
+typedef struct he_product {
+    const he_sparse *a, *b;
+    const double *d;
+    const uint64_t *skipped; /* the columns that are not needed: a bit set; NULL: all are needed */
+} he_product;
+
+/* Makes the columns of a product; those that are not needed stay empty. The rows of a column are in
+ * no order: only he_sparse_part and he_sparse_columns, as its `b`, take such a matrix.
+ * Returns HE_LIMIT if the columns would have more than HE_SPARSE_ENTRIES entries.
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_sparse_columns(const he_product *product, he_sparse *out,
+                                         he_progress *progress, he_error *err);
+
 /* Makes the matrix of some rows and the same columns: row i of `a` becomes row numbers[i], or is
- * left out if numbers[i] is UINT32_MAX. The numbers are 0 to n - 1, each used once. */
+ * left out if numbers[i] is UINT32_MAX. The numbers are 0 to n - 1, each used once. The rows of a
+ * column of `a` may be in any order, and columns that are left out may be empty. */
 HE_NODISCARD he_status he_sparse_part(const he_sparse *a, const uint32_t *numbers, uint32_t n,
                                       he_sparse *out, he_error *err);
 

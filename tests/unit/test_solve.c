@@ -221,17 +221,22 @@ static void products_and_parts_equal_dense_ones(void **state)
     static he_entry entries[MOST * MOST * 2];
     for (int round = 0; round < 100; round++) {
         static dense d, square, cube, part;
-        he_sparse a, a2, a3, p;
+        static dense square_part;
+        he_sparse a, a2, a3, p, columns, p2;
         uint32_t numbers[MOST], kept = 0;
+        uint64_t skipped[(MOST + 63) / 64] = {0};
         double weights[MOST], y[MOST], x[MOST];
         const uint32_t n = 1 + md_below(&r, MOST);
         const size_t count = random_entries(&r, n, entries, &d);
         assert_int_equal(he_sparse_make(n, entries, count, &a, NULL), HE_OK);
-        square = cube = part = (dense){.n = n};
+        square = cube = part = square_part = (dense){.n = n};
         for (uint32_t i = 0; i < n; i++) {
             weights[i] = 0.5 + fabs(uniform(&r));
             x[i] = uniform(&r);
             numbers[i] = md_chance(&r, 60) ? kept++ : UINT32_MAX;
+            if (numbers[i] == UINT32_MAX) {
+                he_bits_set(skipped, i);
+            }
         }
         for (uint32_t i = 0; i < n; i++) {
             for (uint32_t j = 0; j < n; j++) {
@@ -240,6 +245,7 @@ static void products_and_parts_equal_dense_ones(void **state)
                 }
                 if (numbers[i] != UINT32_MAX && numbers[j] != UINT32_MAX) {
                     part.at[numbers[i]][numbers[j]] = d.at[i][j];
+                    square_part.at[numbers[i]][numbers[j]] = square.at[i][j];
                 }
             }
         }
@@ -250,13 +256,20 @@ static void products_and_parts_equal_dense_ones(void **state)
                 }
             }
         }
-        part.n = kept;
+        part.n = square_part.n = kept;
         assert_int_equal(he_sparse_product(&a, weights, &a, &a2, NULL, NULL), HE_OK);
         assert_equals(&a2, &square, 1e-10);
         assert_int_equal(he_sparse_product(&a, weights, &a2, &a3, NULL, NULL), HE_OK);
         assert_equals(&a3, &cube, 1e-8);
         assert_int_equal(he_sparse_part(&a, numbers, kept, &p, NULL), HE_OK);
         assert_equals(&p, &part, 0);
+        const he_product product = {&a, &a, weights, skipped};
+        assert_int_equal(he_sparse_columns(&product, &columns, NULL, NULL), HE_OK);
+        for (uint32_t i = 0; i < n; i++) {
+            assert_true(numbers[i] != UINT32_MAX || columns.starts[i] == columns.starts[i + 1]);
+        }
+        assert_int_equal(he_sparse_part(&columns, numbers, kept, &p2, NULL), HE_OK);
+        assert_equals(&p2, &square_part, 1e-10);
         he_sparse_multiply(&a, x, y);
         for (uint32_t i = 0; i < n; i++) {
             double sum = 0;
@@ -269,6 +282,8 @@ static void products_and_parts_equal_dense_ones(void **state)
         he_sparse_clear(&a2);
         he_sparse_clear(&a3);
         he_sparse_clear(&p);
+        he_sparse_clear(&columns);
+        he_sparse_clear(&p2);
     }
 }
 
