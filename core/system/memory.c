@@ -102,9 +102,15 @@ static void *resize(void *context, void *memory, size_t size)
  * up to 32 MB as blocks are freed. */
 enum { OWN_MAPPING_BYTES = 1 << 20 };
 
+/* The C library keeps so many free bytes at the end of its heap instead of returning them to the
+ * system. An operation allocates and frees tables of some 100 KB again and again, and each time
+ * they came from the system, that would clear their pages. */
+enum { KEPT_BYTES = 2 << 20 };
+
 void st_memory_install(uint64_t budget)
 {
     mallopt(M_MMAP_THRESHOLD, OWN_MAPPING_BYTES);
+    mallopt(M_TRIM_THRESHOLD, KEPT_BYTES);
     st_memory_set_budget(budget);
     he_mem_set_hook(&(he_mem_hook){resize, NULL});
 }
