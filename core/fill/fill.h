@@ -93,6 +93,11 @@ HE_NODISCARD he_status he_fill_holes(he_mesh *m, const he_fill_holes_options *op
                                      he_filled_holes *out, he_error *err);
 void he_filled_holes_clear(he_filled_holes *filled);
 
+/* Returns about how many faces he_fill_holes makes at most, from the number of boundary half-edges
+ * and the lengths of a few edges: as if all boundaries were circles of as many edges as
+ * `max_edges` allows. Takes no longer for a large mesh. */
+double he_fill_holes_foretell(const he_mesh *m, const he_fill_holes_options *options);
+
 /* Returns the largest angle between the normals of the two faces of the listed half-edges, in
  * radians. */
 double he_fill_bend(const he_mesh *m, const he_ids *loop);

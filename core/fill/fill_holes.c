@@ -17,6 +17,55 @@ he_fill he_fill_of(he_fill_method method)
     return methods[method];
 }
 
+/* --- what is foreseen --- */
+
+/* Returns the mean length of the boundary edges among a few thousand edges; that of all of these if
+ * none is a boundary edge; 0 if there are no edges. */
+static double sample_length(const he_mesh *m)
+{
+    enum { SAMPLES = 4096 };
+    const uint32_t issued = he_mesh_issued(m, HE_EDGE), stride = issued / SAMPLES + 1;
+    double sums[2] = {0, 0}, counts[2] = {0, 0};
+    for (uint32_t e = 0; e < issued; e += stride) {
+        if (he_edge_is_live(m, (he_edge){e})) {
+            const bool boundary = he_is_boundary_edge(m, (he_edge){e});
+            sums[boundary] += he_edge_length(m, (he_edge){e});
+            counts[boundary]++;
+        }
+    }
+    const int which = counts[1] > 0;
+    return counts[which] > 0 ? sums[which] / counts[which] : 0;
+}
+
+/* Returns about how many faces fill a round hole, whose edges have the length 1. No surface of
+ * least area is larger than that of a circle as long as its boundary, and a triangle of the wanted
+ * length has the area sqrt(3) / 4 of its square. */
+static double foretell_round(double edges, double edge_length)
+{
+    static const double OF_SQUARE = 1 / (4 * 3.14159265358979323846 * 0.43301270189221932);
+    /* without a wanted length, edges grow inwards in a hole that would get more */
+    static const double MANY = 50000, FOR_EACH_EDGE = 8;
+    const double wanted = edge_length > 0 ? edge_length : 1;
+    const double even = OF_SQUARE * (edges / wanted) * (edges / wanted);
+    const double growing = fmax(MANY, FOR_EACH_EDGE * edges);
+    return edges + (edge_length > 0 ? fmin(even, HE_FILL_FACES) : fmin(even, growing));
+}
+
+double he_fill_holes_foretell(const he_mesh *m, const he_fill_holes_options *options)
+{
+    const double edges = he_mesh_boundary_halfedges(m);
+    const bool limited = options->max_edges > 0 && options->max_edges < edges;
+    const double each = limited ? options->max_edges : edges;
+    if (edges <= 0 || options->method != HE_FILL_ALL_SMOOTH) {
+        return edges; /* no other method makes more faces than a hole has edges */
+    }
+    const double length = options->smooth.edge_length > 0 ? sample_length(m) : 0;
+    const double wanted = length > 0 ? options->smooth.edge_length / length : 0;
+    return fmin(edges / each * foretell_round(each, wanted), HE_FILL_ALL_FACES);
+}
+
+/* --- all holes --- */
+
 /* The work of he_fill_holes. */
 typedef struct filling {
     he_mesh *m;

@@ -59,14 +59,29 @@ enum {
     FILL_HOLES_OUT_BEND
 };
 
-static he_status run_fill_holes(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+static he_fill_holes_options fill_holes_options_of(const he_arg *args)
 {
     const he_arg *edges = &args[FILL_HOLES_MAX_EDGES], *size = &args[FILL_HOLES_MAX_SIZE];
-    const he_fill_holes_options options = {
+    return (he_fill_holes_options){
         .method = (he_fill_method)args[FILL_HOLES_METHOD].choice,
         .smooth = smooth_fill_of(&args[FILL_HOLES_EDGE_LENGTH], &args[FILL_HOLES_CONTINUITY]),
         .max_edges = edges->given ? (uint32_t)edges->number : 0,
         .max_size = size->given ? size->number : 0};
+}
+
+static double fill_holes_growth(const he_mesh *mesh, const he_arg *args)
+{
+    const uint32_t faces = mesh == NULL ? 0 : he_mesh_faces(mesh);
+    if (faces == 0) {
+        return 1;
+    }
+    const he_fill_holes_options options = fill_holes_options_of(args);
+    return 1 + he_fill_holes_foretell(mesh, &options) / faces;
+}
+
+static he_status run_fill_holes(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const he_fill_holes_options options = fill_holes_options_of(args);
     he_filled_holes done;
     he_status status = he_fill_holes(m, &options, &done, err);
     if (status == HE_OK) {
@@ -185,6 +200,7 @@ const he_op he_fill_rows[] = {
         .refusals = {HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .pace = 20,
+        .growth = fill_holes_growth,
         .run = run_fill_holes,
     },
     {.name = NULL},

@@ -9,6 +9,7 @@
 #include "geometry/geometry.h"
 #include "geometry/vec3.h"
 #include "mesh/write.h"
+#include "op/op.h"
 #include "tests/failing.h"
 #include "tests/seed.h"
 
@@ -351,6 +352,46 @@ static void fill_holes_says_what_it_left(void **state)
     }
 }
 
+static void what_fills_all_holes_is_foreseen(void **state)
+{
+    (void)state;
+    static const he_fill_holes_options options[] = {
+        {.method = HE_FILL_ALL_SMOOTH},
+        {.method = HE_FILL_ALL_SMOOTH, .max_edges = 60},
+        {.method = HE_FILL_ALL_SMOOTH, .smooth.edge_length = 0.05},
+        {.method = HE_FILL_ALL_SMOOTH, .smooth.edge_length = 0.4, .max_edges = 60},
+        {.method = HE_FILL_ALL_POLYGON},
+        {.method = HE_FILL_ALL_TRIANGULATE}};
+    /* As far as is known, the two holes of a tube may be one with twice the edges. */
+    for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+        he_mesh *m = make_tube(60);
+        const uint32_t before = he_mesh_faces(m);
+        const double told = he_fill_holes_foretell(m, &options[i]);
+        assert_int_equal(he_fill_holes(m, &options[i], NULL, NULL), HE_OK);
+        const double made = he_mesh_faces(m) - before;
+        print_message("note: %.0f faces foreseen, %.0f made\n", told, made);
+        assert_true(made < 1.3 * told);
+        assert_true(options[i].method != HE_FILL_ALL_SMOOTH || told < 4 * made);
+        he_mesh_free(m);
+    }
+    const he_op *op = he_op_find("fill_holes", 10);
+    he_arg args[HE_OP_PARAMS];
+    he_op_defaults(op, args);
+    he_mesh *m = make_tube(60), *closed = dense_shape("icosphere", "subdivisions", 1);
+    const double told = he_fill_holes_foretell(m, &options[0]);
+    assert_true(fabs(he_op_growth(op, m, args) - (1 + told / he_mesh_faces(m))) < 1e-12);
+    assert_true(he_op_growth(op, closed, args) <= 1);
+    assert_true(he_op_growth(op, NULL, args) <= 1);
+    he_mesh_free(m);
+    he_mesh_free(closed);
+    /* without end: so many faces as all holes may have, and no more */
+    m = make_tube(60);
+    const he_fill_holes_options tiny = {.method = HE_FILL_ALL_SMOOTH, .smooth.edge_length = 1e-300};
+    assert_true(he_fill_holes_foretell(m, &tiny) <= HE_FILL_ALL_FACES);
+    assert_true(he_fill_holes_foretell(m, &tiny) >= HE_FILL_FACES);
+    he_mesh_free(m);
+}
+
 /* --- random meshes --- */
 
 static bool tell(void *context, const char *phase, double done)
@@ -482,6 +523,7 @@ int main(void)
         cmocka_unit_test(extreme_holes_get_finite_vertices_and_few_faces),
         cmocka_unit_test(attributes_continue_into_the_hole),
         cmocka_unit_test(fill_holes_says_what_it_left),
+        cmocka_unit_test(what_fills_all_holes_is_foreseen),
         cmocka_unit_test(random_holes_are_filled),
         cmocka_unit_test(every_allocation_may_fail),
     };
