@@ -189,8 +189,8 @@ he_status he_patch_cover(he_patch *p, he_error *err)
 {
     /* A long hole is first cut along chords between some of its corners. If the mesh has one of
      * these edges already, other corners are tried. */
-    static const uint32_t most[] = {HE_COVER_LOOP, HE_COVER_LOOP - 3, HE_COVER_LOOP - 5,
-                                    HE_COVER_LOOP - 11};
+    static const uint32_t most[] = {HE_COVER_PARTS + 1, HE_COVER_PARTS - 2, HE_COVER_PARTS - 4,
+                                    HE_COVER_PARTS - 10};
     cover c = {.p = p};
     bool found = false;
     he_status status = HE_OK;
@@ -200,7 +200,7 @@ he_status he_patch_cover(he_patch *p, he_error *err)
     }
     for (size_t i = 0; i < sizeof most / sizeof *most && !found && status == HE_OK; i++) {
         he_vec3 normal;
-        c.most = most[i];
+        c.most = i == 0 && p->rim <= HE_COVER_LOOP ? HE_COVER_LOOP : most[i];
         found = true;
         status = cover_range(&c, 0, p->rim, &normal, &found, err);
         if (!found) {

@@ -64,8 +64,9 @@ he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *opt
     if (status == HE_OK) {
         status = he_patch_cover(&p, err);
     }
-    /* The equations are for the surface that they change, so a coarse patch is bent first. */
-    static const double coarseness[] = {2, 1};
+    /* The equations are for the surface that they change, so a coarse patch is bent first. It has
+     * about a ninth of the triangles, and takes an eighth of the time. */
+    static const double coarseness[] = {3, 1};
     const double wanted =
         options->edge_length > 0 ? fmax(options->edge_length / p.unit, DBL_MIN) : 0;
     for (size_t i = 0; i < 2 && status == HE_OK; i++) {

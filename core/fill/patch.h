@@ -96,9 +96,11 @@ static inline he_vec3 he_triangle_normal(he_vec3 a, he_vec3 b, he_vec3 c)
  * l^2 (1 - cos a) / 2, where l is the length of the edge and a the angle between the normals beside
  * it; the sum is made the least by dynamic programming over the parts of the loop (Barequet and
  * Sharir, Filling gaps in the boundary of a polyhedron, 1995; Liepa, Filling holes in meshes,
- * 2003). A hole of more than HE_COVER_LOOP edges is first cut into loops of about that many.
+ * 2003). That takes the third power of the number of corners, so a hole of more than HE_COVER_LOOP
+ * edges is first cut, along chords between HE_COVER_PARTS + 1 of its corners: twice as many would
+ * take eight times as long, and what is built on the cover would come out no better.
  * Returns HE_NO_MEMORY or HE_CANCELLED. */
-enum { HE_COVER_LOOP = 64 };
+enum { HE_COVER_LOOP = 64, HE_COVER_PARTS = 31 };
 HE_NODISCARD he_status he_patch_cover(he_patch *p, he_error *err);
 
 /* Adds vertices until edges are about as long as wanted, or `coarseness` times as long. They should

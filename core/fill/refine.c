@@ -64,11 +64,20 @@ static uint32_t queue_take(queue *q)
     return side;
 }
 
-/* Returns the cotangent of the angle at `apex` of a triangle. */
-static double cotangent(he_vec3 apex, he_vec3 a, he_vec3 b)
+/* Returns true if the angles at c and d in the triangles a b c and b a d add up to more than 180
+ * degrees: their cotangents are then below 0 in sum. */
+static bool is_flat(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
 {
-    const he_vec3 u = he_vec3_sub(a, apex), v = he_vec3_sub(b, apex);
-    return he_vec3_dot(u, v) / he_vec3_length(he_vec3_cross(u, v));
+    static const double EPS = 1e-10;
+    const he_vec3 ca = he_vec3_sub(a, c), cb = he_vec3_sub(b, c), da = he_vec3_sub(a, d),
+                  db = he_vec3_sub(b, d);
+    const double at_c = he_vec3_dot(ca, cb), at_d = he_vec3_dot(db, da);
+    if (at_c >= 0 && at_d >= 0) {
+        return false; /* no angle is obtuse, as at most edges */
+    }
+    return at_c / he_vec3_length(he_vec3_cross(ca, cb)) +
+               at_d / he_vec3_length(he_vec3_cross(db, da)) <
+           -EPS;
 }
 
 /* Returns true if an edge of the patch joins the vertex where `side` begins and vertex `v`. */
@@ -123,9 +132,8 @@ static diamond diamond_of(const he_patch *p, uint32_t side)
  * would neither fold the surface nor join vertices that have an edge. */
 static bool should_flip(const he_patch *p, const diamond *q)
 {
-    static const double EPS = 1e-10;
     const he_vec3 a = p->at[q->a], b = p->at[q->b], c = p->at[q->c], d = p->at[q->d];
-    if (!(cotangent(c, a, b) + cotangent(d, b, a) < -EPS)) {
+    if (!is_flat(a, b, c, d)) {
         return false;
     }
     const double before = he_vec3_dot(he_triangle_normal(a, b, c), he_triangle_normal(b, a, d)),
@@ -340,6 +348,7 @@ he_status he_patch_refine(he_patch *p, double edge_length, double coarseness, he
     if (status == HE_OK) {
         scale_sizes(p, coarseness);
         wanted.length *= coarseness;
+        wanted.growth *= coarseness;
     }
     for (unsigned i = 0; i < PASSES && more && status == HE_OK; i++) {
         status = divide_all(p, &wanted, &q, &more, err);
