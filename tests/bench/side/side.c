@@ -113,9 +113,10 @@ void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3])
     to[2] = s * p[0] + c * p[2] + lift;
 }
 
-bool bench_in_cap(const bench_side *side, uint32_t vertex)
+bool bench_in_cap(const bench_side *side, uint32_t vertex, bool left)
 {
-    return side->input.positions[3 * (size_t)vertex] > 3.9;
+    const double x = side->input.positions[3 * (size_t)vertex];
+    return (left ? -x : x) > 3.9;
 }
 
 void bench_bend(double point[3])

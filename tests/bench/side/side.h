@@ -70,9 +70,9 @@ void bench_deform_goal(const bench_side *side, uint32_t vertex, double to[3]);
 /* The time of the step of smoothing, in square units of the torus. */
 #define BENCH_SMOOTH_TIME 1e-3
 
-/* Returns true if a vertex of the torus is in the cap that is cut off in the rows about filling
- * holes. */
-bool bench_in_cap(const bench_side *side, uint32_t vertex);
+/* Returns true if a vertex of the torus is in a cap that is cut off in the rows about filling
+ * holes: the one to the right, or the one to the left if `left` is true. */
+bool bench_in_cap(const bench_side *side, uint32_t vertex, bool left);
 
 /* Moves a point by a few hundredths, as waves in space say, so that a mesh is a little bent. Bent
  * meshes are compared with a bound of BENCH_COMPARE_BOUND. */
