@@ -85,9 +85,9 @@ static int bin_of(const cut *c, const he_bounds *b)
     return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* Finds the cheapest cut of a run into two parts along one axis. Returns the cost of the cut;
- * DBL_MAX if every cut would leave one part empty. */
-static double cut_along(const builder *b, const run *r, cut *c)
+/* Finds the cheapest cut of a run into two parts across the axis of `c`. Returns false if every cut
+ * would leave one part empty. */
+static bool find_bin(const builder *b, const run *r, cut *c)
 {
     uint32_t counts[BINS] = {0};
     he_bounds bins[BINS];
@@ -119,13 +119,13 @@ static double cut_along(const builder *b, const run *r, cut *c)
             c->bin = i;
         }
     }
-    return best;
+    return best < DBL_MAX;
 }
 
+/* Finds the cheapest cut across the axis along which the middles of the items reach farthest, which
+ * is mostly the best axis. */
 static cut find_cut(const builder *b, const run *r)
 {
-    cut best = {.axis = -1};
-    double cost = DBL_MAX;
     he_bounds middles = he_bounds_none();
     for (uint32_t i = 0; i < r->count; i++) {
         const he_bounds *own = place_of(b, r, i);
@@ -135,19 +135,18 @@ static cut find_cut(const builder *b, const run *r)
             middles.max[k] = x > middles.max[k] ? x : middles.max[k];
         }
     }
-    for (int k = 0; k < 3; k++) {
-        double factor = BINS / (middles.max[k] - middles.min[k]);
-        if (!isfinite(factor)) {
-            continue;
-        }
-        cut c = {k, 0, middles.min[k], factor};
-        double own = cut_along(b, r, &c);
-        if (own < cost) {
-            cost = own;
-            best = c;
+    cut c = {.axis = 0};
+    for (int k = 1; k < 3; k++) {
+        if (middles.max[k] - middles.min[k] > middles.max[c.axis] - middles.min[c.axis]) {
+            c.axis = k;
         }
     }
-    return best;
+    c.low = middles.min[c.axis];
+    c.factor = BINS / (middles.max[c.axis] - c.low);
+    if (!isfinite(c.factor) || !find_bin(b, r, &c)) {
+        c.axis = -1;
+    }
+    return c;
 }
 
 static bool goes_left(const builder *b, const run *r, const cut *c, uint32_t i)

@@ -1,10 +1,10 @@
 /* boxes.h - a bounding volume hierarchy: a binary tree of boxes over things that have boxes, such
  * as triangles.
  *
- * The tree is built top-down by binned surface area heuristics (I. Wald, "On fast construction of
- * SAH-based bounding volume hierarchies", 2007), down to nodes of at most HE_BOXES_LEAF things.
- * From depth HE_BOXES_DEEP on nodes are halved instead, so that no input makes the tree deeper than
- * the stacks with which it is walked.
+ * The tree is built top-down by binned surface area heuristics along the widest axis (I. Wald, "On
+ * fast construction of SAH-based bounding volume hierarchies", 2007), down to nodes of at most
+ * HE_BOXES_LEAF things. From depth HE_BOXES_DEEP on nodes are halved instead, so that no input
+ * makes the tree deeper than the stacks with which it is walked.
  *
  *     nodes    0: the root; children of a node are neighbours, first and first + 1
  *     order    the things, in the order of leaves

@@ -179,9 +179,10 @@ static bool arrange(he_bvh *tree, he_boxes *boxes)
     tree->nodes = nodes;
     tree->node_count = boxes->node_count;
     boxes->nodes = NULL;
+    tree->wide = he_bvh_wide_new(nodes, &tree->wide_count);
     memcpy(tree->min, boxes->all.min, sizeof tree->min);
     memcpy(tree->max, boxes->all.max, sizeof tree->max);
-    return true;
+    return tree->wide != NULL;
 }
 
 void he_bvh_free(he_bvh *tree)
@@ -189,6 +190,7 @@ void he_bvh_free(he_bvh *tree)
     if (tree != NULL) {
         he_mem_free(tree->nodes);
         he_mem_free(tree->discs);
+        he_mem_free(tree->wide);
         he_mem_free(tree->triangles);
         he_hubs_clear(&tree->hubs);
         he_mem_free(tree);

@@ -10,11 +10,12 @@
  *                are 1e70 times smaller than the largest coordinate of a face count as points for
  *                rays and nearest points. The boxes are floats, rounded outward
  *     discs      around the same triangles, see bvh_disc.h
+ *     wide       the same boxes for searches for nearest points, see bvh_wide.h
  *
  * A tree is valid as long as the mesh for which it was made does not change; the functions take
  * that mesh as an argument. Trees are never written to, so any number of threads may search one.
  *
- * BUDGETS (base/budget.h) are charged HE_BVH_LOOK for each box and triangle that a ray or a point
+ * BUDGETS (base/budget.h) are charged HE_BVH_LOOK for each node and triangle that a ray or a point
  * visits, a step for each pair of boxes and HE_BVH_PAIR for each pair of triangles that is tried; a
  * budget that runs out gives HE_LIMIT. In ordinary meshes a ray or a nearest point takes some
  * thousand steps, but if all triangles are at one place, it takes as many as there are
@@ -23,6 +24,7 @@
 #define HE_QUERY_BVH_H
 
 #include "query/boxes.h"
+#include "query/bvh_wide.h"
 #include "query/hubs.h"
 
 enum { HE_BVH_LOOK = 8, HE_BVH_PAIR = 64 };
@@ -45,8 +47,9 @@ typedef struct he_bvh {
     he_box_node *nodes;
     he_bvh_disc *discs; /* one for each node */
     he_bvh_triangle *triangles;
-    uint32_t node_count, count; /* both are 0 without faces */
-    bool has_wide_faces;        /* some face has HE_HUB_SPOKES triangles or more */
+    he_bvh_wide *wide;
+    uint32_t node_count, wide_count, count; /* all are 0 without faces */
+    bool has_wide_faces;                    /* some face has HE_HUB_SPOKES triangles or more */
     he_hubs hubs;
 } he_bvh;
 

@@ -95,6 +95,7 @@ he_vec3 he_bvh_to_triangle(he_vec3 p, const he_vec3 c[3], double weight[3])
 /* By rounding, the computed distance to a box may exceed that to a triangle in the box by at most
  * this factor. */
 static const double SLACK = 1 + 16 * DBL_EPSILON;
+static const double FLOAT_SLACK = 1 + 16 * (double)FLT_EPSILON; /* the same for floats */
 
 /* Returns true if a triangle lies behind the plane that passes through the best point so far and is
  * perpendicular to the vector from this point to the query point. Such a triangle is farther away
@@ -127,72 +128,130 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
     }
 }
 
-/* Returns a lower bound of the squared distance from p to the triangles below a node of the tree. A
- * first bound that exceeds `far` is returned at once; otherwise a better bound is computed. */
-static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
+/* A point between two points in floats, so that distances from boxes can be bounded. Distances are
+ * multiplied by 2 * `scale`, so that the squares of large ones do not overflow. */
+typedef struct seen_point {
+    float low[3], high[3], scale;
+} seen_point;
+
+/* Returns a float that is not greater than x. */
+static float downward(double x)
 {
-    const he_box_node *node = &tree->nodes[at];
-    const double x[3] = {p.x, p.y, p.z};
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        double below = node->min[k] - x[k], beyond = x[k] - node->max[k];
-        double d = below > beyond ? below : beyond;
-        sum += d > 0 ? d * d : 0;
-    }
-    if (sum > far) {
-        return sum;
-    }
-    double disc = he_bvh_to_disc(&tree->discs[at], p);
-    return disc > sum ? disc : sum;
+    const float near = (float)x;
+    return near - fabsf(near) * FLT_EPSILON - FLT_MIN;
 }
 
-static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, he_budget *budget,
+static seen_point seen_from(he_vec3 p)
+{
+    const double extent = he_vec3_extent(p);
+    return (seen_point){{downward(p.x), downward(p.y), downward(p.z)},
+                        {-downward(-p.x), -downward(-p.y), -downward(-p.z)},
+                        extent < 0x1p30 ? 0.5f : 0x1p-71f};
+}
+
+/* Computes lower bounds of the squared distances from a point to the boxes of the children of a
+ * node. x + |x| is 2x or 0, which compilers compute for all children at once, unlike a maximum. */
+static void to_boxes(const seen_point *p, const he_bvh_wide *node, float out[HE_BVH_WIDTH])
+{
+    for (int i = 0; i < HE_BVH_WIDTH; i++) {
+        float sum = 0;
+        for (int k = 0; k < 3; k++) {
+            const float below = node->min[k][i] - p->high[k], beyond = p->low[k] - node->max[k][i];
+            const float d = (below + fabsf(below) + (beyond + fabsf(beyond))) * p->scale;
+            sum += d * d;
+        }
+        out[i] = sum;
+    }
+}
+
+/* A child of a wide node that is still to be searched. */
+typedef struct waiting {
+    float near; /* lower bound of the squared distance, multiplied as those of to_boxes */
+    uint32_t node, first, count; /* as in he_bvh_wide */
+} waiting;
+
+typedef struct search {
+    approach a;
+    seen_point p;
+    float far; /* children whose `near` is larger need not be searched */
+    waiting stack[HE_BVH_WIDTH * HE_BOXES_STACK];
+    size_t depth;
+} search;
+
+static float far_of(const search *s)
+{
+    const double scale = 2 * (double)s->p.scale;
+    /* Squares that are not normal floats may be rounded by more. */
+    return (float)(s->a.best.far * FLOAT_SLACK * scale * scale + (double)FLT_MIN);
+}
+
+/* Puts the children of a node that may be near enough on the stack, the nearest one on top. */
+static void open_node(search *s, const he_bvh_wide *node)
+{
+    float near[HE_BVH_WIDTH];
+    uint32_t open = 0;
+    to_boxes(&s->p, node, near);
+    for (uint32_t i = 0; i < HE_BVH_WIDTH; i++) {
+        open |= (uint32_t)(near[i] <= s->far && node->node[i] != HE_NONE) << i;
+    }
+    const size_t from = s->depth;
+    for (; open != 0; open &= open - 1) {
+        const uint32_t i = (uint32_t)__builtin_ctz(open);
+        size_t k = s->depth++;
+        for (; k > from && s->stack[k - 1].near < near[i]; k--) {
+            s->stack[k] = s->stack[k - 1];
+        }
+        s->stack[k] = (waiting){near[i], node->node[i], node->first[i], node->count[i]};
+    }
+}
+
+/* Returns true if all triangles in the disc of a node are farther away than the best one. The discs
+ * of nodes that are not leaves are only worth their time where the best triangle is farther away
+ * than the disc is wide. */
+static bool is_beyond(const approach *a, const he_bvh_disc *disc, bool is_leaf)
+{
+    const double radius = disc->radius;
+    return (is_leaf || a->best.far > radius * radius) &&
+           he_bvh_to_disc(disc, a->p) > a->best.far * SLACK;
+}
+
+static he_status walk(search *s, const he_bvh *tree, const he_mesh *m, he_budget *budget,
                       he_error *err)
 {
-    struct {
-        uint32_t node;
-        double near;
-    } stack[HE_BOXES_STACK];
-    int depth = 0;
-    stack[0].near = 0;
-    stack[depth++].node = 0;
-    while (depth > 0) {
-        double near = stack[--depth].near, far = a->best.far * SLACK;
-        const he_box_node *node = &tree->nodes[stack[depth].node];
-        if (near > far) {
+    he_status status = HE_OK;
+    s->p = seen_from(s->a.p);
+    s->far = far_of(s);
+    s->stack[0] = (waiting){0, 0, 0, 0};
+    s->depth = 1;
+    while (s->depth > 0 && status == HE_OK) {
+        const waiting at = s->stack[--s->depth];
+        if (at.near > s->far || is_beyond(&s->a, &tree->discs[at.node], at.count > 0)) {
             continue;
         }
-        he_status status = he_budget_take(budget, HE_BVH_LOOK * (1 + (uint64_t)node->count), err);
-        if (status != HE_OK) {
-            return status;
+        status = he_budget_take(budget, HE_BVH_LOOK * (1 + (uint64_t)at.count), err);
+        if (at.count == 0) {
+            open_node(s, &tree->wide[at.first]);
+            continue;
         }
-        for (uint32_t i = 0; i < node->count; i++) {
-            try_triangle(a, tree, m, node->first + i);
+        for (uint32_t i = 0; i < at.count; i++) {
+            try_triangle(&s->a, tree, m, at.first + i);
         }
-        if (node->count == 0) {
-            uint32_t left = node->first, right = left + 1;
-            double to_left = to_node(a->p, tree, left, far),
-                   to_right = to_node(a->p, tree, right, far);
-            bool swap = to_left <= to_right; /* the nearer child must be on top of the stack */
-            stack[depth].node = swap ? right : left;
-            stack[depth++].near = swap ? to_right : to_left;
-            stack[depth].node = swap ? left : right;
-            stack[depth++].near = swap ? to_left : to_right;
-        }
+        s->far = far_of(s);
     }
-    return HE_OK;
+    return status;
 }
 
 he_status he_bvh_near(const he_bvh *tree, const he_mesh *m, const he_bvh_asked *asked,
                       he_budget *budget, he_bvh_found *out, he_error *err)
 {
-    approach a = {.p = asked->point, .best = {.triangle = HE_NONE, .far = HUGE_VAL}};
+    search s;
+    s.a = (approach){.p = asked->point, .best = {.triangle = HE_NONE, .far = HUGE_VAL}};
     if (asked->hint != HE_NONE) {
-        try_triangle(&a, tree, m, asked->hint);
+        try_triangle(&s.a, tree, m, asked->hint);
     }
-    he_status status = walk(&a, tree, m, budget, err);
+    he_status status = walk(&s, tree, m, budget, err);
     if (status == HE_OK) {
-        *out = a.best;
+        *out = s.a.best;
     }
     return status;
 }

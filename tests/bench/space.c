@@ -124,7 +124,7 @@ int main(void)
     printf("tree             %8.2f s   %u triangles   %u nodes   %.1f bytes a triangle\n",
            seconds() - start, tree->count, tree->node_count,
            (double)(tree->node_count * (sizeof *tree->nodes + sizeof *tree->discs) +
-                    tree->count * sizeof *tree->triangles) /
+                    tree->wide_count * sizeof *tree->wide + tree->count * sizeof *tree->triangles) /
                tree->count);
 
     he_budget budget = {.left = UINT64_MAX};
