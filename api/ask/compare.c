@@ -19,7 +19,7 @@ static const double TREES[2] = {0.15, 0.3};
 /* What the request asks for, and what was found. */
 typedef struct comparison {
     api_other_mesh with;
-    uint64_t with_elements; /* of the present revision of that mesh */
+    uint64_t with_elements; /* of the revision that is compared with */
     double bound;           /* 0: the default */
     uint32_t bins;
     uint64_t revision;
@@ -72,7 +72,7 @@ static bool read_request(api_exchange *x, comparison *c)
     if (!api_in_only(&x->root, members) ||
         (api_in_find(&x->root, "bound", &in) &&
          !api_in_number_within(&in, 0, DBL_MAX, true, &c->bound)) ||
-        (api_in_find(&x->root, "bins", &in) && !api_in_u64(&in, 1, HE_COMPARE_BINS, &bins))) {
+        (api_in_find(&x->root, "bins", &in) && !api_in_u64(&in, 0, HE_COMPARE_BINS, &bins))) {
         return false;
     }
     c->bins = (uint32_t)bins;
@@ -131,10 +131,11 @@ static const api_field place_fields[] = {
 };
 const api_record api_far_place_record = API_RECORD("far_place", place_fields);
 
-/* The distances in one direction, with the number of bins. */
+/* The distances in one direction, with the number of bins. Without bins there are no means. */
 typedef struct shown_side {
     he_one_sided found;
     uint32_t bins;
+    bool has_means;
 } shown_side;
 
 static void write_histogram(api_out *out, const void *value)
@@ -154,10 +155,12 @@ static const api_field side_fields[] = {
               .doc = "No point of the surface is farther from the other one."),
     API_FIELD_RECORD("place", "#far_place", shown_side, found.place, &api_far_place_record,
                      .required = true),
-    API_FIELD("mean", "number", shown_side, found.mean, .required = true,
-              .doc = "The mean of the distances at samples, weighted by area."),
-    API_FIELD("rms", "number", shown_side, found.rms, .required = true,
-              .doc = "The root mean square of the distances at samples, weighted by area."),
+    API_FIELD("mean", "number", shown_side, found.mean, .known = API_KNOWN(shown_side, has_means),
+              .doc = "The mean of the distances at samples, weighted by area. Left out if `bins` "
+                     "is 0."),
+    API_FIELD("rms", "number", shown_side, found.rms, .known = API_KNOWN(shown_side, has_means),
+              .doc = "The root mean square of the distances at samples, weighted by area. Left out "
+                     "if `bins` is 0."),
     API_FIELD("equal_triangles", "count", shown_side, found.equal_faces, .required = true,
               .doc = "How many triangles of the surface are triangles of the other one, too."),
     API_FIELD_MADE("histogram", "*number", write_histogram, .required = true,
@@ -193,7 +196,8 @@ static const api_field comparison_fields[] = {
                      .required = true,
                      .doc = "The distances of the points of the other mesh from this one."),
     API_FIELD("bin_width", "number", shown_comparison, bin_width, .required = true,
-              .doc = "The width of the bins of both histograms, whose first bins begin at 0."),
+              .doc = "The width of the bins of both histograms, whose first bins begin at 0. It "
+                     "is 0 if `bins` is 0."),
     API_FIELD("complete", "flag", shown_comparison, complete, .required = true,
               .doc = "False if the bounds are farther apart than `bound`, because too many parts "
                      "of triangles would have to be looked at, or because of rounding."),
@@ -215,8 +219,8 @@ static void answer(api_exchange *x, const comparison *c)
                                 .upper = c->found.upper,
                                 .bin_width = c->found.bin_width,
                                 .complete = c->found.complete,
-                                .forward = {c->found.side[0], c->bins},
-                                .backward = {c->found.side[1], c->bins}};
+                                .forward = {c->found.side[0], c->bins, c->bins > 0},
+                                .backward = {c->found.side[1], c->bins, c->bins > 0}};
     api_record_write(&x->out, &api_comparison_record, shown);
     he_mem_free(shown);
     api_answer_json(x, 200);

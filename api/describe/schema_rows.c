@@ -688,7 +688,8 @@ const api_member api_request_members[] = {
      "How much the upper bound of a distance may exceed its lower bound; above 0. Default: a "
      "thousandth of the diagonal of the box around both meshes."},
     {"compare", "bins", "count", OPTIONAL,
-     "The number of bins of the histograms, 1 to 256. Default: 32."},
+     "The number of bins of the histograms, 0 to 256. Default: 32. With 0 neither histograms nor "
+     "means are computed, which takes about half of the time."},
 
     {"walk_path", "walk", "=path", REQUIRED, NULL},
     {"walk_path", "from", "#of_halfedge", REQUIRED, NULL},

@@ -235,6 +235,7 @@ static bool cut(const branch *b, const he_piece *piece, cuttings *out)
 static he_status begin(branch *b, he_error *err)
 {
     he_comparing *c = b->c;
+    uint32_t near = c->found.triangle; /* that of the former triangle */
     he_status status = HE_OK;
     for (uint32_t i = 0; status == HE_OK && i < c->from.tree->count; i++) {
         if (!(c->upper[i] > c->target)) {
@@ -243,8 +244,10 @@ static he_status begin(branch *b, he_error *err)
         }
         he_piece piece = {.count = 3, .triangle = i, .upper = c->upper[i]};
         he_comparing_corners(c, i, piece.corner);
-        piece.nearest = piece.other = c->nearest[c->from.tree->triangles[i].vertex[0]];
+        piece.nearest = piece.other =
+            c->samples_wanted ? c->nearest[c->from.tree->triangles[i].vertex[0]] : near;
         status = settle(b, &piece, err);
+        near = piece.nearest;
     }
     return status;
 }

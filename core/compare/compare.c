@@ -8,6 +8,13 @@
 /* The largest ratio of the coordinates of the two surfaces, as a power of two. */
 enum { MOST_RATIO = 90 };
 
+he_status he_comparing_report(const he_comparing *c, uint32_t triangle, he_error *err)
+{
+    return triangle % 256 == 0
+               ? he_progress_step(c->budget.progress, triangle, c->from.tree->count, err)
+               : HE_OK;
+}
+
 void he_comparing_corners(const he_comparing *c, uint32_t triangle, he_vec3 out[3])
 {
     const uint32_t *vertex = c->from.tree->triangles[triangle].vertex;
@@ -73,14 +80,18 @@ double he_compare_default_bound(const he_compared surfaces[2])
 
 static he_status reserve(he_comparing *c, he_error *err)
 {
-    const size_t vertices = c->from.mesh->c.vertices.issued, triangles = c->from.tree->count;
-    c->first = he_mem_array(NULL, vertices, sizeof *c->first);
-    c->nearest = he_mem_array(NULL, vertices, sizeof *c->nearest);
-    c->distance = he_mem_array(NULL, vertices, sizeof *c->distance);
+    const size_t vertices = c->samples_wanted ? c->from.mesh->c.vertices.issued : 0;
+    const size_t triangles = c->from.tree->count;
     c->upper = he_mem_array(NULL, triangles, sizeof *c->upper);
     c->equal = he_bits_new(triangles);
-    return c->first != NULL && c->nearest != NULL && c->distance != NULL && c->upper != NULL &&
-                   c->equal != NULL
+    if (c->samples_wanted) {
+        c->first = he_mem_array(NULL, vertices, sizeof *c->first);
+        c->nearest = he_mem_array(NULL, vertices, sizeof *c->nearest);
+        c->distance = he_mem_array(NULL, vertices, sizeof *c->distance);
+    }
+    return c->upper != NULL && c->equal != NULL &&
+                   (!c->samples_wanted ||
+                    (c->first != NULL && c->nearest != NULL && c->distance != NULL))
                ? HE_OK
                : he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu triangles", triangles);
 }
@@ -108,28 +119,30 @@ static he_status find_place(he_comparing *c, he_error *err)
     return he_comparing_ask(c, corner[0], 0, &nearest, &distance, err);
 }
 
-/* The fractions of the progress at which the vertices, the samples and the cuts of each direction
- * are done. */
+/* The fractions of the progress at which a first lower bound, the upper bounds of all triangles and
+ * the cuts of each direction are done. */
 static const double DONE[2][3] = {{0.1, 0.3, 0.5}, {0.6, 0.8, 1}};
 
 static he_status go(he_comparing *c, int direction, he_error *err)
 {
     he_progress *progress = c->budget.progress;
+    const bool samples = c->samples_wanted;
     he_status status = reserve(c, err);
     if (status == HE_OK) {
         status = he_progress_phase(progress, "measuring vertices", DONE[direction][0], err);
     }
     if (status == HE_OK) {
-        status = he_find_equal_faces(&c->from, &c->to, &c->budget, c->equal, &c->equal_count, err);
+        status = he_find_equal_faces(&c->from, &c->to, &c->budget, c->equal, err);
     }
     if (status == HE_OK) {
-        status = he_compare_reach(c, err);
+        status = samples ? he_compare_reach(c, err) : he_compare_scout(c, err);
     }
     if (status == HE_OK) {
-        status = he_progress_phase(progress, "sampling distances", DONE[direction][1], err);
+        status = he_progress_phase(progress, samples ? "sampling distances" : "bounding triangles",
+                                   DONE[direction][1], err);
     }
     if (status == HE_OK) {
-        status = he_compare_sample(c, err);
+        status = samples ? he_compare_sample(c, err) : he_compare_bound(c, err);
     }
     if (status == HE_OK) {
         status = he_progress_phase(progress, "bounding distances", DONE[direction][2], err);
@@ -157,10 +170,14 @@ static void tell(const he_comparing *c, he_one_sided *out)
         {in_unit(c, c->at.x), in_unit(c, c->at.y), in_unit(c, c->at.z)},
         hit.point,
     };
-    out->mean = in_unit(c, c->sum / c->weight);
-    out->rms = in_unit(c, sqrt(c->squares / c->weight));
+    if (c->samples_wanted) {
+        out->mean = in_unit(c, c->sum / c->weight);
+        out->rms = in_unit(c, sqrt(c->squares / c->weight));
+    }
     out->pieces = c->pieces;
-    out->equal_faces = c->equal_count;
+    for (uint32_t i = 0; i < c->from.tree->count; i++) {
+        out->equal_faces += he_bits_get(c->equal, i) != 0;
+    }
 }
 
 static void fill_bins(const he_comparing *c, uint32_t bins, double width, he_one_sided *out)
@@ -192,8 +209,8 @@ static he_status check(const he_compared surfaces[2], const he_compare_options *
         return he_fail_plain(err, HE_BAD_VALUE, "the bound must be above 0, but is %g",
                              options->bound);
     }
-    if (options->bins < 1 || options->bins > HE_COMPARE_BINS) {
-        return he_fail_plain(err, HE_BAD_VALUE, "a histogram has 1 to %d bins, not %u",
+    if (options->bins > HE_COMPARE_BINS) {
+        return he_fail_plain(err, HE_BAD_VALUE, "a histogram has 0 to %d bins, not %u",
                              (int)HE_COMPARE_BINS, options->bins);
     }
     if (abs(surfaces[0].tree->exponent - surfaces[1].tree->exponent) > MOST_RATIO) {
@@ -228,6 +245,7 @@ he_status he_compare(const he_compared surfaces[2], const he_compare_options *op
                               .budget = {.left = he_compare_budget(surfaces), .progress = progress},
                               .bound = ldexp(options->bound, -to->tree->exponent),
                               .most_pieces = options->most_pieces,
+                              .samples_wanted = options->bins > 0,
                               .triangle = HE_NONE,
                               .complete = true};
         c[i].target = c[i].bound;
@@ -241,8 +259,8 @@ he_status he_compare(const he_compared surfaces[2], const he_compare_options *op
         done.upper = fmax(done.upper, done.side[i].upper);
         done.complete = done.complete && c[i].complete;
     }
-    done.bin_width = fmax(done.upper / options->bins, DBL_MIN);
-    for (int i = 0; i < 2 && status == HE_OK; i++) {
+    done.bin_width = options->bins == 0 ? 0 : fmax(done.upper / options->bins, DBL_MIN);
+    for (int i = 0; i < 2 && status == HE_OK && options->bins > 0; i++) {
         fill_bins(&c[i], options->bins, done.bin_width, &done.side[i]);
     }
     clear(&c[0]);

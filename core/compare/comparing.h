@@ -4,6 +4,7 @@
  *     compare.c      both directions, one after the other
  *     parts.c        loops over the triangles in parts, on several threads
  *     sample.c       samples of all triangles: a lower bound, means, upper bounds
+ *     bound.c        lower and upper bounds without samples
  *     branch.c       triangles whose upper bound is too large are cut until it is not
  *     piece.c        convex polygons that are cut by planes
  *     equal_faces.c  triangles that both surfaces have
@@ -26,6 +27,7 @@ typedef struct he_comparing {
     he_budget budget;
     double bound;
     uint64_t most_pieces;
+    bool samples_wanted; /* false: neither means nor histograms, `first` to `area` are unused */
     /* The largest distance found so far, at the point `at` of a triangle of `from`; the nearest
      * triangle of `to`, and the point in it. */
     double lower;
@@ -40,14 +42,13 @@ typedef struct he_comparing {
     uint32_t *first;
     uint32_t *nearest;
     double *distance;
-    double *upper;   /* for each triangle of `from` an upper bound of the distances of its points */
-    uint64_t *equal; /* bits of the triangles of `from` that `to` has, too */
     he_sample *samples;
     size_t sample_count, sample_capacity;
     double weight, sum, squares; /* sums over the samples */
     double area;                 /* of `from`, in coordinates of its own tree */
+    double *upper;   /* for each triangle of `from` an upper bound of the distances of its points */
+    uint64_t *equal; /* bits of the triangles of `from` that `to` has, too */
     uint64_t pieces;
-    uint32_t equal_count;
     bool complete;
 } he_comparing;
 
@@ -55,6 +56,9 @@ typedef struct he_comparing {
  * lower bound if the distance is larger. */
 HE_NODISCARD he_status he_comparing_ask(he_comparing *c, he_vec3 point, uint32_t triangle,
                                         uint32_t *nearest, double *distance, he_error *err);
+/* Reports the progress of a loop over the triangles of `from`.
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_comparing_report(const he_comparing *c, uint32_t triangle, he_error *err);
 /* Returns the corners of a triangle of `from`. */
 void he_comparing_corners(const he_comparing *c, uint32_t triangle, he_vec3 out[3]);
 /* Returns the largest distance of some points from triangle `to_triangle` of `to`, and the number
@@ -79,13 +83,18 @@ HE_NODISCARD he_status he_compare_in_parts(he_comparing *c, he_compare_part work
 HE_NODISCARD he_status he_compare_reach(he_comparing *c, he_error *err);
 /* Samples all triangles, whose vertices were reached. */
 HE_NODISCARD he_status he_compare_sample(he_comparing *c, he_error *err);
+/* Finds the distances of some vertices, which give a first lower bound. */
+HE_NODISCARD he_status he_compare_scout(he_comparing *c, he_error *err);
+/* Finds an upper bound of each triangle, without samples and without distances of its vertices. */
+HE_NODISCARD he_status he_compare_bound(he_comparing *c, he_error *err);
 /* Cuts triangles until the largest upper bound is at most `bound` above the lower bound. */
 HE_NODISCARD he_status he_compare_branch(he_comparing *c, he_error *err);
 
 /* Sets the bits of the triangles of `from` whose corners are at the positions of the corners of a
- * triangle of `to`, in any order. `equal` has zero bits before. Returns their number. */
+ * triangle of `to`, in any order. `equal` has zero bits before.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_LIMIT or HE_CANCELLED if the budget ends the work. */
 HE_NODISCARD he_status he_find_equal_faces(const he_compared *from, const he_compared *to,
-                                           he_budget *budget, uint64_t *equal, uint32_t *count,
-                                           he_error *err);
+                                           he_budget *budget, uint64_t *equal, he_error *err);
 
 #endif

@@ -168,11 +168,6 @@ static he_status sample_triangle(he_comparing *c, uint32_t triangle, double weig
 
 /* --- parts --- */
 
-static he_status report(const he_comparing *c, uint32_t i, he_error *err)
-{
-    return i % 256 == 0 ? he_progress_step(c->budget.progress, i, c->from.tree->count, err) : HE_OK;
-}
-
 static he_status reach_part(he_comparing *c, uint32_t from, uint32_t to, he_error *err)
 {
     uint32_t hint = HE_NONE;
@@ -181,7 +176,7 @@ static he_status reach_part(he_comparing *c, uint32_t from, uint32_t to, he_erro
     for (uint32_t i = from; status == HE_OK && i < to; i++) {
         he_vec3 corner[3];
         const uint32_t *vertex = c->from.tree->triangles[i].vertex;
-        status = report(c, i, err);
+        status = he_comparing_report(c, i, err);
         he_comparing_corners(c, i, corner);
         for (int k = 0; k < 3 && status == HE_OK; k++) {
             const uint32_t v = vertex[k];
@@ -216,7 +211,7 @@ static he_status sample_part_of_surface(he_comparing *c, uint32_t from, uint32_t
     he_status status = HE_OK;
     for (uint32_t i = from; status == HE_OK && i < to; i++) {
         const double weight = c->area > 0 ? area_of(c, i) : 1;
-        status = report(c, i, err);
+        status = he_comparing_report(c, i, err);
         if (status == HE_OK && he_bits_get(c->equal, i)) {
             static const double zero[3] = {0, 0, 0};
             c->upper[i] = 0;

@@ -170,6 +170,26 @@ static void a_mesh_is_compared_with_another_one_and_with_its_past(void **state)
     bench_free(b);
 }
 
+static void without_bins_there_are_neither_means_nor_histograms(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r =
+        bench_expect(200, bench_post(b, COMPARE, "{\"with\":1,\"bound\":0.01,\"bins\":0}"));
+    require_near(number(r.json, "lower"), 0.25);
+    require_near(number(r.json, "upper"), 0.25);
+    require_near(number(r.json, "bin_width"), 0);
+    static const char *const sides[] = {"forward", "backward"};
+    for (int i = 0; i < 2; i++) {
+        const cJSON *side = member(r.json, sides[i]);
+        require_near(number(side, "lower"), 0.25);
+        assert_false(cJSON_HasObjectItem(side, "mean") || cJSON_HasObjectItem(side, "rms"));
+        assert_int_equal(cJSON_GetArraySize(member(side, "histogram")), 0);
+    }
+    bench_done(r);
+    bench_free(b);
+}
+
 static void the_default_bound_is_a_thousandth_of_the_diagonal(void **state)
 {
     (void)state;
@@ -222,7 +242,7 @@ static void what_cannot_be_compared_is_refused(void **state)
         {400, "{\"with\":true}", "wrong_type", "/with"},
         {400, "{\"with\":1,\"bound\":0}", "bad_value", "/bound"},
         {400, "{\"with\":1,\"bound\":-1}", "bad_value", "/bound"},
-        {400, "{\"with\":1,\"bins\":0}", "bad_value", "/bins"},
+        {400, "{\"with\":1,\"bins\":-1}", "bad_value", "/bins"},
         {400, "{\"with\":1,\"bins\":257}", "bad_value", "/bins"},
         {400, "{\"with\":1,\"into\":\"x\"}", "unknown_member", "/into"},
     };
@@ -293,6 +313,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mesh_is_compared_with_another_one_and_with_its_past),
+        cmocka_unit_test(without_bins_there_are_neither_means_nor_histograms),
         cmocka_unit_test(the_default_bound_is_a_thousandth_of_the_diagonal),
         cmocka_unit_test(no_thread_waits_for_a_second_mesh),
         cmocka_unit_test(what_cannot_be_compared_is_refused),
