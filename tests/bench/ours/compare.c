@@ -1,4 +1,5 @@
-/* Benchmark row: the distance between the input and a copy of it that was bent. */
+/* Benchmark rows: the distance between the input and a copy of it that was bent, alone and with
+ * means and histograms. */
 #include "bench/ours/ours.h"
 
 #include "compare/compare.h"
@@ -18,13 +19,13 @@ he_mesh *bench_bent(bench_side *side)
 }
 
 /* The trees of boxes are made within the time, as CGAL makes its own. */
-static void compare(bench_side *side, bench_result *out)
+static void compare(bench_side *side, uint32_t bins, bench_result *out)
 {
     he_mesh *meshes[2] = {bench_mesh(side), bench_bent(side)};
     he_bvh *trees[2];
     he_compared surfaces[2];
     he_comparison done;
-    const he_compare_options options = {.bound = BENCH_COMPARE_BOUND, .bins = 1};
+    const he_compare_options options = {.bound = BENCH_COMPARE_BOUND, .bins = bins};
     const double start = bench_seconds();
     for (int i = 0; i < 2; i++) {
         bench_require(he_bvh_new(meshes[i], NULL, &trees[i], NULL));
@@ -40,4 +41,15 @@ static void compare(bench_side *side, bench_result *out)
     he_mesh_free(meshes[1]);
 }
 
-const bench_row bench_compare_rows[] = {{"compare", compare}, {NULL, NULL}};
+static void compare_alone(bench_side *side, bench_result *out)
+{
+    compare(side, 0, out);
+}
+
+static void compare_with_means(bench_side *side, bench_result *out)
+{
+    compare(side, HE_COMPARE_BINS, out);
+}
+
+const bench_row bench_compare_rows[] = {
+    {"compare", compare_alone}, {"compare_with_means", compare_with_means}, {NULL, NULL}};
