@@ -489,7 +489,7 @@ export const parts = [
     scaling(
         'torus',
         'natural',
-        [['Hausdorff distance, bound 1e-4', 'compare', 'Mface/s']],
+        [['Hausdorff distance with means', 'compare', 'Mface/s']],
         'one thread cuts the triangles that hold the farthest point, in the order of their bounds',
         { side: 200 },
     ),
