@@ -33,9 +33,9 @@ export const compare = [
                 near: 0.05,
                 target: [['cgal', 5]],
                 why:
-                    'three quarters of the time are the nearest points of samples, three for two ' +
-                    'faces, of which the means and the histogram are made: a point takes 0.8 us. ' +
-                    'CGAL computes the distance alone. Two threads take half as long (scaling)',
+                    'nearly two thirds of the time are the nearest points of samples, three for two ' +
+                    'faces, of which the means and the histogram are made: about 0.9 us each, ' +
+                    'where 0.2 us would do. CGAL computes the distance alone',
                 runs: 3,
                 slow: ['cgal'],
             },
