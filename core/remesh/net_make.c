@@ -11,51 +11,72 @@ static he_status no_memory(size_t faces, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for a copy of %zu triangles", faces);
 }
 
-/* Returns which of the corners of its triangle half-edge h is: corner 0 is the origin of the
- * half-edge that the face stores. */
-static uint32_t corner_of(const he_mesh *m, const uint32_t *number, uint32_t h)
-{
-    uint32_t f = m->c.face[h], first = m->c.face_halfedge[f];
-    uint32_t i = h == first ? 0 : m->c.next[first] == h ? 1 : 2;
-    return 4 * number[f] + i;
-}
-
 /* Marks a chosen face, which has no number yet, by the number HE_DEAD. */
-static he_status mark_face(const he_mesh *m, const he_marks *marks, uint32_t f, uint32_t *number,
-                           he_error *err)
+static void mark_face(const he_marks *marks, uint32_t f, uint32_t *number)
 {
-    if (he_is_locked(marks, HE_FACE, f)) {
-        return HE_OK;
+    if (!he_is_locked(marks, HE_FACE, f)) {
+        number[f] = HE_DEAD;
     }
-    if (!he_is_triangle(m, he_face_halfedge(m, (he_face){f}))) {
-        return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
-                       "face %u has more than three corners: triangulate first", f);
-    }
-    number[f] = HE_DEAD;
-    return HE_OK;
 }
 
-static he_status mark_faces(const he_mesh *m, const he_net_choice *choice, uint32_t *number,
-                            he_error *err)
+static void mark_faces(const he_mesh *m, const he_net_choice *choice, uint32_t *number)
 {
     he_marks marks = {.feature = NULL};
-    he_status status = HE_OK;
     (void)he_marks_find(m, &marks);
-    for (size_t i = 0; i < choice->face_count && choice->faces != NULL && status == HE_OK; i++) {
-        status = mark_face(m, &marks, choice->faces[i], number, err);
+    for (size_t i = 0; i < choice->face_count && choice->faces != NULL; i++) {
+        mark_face(&marks, choice->faces[i], number);
     }
-    for (uint32_t f = 0; f < m->c.faces.issued && choice->faces == NULL && status == HE_OK; f++) {
+    for (uint32_t f = 0; f < m->c.faces.issued && choice->faces == NULL; f++) {
         if (he_face_is_live(m, (he_face){f})) {
-            status = mark_face(m, &marks, f, number, err);
+            mark_face(&marks, f, number);
         }
     }
-    return status;
 }
 
 static void number_face(uint32_t f, uint32_t *number, he_net *n)
 {
     n->ids[n->triangle_count].face = f;
     number[f] = n->triangle_count++;
+}
+
+/* Where ids are in no spatial order, the links of the faces that the search will come to are
+ * fetched into the caches so many faces ahead: those of the first half-edges, and later the links
+ * of the half-edges after them. */
+enum { FAR_AHEAD = 24, AHEAD = 12 };
+
+static void fetch_ahead(const he_mesh *m, const he_net *n, uint32_t t)
+{
+    if (t + FAR_AHEAD < n->triangle_count) {
+        __builtin_prefetch(&m->c.next[m->c.face_halfedge[n->ids[t + FAR_AHEAD].face]]);
+    }
+    if (t + AHEAD < n->triangle_count) {
+        const uint32_t h = m->c.face_halfedge[n->ids[t + AHEAD].face], after = m->c.next[h];
+        __builtin_prefetch(&m->c.next[after]);
+        __builtin_prefetch(&m->c.face[h ^ 1]);
+        __builtin_prefetch(&m->c.face[after ^ 1]);
+    }
+}
+
+/* Finds the half-edges of triangle t, and in place of its twins the faces beside it, to which it
+ * gives the next numbers.
+ * Returns HE_NOT_TRIANGLE naming the face, if it is no triangle. */
+static he_status number_beside(const he_mesh *m, uint32_t t, uint32_t *number, he_net *n,
+                               he_error *err)
+{
+    const uint32_t f = n->ids[t].face, first = m->c.face_halfedge[f];
+    uint32_t h = first;
+    for (unsigned i = 0; i < 3; i++) {
+        const uint32_t beside = m->c.face[h ^ 1];
+        n->ids[t].halfedge[i] = h;
+        n->triangles[t].twin[i] = beside;
+        if (beside != HE_NONE && number[beside] == HE_DEAD) {
+            number_face(beside, number, n);
+        }
+        h = m->c.next[h];
+    }
+    return h == first ? HE_OK
+                      : he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
+                                "face %u has more than three corners: triangulate first", f);
 }
 
 /* Numbers the marked faces in the order in which a search from neighbour to neighbour finds them,
@@ -69,18 +90,19 @@ static he_status number_faces(const he_mesh *m, uint32_t *number, he_net *n, he_
         if (number[f] == HE_DEAD) {
             number_face(f, number, n);
         }
-        for (; handled < n->triangle_count; handled++) {
-            uint32_t h = m->c.face_halfedge[n->ids[handled].face];
-            for (unsigned i = 0; i < 3; i++) {
-                uint32_t beside = m->c.face[h ^ 1];
-                if (beside != HE_NONE && number[beside] == HE_DEAD) {
-                    number_face(beside, number, n);
-                }
-                h = m->c.next[h];
-            }
+        for (; handled < n->triangle_count && status == HE_OK; handled++) {
+            fetch_ahead(m, n, handled);
+            status = number_beside(m, handled, number, n, err);
         }
     }
     return status;
+}
+
+/* Returns the corner of a triangle at which a half-edge leaves. */
+static uint32_t corner_of(const he_net *n, uint32_t t, uint32_t h)
+{
+    const uint32_t *own = n->ids[t].halfedge;
+    return 4 * t + (own[0] == h ? 0 : own[1] == h ? 1 : 2);
 }
 
 /* Gives numbers to the vertices of the chosen faces, and fills the triangles. */
@@ -88,11 +110,12 @@ static void link_triangles(const he_mesh *m, const uint32_t *number, uint32_t *v
                            he_net *n)
 {
     for (uint32_t t = 0; t < n->triangle_count; t++) {
-        uint32_t h = m->c.face_halfedge[n->ids[t].face];
+        const uint32_t ahead = t + AHEAD < n->triangle_count ? t + AHEAD : t;
         he_net_triangle *to = &n->triangles[t];
-        *to = (he_net_triangle){.marks = 0};
+        to->marks = to->unused = 0;
         for (unsigned i = 0; i < 3; i++) {
-            uint32_t v = m->c.origin[h], beside = m->c.face[h ^ 1];
+            __builtin_prefetch(&m->c.origin[n->ids[ahead].halfedge[i]]);
+            const uint32_t h = n->ids[t].halfedge[i], v = m->c.origin[h], beside = to->twin[i];
             if (vertex_number[v] == HE_NONE) {
                 vertex_number[v] = n->vertex_count;
                 n->vertex_id[n->vertex_count++] = v;
@@ -100,9 +123,7 @@ static void link_triangles(const he_mesh *m, const uint32_t *number, uint32_t *v
             to->v[i] = vertex_number[v];
             to->twin[i] = beside == HE_NONE || number[beside] == HE_NONE
                               ? HE_NONE
-                              : corner_of(m, number, h ^ 1);
-            n->ids[t].halfedge[i] = h;
-            h = m->c.next[h];
+                              : corner_of(n, number[beside], h ^ 1);
         }
     }
 }
@@ -200,10 +221,8 @@ he_status he_net_make(const he_mesh *m, const he_net_choice *choice, he_net *out
     }
     memset(number, 0xFF, m->c.faces.issued * sizeof *number);
     memset(vertex_number, 0xFF, m->c.vertices.issued * sizeof *vertex_number);
-    status = mark_faces(m, choice, number, err);
-    if (status == HE_OK) {
-        status = number_faces(m, number, &n, err);
-    }
+    mark_faces(m, choice, number);
+    status = number_faces(m, number, &n, err);
     if (status != HE_OK) {
         goto out;
     }

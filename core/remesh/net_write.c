@@ -84,50 +84,105 @@ static void clear_values(he_content *c, he_kind domain, uint32_t row)
     }
 }
 
-/* Marks the elements of the ground as deleted, by the link that says so: those that the net still
- * has are written afterwards. */
-static void mark_old(const he_ground *g, const he_mesh *m, he_content *c)
+/* The faces and vertices of the ground, as bits by their ids in the mesh: that way they are visited
+ * in the order of ids, in which their links are near in memory. */
+typedef struct ground_bits {
+    uint64_t *faces, *vertices;
+} ground_bits;
+
+static void clear_bits(ground_bits *b)
 {
+    he_mem_free(b->faces);
+    he_mem_free(b->vertices);
+    *b = (ground_bits){NULL, NULL};
+}
+
+static he_status find_bits(const he_ground *g, const he_mesh *m, ground_bits *out, he_error *err)
+{
+    out->faces = he_bits_new((size_t)m->c.faces.issued + 1);
+    out->vertices = he_bits_new((size_t)m->c.vertices.issued + 1);
+    if (out->faces == NULL || out->vertices == NULL) {
+        clear_bits(out);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for marks of %u faces",
+                             m->c.faces.issued);
+    }
     for (uint32_t t = 0; t < g->triangle_count; t++) {
-        uint32_t h = m->c.face_halfedge[g->face[t]];
-        for (unsigned i = 0; i < 3; i++) {
-            c->next[h] = HE_DEAD;
-            c->boundary_halfedges -= m->c.face[h ^ 1] == HE_NONE;
-            h = m->c.next[h];
-        }
-        c->face_halfedge[g->face[t]] = HE_DEAD;
+        he_bits_set(out->faces, g->face[t]);
     }
     for (uint32_t v = 0; v < g->vertex_count; v++) {
-        c->vertex_halfedge[g->vertex[v]] = HE_DEAD;
+        he_bits_set(out->vertices, g->vertex[v]);
+    }
+    return HE_OK;
+}
+
+/* Returns true if the half-edge h was one of a face of the ground. */
+static bool was_in(const ground_bits *b, const he_mesh *m, uint32_t h)
+{
+    return m->c.face[h] < HE_DEAD && he_bits_get(b->faces, m->c.face[h]);
+}
+
+/* Marks the elements of the ground as deleted, by the link that says so: those that the net still
+ * has are written afterwards. */
+static void mark_old(const ground_bits *b, const he_mesh *m, he_content *c)
+{
+    for (uint32_t h = 0; h < 2 * m->c.edges.issued; h++) {
+        if (was_in(b, m, h)) {
+            c->next[h] = HE_DEAD;
+            c->boundary_halfedges -= m->c.face[h ^ 1] == HE_NONE;
+        }
+    }
+    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        if (he_bits_get(b->faces, f)) {
+            c->face_halfedge[f] = HE_DEAD;
+        }
+    }
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        if (he_bits_get(b->vertices, v)) {
+            c->vertex_halfedge[v] = HE_DEAD;
+        }
     }
 }
 
 /* Deletes the elements of the ground that the net does not have any more. */
-static void delete_old(const he_ground *g, const he_mesh *m, he_content *c)
+static void delete_old(const ground_bits *b, const he_mesh *m, he_content *c)
 {
-    for (uint32_t t = 0; t < g->triangle_count; t++) {
-        uint32_t f = g->face[t], h = m->c.face_halfedge[f];
-        for (unsigned i = 0; i < 3; i++) {
-            if (c->next[h] == HE_DEAD && c->origin[h] != HE_DEAD) {
-                he_clear_edge(c, h >> 1);
-                clear_values(c, HE_EDGE, h >> 1);
-                clear_values(c, HE_HALFEDGE, h);
-                clear_values(c, HE_HALFEDGE, h ^ 1);
-                c->edges.live--;
-            }
-            h = m->c.next[h];
+    for (uint32_t h = 0; h < 2 * m->c.edges.issued; h++) {
+        if (c->next[h] == HE_DEAD && c->origin[h] != HE_DEAD && was_in(b, m, h)) {
+            he_clear_edge(c, h >> 1);
+            clear_values(c, HE_EDGE, h >> 1);
+            clear_values(c, HE_HALFEDGE, h);
+            clear_values(c, HE_HALFEDGE, h ^ 1);
+            c->edges.live--;
         }
-        if (c->face_halfedge[f] == HE_DEAD) {
+    }
+    for (uint32_t f = 0; f < m->c.faces.issued; f++) {
+        if (c->face_halfedge[f] == HE_DEAD && he_bits_get(b->faces, f)) {
             clear_values(c, HE_FACE, f);
             c->faces.live--;
         }
     }
-    for (uint32_t i = 0; i < g->vertex_count; i++) {
-        uint32_t v = g->vertex[i];
-        if (c->vertex_halfedge[v] == HE_DEAD) {
+    for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
+        if (c->vertex_halfedge[v] == HE_DEAD && he_bits_get(b->vertices, v)) {
             he_clear_vertex(c, v);
             clear_values(c, HE_VERTEX, v);
             c->vertices.live--;
+        }
+    }
+}
+
+/* Where ids are in no spatial order, the links of the half-edges are fetched into the caches so
+ * many triangles before they are written. */
+enum { AHEAD = 8 };
+
+static void fetch_ahead(const he_net *n, const he_content *c, uint32_t t)
+{
+    if (t + AHEAD < n->triangle_count && !he_net_is_gone(n, t + AHEAD)) {
+        for (unsigned i = 0; i < 3; i++) {
+            const uint32_t h = n->ids[t + AHEAD].halfedge[i];
+            __builtin_prefetch(&c->next[h], 1);
+            __builtin_prefetch(&c->prev[h], 1);
+            __builtin_prefetch(&c->origin[h], 1);
+            __builtin_prefetch(&c->face[h], 1);
         }
     }
 }
@@ -228,17 +283,23 @@ he_status he_net_write(he_net *n, const he_ground *g, const he_mesh *m, he_mesh 
                        he_error *err)
 {
     fresh made = {0, 0, 0};
+    ground_bits old = {NULL, NULL};
     he_mesh *copy = NULL;
     he_status status = give_ids(n, m, &made, err);
+    if (status == HE_OK) {
+        status = find_bits(g, m, &old, err);
+    }
     if (status == HE_OK) {
         status = make_copy(m, &made, &copy, err);
     }
     if (status != HE_OK) {
+        clear_bits(&old);
         return status;
     }
     he_content *c = &copy->c;
-    mark_old(g, m, c);
+    mark_old(&old, m, c);
     for (uint32_t t = 0; t < n->triangle_count; t++) {
+        fetch_ahead(n, c, t);
         if (!he_net_is_gone(n, t)) {
             write_triangle(n, m, c, t);
         }
@@ -253,7 +314,8 @@ he_status he_net_write(he_net *n, const he_ground *g, const he_mesh *m, he_mesh 
             write_vertex(n, m, c, v);
         }
     }
-    delete_old(g, m, c);
+    delete_old(&old, m, c);
+    clear_bits(&old);
     *out = copy;
     return HE_OK;
 }

@@ -382,22 +382,48 @@ static he_status write(he_mesh *m, he_remeshing *r, he_error *err)
 
 /* --- the report --- */
 
-static void look_at(const he_net *n, uint32_t t, he_remeshed *out, double *sum, uint64_t *count)
+/* What the report is made of: the sum and the number of the lengths of edges, and the cotangents of
+ * the smallest and the largest angle so far. */
+typedef struct measured {
+    double sum;
+    uint64_t count;
+    double of_smallest, of_largest;
+} measured;
+
+/* Measures an angle if it is the smallest or largest one so far. The sides at all three angles of a
+ * triangle have the same cross product, so that comparing the cotangents needs one square root for
+ * the triangle, and no arc tangent for most triangles. `area` is the length of that product. */
+static void look_at_angle(he_vec3 along, he_vec3 back, double area, measured *of, he_remeshed *out)
 {
-    for (uint32_t c = 4 * t; c < 4 * t + 3; c++) {
-        uint32_t twin = he_net_twin(n, c);
-        he_vec3 p = he_net_place(n, he_net_origin(n, c));
-        he_vec3 along = he_vec3_sub(he_net_place(n, he_net_target(n, c)), p);
-        he_vec3 back = he_vec3_sub(he_net_place(n, he_net_opposite(n, c)), p);
-        double angle = he_vec3_angle(along, back);
-        out->smallest_angle = fmin(out->smallest_angle, angle);
-        out->largest_angle = fmax(out->largest_angle, angle);
-        if (twin == HE_NONE || c < twin) {
-            double length = he_vec3_length(along);
+    const double cotangent = he_vec3_dot(along, back) / area;
+    const bool is_flat = !(area > 0);
+    if (is_flat || cotangent >= of->of_smallest) {
+        of->of_smallest = is_flat ? of->of_smallest : cotangent;
+        out->smallest_angle = fmin(out->smallest_angle, he_vec3_angle(along, back));
+    }
+    if (is_flat || cotangent <= of->of_largest) {
+        of->of_largest = is_flat ? of->of_largest : cotangent;
+        out->largest_angle = fmax(out->largest_angle, he_vec3_angle(along, back));
+    }
+}
+
+static void look_at(const he_net *n, uint32_t t, measured *of, he_remeshed *out)
+{
+    const he_net_triangle *at = &n->triangles[t];
+    he_vec3 side[3];
+    for (unsigned i = 0; i < 3; i++) {
+        side[i] =
+            he_vec3_sub(he_net_place(n, at->v[i == 2 ? 0 : i + 1]), he_net_place(n, at->v[i]));
+    }
+    const double area = he_vec3_length(he_vec3_cross(side[0], side[1]));
+    for (unsigned i = 0; i < 3; i++) {
+        look_at_angle(side[i], he_vec3_scale(side[i == 0 ? 2 : i - 1], -1), area, of, out);
+        if (4 * t + i < at->twin[i]) { /* HE_NONE is larger than all corners */
+            const double length = he_vec3_length(side[i]);
             out->shortest = fmin(out->shortest, length);
             out->longest = fmax(out->longest, length);
-            *sum += length;
-            ++*count;
+            of->sum += length;
+            of->count++;
         }
     }
 }
@@ -418,8 +444,7 @@ static double regular_share(const he_net *n)
 static void report(const he_remeshing *r, double distance, he_remesh_stop stop, he_remeshed *out)
 {
     const he_net *n = &r->net;
-    double sum = 0;
-    uint64_t count = 0;
+    measured of = {.of_smallest = -HUGE_VAL, .of_largest = HUGE_VAL};
     *out = (he_remeshed){.faces_before = r->ground.triangle_count,
                          .faces = n->live_triangles,
                          .shortest = HUGE_VAL,
@@ -427,15 +452,15 @@ static void report(const he_remeshing *r, double distance, he_remesh_stop stop, 
                          .stop = stop};
     for (uint32_t t = 0; t < n->triangle_count; t++) {
         if (!he_net_is_gone(n, t)) {
-            look_at(n, t, out, &sum, &count);
+            look_at(n, t, &of, out);
         }
     }
-    if (count == 0) {
+    if (of.count == 0) {
         out->shortest = out->smallest_angle = 0;
     }
     out->shortest = he_saturated(ldexp(out->shortest, n->exponent));
     out->longest = he_saturated(ldexp(out->longest, n->exponent));
-    out->mean = count > 0 ? he_saturated(ldexp(sum / (double)count, n->exponent)) : 0;
+    out->mean = of.count > 0 ? he_saturated(ldexp(of.sum / (double)of.count, n->exponent)) : 0;
     out->regular = regular_share(n);
     out->distance = he_saturated(ldexp(distance, n->exponent));
 }

@@ -92,36 +92,60 @@ static void raise(const face *f, const flat ground[3], double *most)
     }
 }
 
-/* Returns true if a part of the segment from a to b is over the face. */
-static bool crosses(const face *f, flat a, flat b)
+/* A corner of the ground as seen from a face: `left` says for each edge of the face how far the
+ * corner is to the left of it, as twice the area of the triangle that they make. */
+typedef struct spot {
+    flat at;
+    double left[3];
+} spot;
+
+static spot look_at(const face *f, he_vec3 p)
+{
+    spot s = {.at = flatten(f, p)};
+    for (unsigned i = 0; i < 3; i++) {
+        s.left[i] = turn(f->corner[i], f->corner[i == 2 ? 0 : i + 1], s.at);
+    }
+    return s;
+}
+
+/* Returns true if a part of the segment between two corners is over the face. */
+static bool crosses(const spot *a, const spot *b)
 {
     double from = 0, to = 1;
     for (unsigned i = 0; i < 3; i++) {
-        flat p = f->corner[i], q = f->corner[(i + 1) % 3];
-        double at_a = turn(p, q, a), at_b = turn(p, q, b);
+        double at_a = a->left[i], at_b = b->left[i];
         if (at_a < 0 && at_b < 0) {
             return false;
         }
         if (at_a < 0) {
-            from = fmax(from, at_a / (at_a - at_b));
+            const double t = at_a / (at_a - at_b);
+            from = t > from ? t : from;
         } else if (at_b < 0) {
-            to = fmin(to, at_a / (at_a - at_b));
+            const double t = at_a / (at_a - at_b);
+            to = t < to ? t : to;
         }
     }
     return from <= to;
 }
 
-static bool has_middle(const flat ground[3])
+static bool has_middle(const spot ground[3])
 {
     flat middle = {0, 0, 0};
-    return turn(ground[0], ground[1], middle) >= 0 && turn(ground[1], ground[2], middle) >= 0 &&
-           turn(ground[2], ground[0], middle) >= 0;
+    return turn(ground[0].at, ground[1].at, middle) >= 0 &&
+           turn(ground[1].at, ground[2].at, middle) >= 0 &&
+           turn(ground[2].at, ground[0].at, middle) >= 0;
 }
+
+/* A triangle of the ground that was found over a face. It is entered across its edge `entry`, whose
+ * ends have been looked at; 3 stands for the first triangle, of which nothing is known. */
+typedef struct over {
+    uint32_t triangle, entry;
+    spot corner[3];
+} over;
 
 /* The triangles of the ground that were found over a face. */
 typedef struct flood {
-    uint32_t found[MOST_GROUND];
-    flat corner[MOST_GROUND][3];
+    over found[MOST_GROUND];
     uint32_t count;
     bool has_middle; /* one of them is over the middle of the face */
     double highest;  /* the largest height of one of their corners */
@@ -130,36 +154,55 @@ typedef struct flood {
 static bool has(const flood *of, uint32_t t)
 {
     for (uint32_t i = of->count; i-- > 0;) {
-        if (of->found[i] == t) {
+        if (of->found[i].triangle == t) {
             return true;
         }
     }
     return false;
 }
 
+static void look_at_corner(const face *f, over *own, unsigned k, flood *to)
+{
+    own->corner[k] = look_at(f, f->g->place[f->g->triangles[own->triangle].v[k]]);
+    to->highest = fmax(to->highest, fabs(own->corner[k].at.z));
+}
+
+/* Adds the triangle beyond the edge k of a triangle that was looked at. */
+static void enter(const over *from, unsigned k, uint32_t twin, flood *to)
+{
+    over *next = &to->found[to->count++];
+    next->triangle = twin >> 2;
+    next->entry = twin & 3;
+    next->corner[twin & 3] = from->corner[k == 2 ? 0 : k + 1];
+    next->corner[(twin & 3) == 2 ? 0 : (twin & 3) + 1] = from->corner[k];
+}
+
 /* Looks at a triangle of the ground, and adds those beside it over the face. Returns false if the
  * face is not surely below the ground. */
-static bool look(const face *f, uint32_t i, flood *to)
+static bool look(const face *f, over *own, flood *to)
 {
-    const he_ground_triangle *own = &f->g->triangles[to->found[i]];
-    flat *at = to->corner[i];
-    for (unsigned k = 0; k < 3; k++) {
-        at[k] = flatten(f, f->g->place[own->v[k]]);
-        to->highest = fmax(to->highest, fabs(at[k].z));
+    const spot *at = own->corner;
+    if (own->entry < 3) {
+        look_at_corner(f, own, own->entry == 0 ? 2 : own->entry - 1, to);
+    } else {
+        for (unsigned k = 0; k < 3; k++) {
+            look_at_corner(f, own, k, to);
+        }
     }
-    if (!(turn(at[0], at[1], at[2]) > 0)) {
+    if (!(turn(at[0].at, at[1].at, at[2].at) > 0)) {
         return false;
     }
-    to->has_middle |= has_middle(at);
+    to->has_middle = to->has_middle || has_middle(at);
     for (unsigned k = 0; k < 3; k++) {
-        const uint32_t twin = own->twin[k];
-        if ((twin != HE_NONE && has(to, twin >> 2)) || !crosses(f, at[k], at[(k + 1) % 3])) {
+        const uint32_t twin = f->g->triangles[own->triangle].twin[k];
+        if (k == own->entry || !crosses(&at[k], &at[k == 2 ? 0 : k + 1]) ||
+            (twin != HE_NONE && has(to, twin >> 2))) {
             continue;
         }
         if (twin == HE_NONE || to->count == MOST_GROUND) {
             return false;
         }
-        to->found[to->count++] = twin >> 2;
+        enter(own, k, twin, to);
     }
     return true;
 }
@@ -168,24 +211,26 @@ static bool look(const face *f, uint32_t i, flood *to)
  * larger number up to `enough`. Returns HUGE_VAL if the face is not surely below the ground. */
 static double height_of(const face *f, uint32_t t, double enough)
 {
-    flood over;
+    flood all; /* it is large, so only members that are used are set */
     double most = 0;
-    over.found[0] = t;
-    over.count = 1;
-    over.has_middle = false;
-    over.highest = 0;
-    for (uint32_t i = 0; i < over.count; i++) {
-        if (!look(f, i, &over)) {
+    all.found[0].triangle = t;
+    all.found[0].entry = 3;
+    all.count = 1;
+    all.has_middle = false;
+    all.highest = 0;
+    for (uint32_t i = 0; i < all.count; i++) {
+        if (!look(f, &all.found[i], &all)) {
             return HUGE_VAL;
         }
     }
-    if (!over.has_middle) {
+    if (!all.has_middle) {
         return HUGE_VAL;
     }
-    for (uint32_t i = 0; i < over.count && over.highest > enough; i++) {
-        raise(f, over.corner[i], &most);
+    for (uint32_t i = 0; i < all.count && all.highest > enough; i++) {
+        const spot *at = all.found[i].corner;
+        raise(f, (flat[3]){at[0].at, at[1].at, at[2].at}, &most);
     }
-    return over.highest > enough ? most : over.highest;
+    return all.highest > enough ? most : all.highest;
 }
 
 /* Returns a bound of the distance of the points of a face from the ground, which need not be the
