@@ -741,8 +741,9 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
         out, "description",
         "Half-edge meshes over HTTP. Every path with GET also answers HEAD. Every error is "
         "application/problem+json. Bodies of more than 1 KiB are compressed with gzip or zstd if "
-        "Accept-Encoding allows; compressed answers have their own ETag, which also works in "
-        "If-Match. Pages of other sites may not change anything, and may not send reads that are "
+        "Accept-Encoding allows, except the positions of preview_deform, which hardly become "
+        "shorter; compressed answers have their own ETag, which also works in If-Match. Pages of "
+        "other sites may not change anything, and may not send reads that are "
         "described as expensive: such a request is answered 403 if Sec-Fetch-Site is cross-site, "
         "unless the server's option --allow-origin names the Origin of the page.");
     api_out_key(out, "license");

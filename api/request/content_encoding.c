@@ -81,7 +81,7 @@ static bool is_worth_it(api_exchange *x)
         return false;
     }
     bool small = a->length >= 0 && a->length <= API_COMPRESS_FROM;
-    return !x->codings.allowed[API_IDENTITY] || (!small && !is_packed(x));
+    return !x->codings.allowed[API_IDENTITY] || (!small && !a->is_dense && !is_packed(x));
 }
 
 /* Adds the header Content-Encoding and the suffix of the coding to the ETag. Returns false, with

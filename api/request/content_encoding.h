@@ -3,10 +3,10 @@
  *
  * An answer is compressed with the coding that Accept-Encoding prefers (content_coding.h).
  * Exceptions are event streams, answers of at most API_COMPRESS_FROM bytes, types that are
- * compressed already, and answers that would not become shorter. ETags are strong, so a compressed
- * answer has its own: "...-gzip". If-None-Match is answered 304 for the tag of any coding that the
- * client accepts, and the 304 repeats that tag. If-Match compares only the state of the mesh, so it
- * accepts the tags of all codings. */
+ * compressed already, answers that are marked as dense (api.h), and answers that would not become
+ * shorter. ETags are strong, so a compressed answer has its own: "...-gzip". If-None-Match is
+ * answered 304 for the tag of any coding that the client accepts, and the 304 repeats that tag.
+ * If-Match compares only the state of the mesh, so it accepts the tags of all codings. */
 #ifndef HE_API_REQUEST_CONTENT_ENCODING_H
 #define HE_API_REQUEST_CONTENT_ENCODING_H
 

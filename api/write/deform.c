@@ -143,6 +143,7 @@ static void answer(api_exchange *x, const drag *d, uint32_t count)
     to = write_ids(to, d->sets.handles, handles);
     (void)write_ids(to, free, count);
     x->text.length += all * BYTES;
+    x->answer.is_dense = true;
     api_answer_text(x, 200, "application/octet-stream");
 }
 

@@ -21,6 +21,7 @@ typedef struct part {
 typedef struct solving {
     const he_deformer *d;
     part *parts;
+    double *block;       /* the arrays below, one after the other */
     he_vec3 *now;        /* the present position of each vertex of the patch, scaled */
     he_vec3 *offset;     /* of those that are not free */
     he_rotation *turns;  /* of each vertex of the patch; NULL with biharmonic */
@@ -32,28 +33,37 @@ typedef struct solving {
 static void clear(solving *s)
 {
     he_mem_free(s->parts);
-    he_mem_free(s->now);
-    he_mem_free(s->offset);
-    he_mem_free(s->turns);
-    he_mem_free(s->base);
-    he_mem_free(s->right);
+    he_mem_free(s->block);
 }
 
+/* Takes `count` numbers from those that are left. */
+static double *take(double **left, size_t count)
+{
+    double *taken = *left;
+    *left += count;
+    return taken;
+}
+
+/* The arrays are parts of one block: while a handle is dragged they are allocated many times a
+ * second, and the system gives out the pages of a large block in larger pieces. */
 static he_status allocate(solving *s, he_error *err)
 {
+    enum { POINT = 3, ROTATION = 9 };
     const he_deformer *d = s->d;
-    const size_t room = (size_t)d->vertices + 1, sides = 3 * (size_t)d->free + 1;
-    const bool turns = d->method == HE_DEFORM_ARAP;
+    const size_t points = POINT * (size_t)d->vertices, sides = POINT * (size_t)d->free;
+    const size_t turns = d->method == HE_DEFORM_ARAP ? ROTATION * (size_t)d->vertices : 0;
     s->parts = he_mem_zero((size_t)d->parts + 1, sizeof *s->parts);
-    s->now = he_mem_array(NULL, room, sizeof *s->now);
-    s->offset = he_mem_array(NULL, room, sizeof *s->offset);
-    s->turns = turns ? he_mem_array(NULL, room, sizeof *s->turns) : NULL;
-    s->base = he_mem_array(NULL, sides, sizeof *s->base);
-    s->right = he_mem_array(NULL, sides, sizeof *s->right);
-    return s->parts != NULL && s->now != NULL && s->offset != NULL && s->base != NULL &&
-                   s->right != NULL && (s->turns != NULL || !turns)
-               ? HE_OK
-               : he_fail_plain(err, HE_NO_MEMORY, "no memory to deform %u vertices", d->free);
+    s->block = he_mem_array(NULL, 2 * points + turns + 2 * sides, sizeof *s->block);
+    if (s->parts == NULL || s->block == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to deform %u vertices", d->free);
+    }
+    double *left = s->block;
+    s->now = (he_vec3 *)(void *)take(&left, points);
+    s->offset = (he_vec3 *)(void *)take(&left, points);
+    s->turns = turns == 0 ? NULL : (he_rotation *)(void *)take(&left, turns);
+    s->base = take(&left, sides);
+    s->right = take(&left, sides);
+    return HE_OK;
 }
 
 /* --- the motion of the whole parts --- */

@@ -66,6 +66,28 @@ static size_t require_same(api_bench *b, const char *body)
     return count;
 }
 
+static void a_preview_is_compressed_only_if_it_must(void **state)
+{
+    (void)state;
+    static const char BODY[] = "{\"op\":\"deform\",\"vertex\":0,\"by\":[0,0,0.5]}";
+    static const struct {
+        const char *accept, *coding;
+    } cases[] = {{"gzip, deflate", ""}, {"zstd, gzip", ""}, {"gzip, identity;q=0", "gzip"}};
+    api_bench *b = begin();
+    bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/fine", NULL,
+                                            "{\"shape\":\"icosphere\",\"subdivisions\":3}")));
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bench_reply r = bench_expect(
+            200, bench_send(b, "POST", "/v1/meshes/fine/deform",
+                            (const char *const[]){"Accept-Encoding", cases[i].accept, NULL}, BODY));
+        const char *coding = bench_header(&r, "Content-Encoding");
+        assert_string_equal(coding, cases[i].coding);
+        assert_true(cases[i].coding[0] != '\0' || r.length == 642 * BYTES);
+        bench_reply_free(&r);
+    }
+    bench_free(b);
+}
+
 static void a_preview_foretells_the_edit(void **state)
 {
     (void)state;
@@ -202,6 +224,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_preview_foretells_the_edit),
+        cmocka_unit_test(a_preview_is_compressed_only_if_it_must),
         cmocka_unit_test(a_kept_system_answers_like_a_new_one),
         cmocka_unit_test(bad_previews_are_refused_by_name),
         cmocka_unit_test(every_allocation_may_fail),
