@@ -14,6 +14,7 @@ enum {
     REMESH_STEPS,
     REMESH_CREASE,
     REMESH_KEEP_BOUNDARY,
+    REMESH_KEEP_SEAMS,
     REMESH_PROJECT,
     REMESH_FACES
 };
@@ -44,6 +45,7 @@ static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_
                                  .steps = (unsigned)args[REMESH_STEPS].number,
                                  .crease = args[REMESH_CREASE].number,
                                  .fixed_boundary = args[REMESH_KEEP_BOUNDARY].flag,
+                                 .keep_seams = args[REMESH_KEEP_SEAMS].flag,
                                  .project = args[REMESH_PROJECT].flag,
                                  .faces = faces->given ? faces->ids : NULL,
                                  .face_count = faces->count};
@@ -90,8 +92,9 @@ const he_op he_remesh_rows[] = {
     {
         .name = "remesh",
         .doc = "Replace triangles by others of even size and shape that cover the same surface. "
-               "Boundaries, edges whose bool attribute `feature` is true, creases and borders of "
-               "materials keep their shape: vertices move only along them, and their corners stay. "
+               "Boundaries, edges whose bool attribute `feature` is true, creases, seams of "
+               "attributes such as uv, and borders of materials keep their shape: vertices move "
+               "only along them, and their corners stay. "
                "What is `locked` does not change. A million faces take about 6 s.",
         .size = HE_OP_WHOLE,
         .params =
@@ -153,6 +156,13 @@ const he_op he_remesh_rows[] = {
              [REMESH_KEEP_BOUNDARY] = {.name = "keep_boundary",
                                        .type = HE_PARAM_FLAG,
                                        .doc = "Do not change boundary edges at all."},
+             [REMESH_KEEP_SEAMS] = {.name = "keep_seams",
+                                    .type = HE_PARAM_FLAG,
+                                    .fallback = 1,
+                                    .doc = "Edges at which an interpolated attribute of corners "
+                                           "has different values on both sides, such as the seams "
+                                           "of uv, count as features. The attributes normal and "
+                                           "tangent have no seams."},
              [REMESH_PROJECT] = {.name = "project",
                                  .type = HE_PARAM_FLAG,
                                  .fallback = 1,

@@ -87,25 +87,35 @@ void he_ground_nearest(const he_ground *g, he_vec3 place, uint32_t triangle, he_
 /* The most triangles around a corner that a step of the walk looks at. */
 enum { LOOKS = 32 };
 
-static uint32_t turn(const he_ground *g, uint32_t c, bool ccw)
+/* Returns the twin of a corner; HE_NONE if there is none, or if the edge is held and `held` is
+ * false. */
+static uint32_t across(const he_ground *g, uint32_t c, bool held)
+{
+    if (!held && g->held != NULL && (g->held[c >> 2] >> (c & 3) & 1) != 0) {
+        return HE_NONE;
+    }
+    return g->triangles[c >> 2].twin[c & 3];
+}
+
+static uint32_t turn(const he_ground *g, uint32_t c, bool ccw, bool held)
 {
     if (ccw) {
-        uint32_t before = he_net_prev(c);
-        return g->triangles[before >> 2].twin[before & 3];
+        return across(g, he_net_prev(c), held);
     }
-    uint32_t twin = g->triangles[c >> 2].twin[c & 3];
+    uint32_t twin = across(g, c, held);
     return twin == HE_NONE ? HE_NONE : he_net_next(twin);
 }
 
 /* Looks for a triangle around the origin of corner c that is nearer than `best`. Returns the part
  * of it in which the nearest point lies; INSIDE if there is no such triangle. */
-static unsigned step_around(const he_ground *g, uint32_t c, he_vec3 place, he_ground_point *best)
+static unsigned step_around(const he_ground *g, uint32_t c, he_vec3 place, bool held,
+                            he_ground_point *best)
 {
     unsigned found = INSIDE;
     uint32_t looks = 0;
     for (unsigned ccw = 0; ccw < 2; ccw++) {
-        uint32_t at = turn(g, c, ccw != 0);
-        for (; at != HE_NONE && at != c && looks < LOOKS; at = turn(g, at, ccw != 0)) {
+        uint32_t at = turn(g, c, ccw != 0, held);
+        for (; at != HE_NONE && at != c && looks < LOOKS; at = turn(g, at, ccw != 0, held)) {
             he_ground_point point;
             unsigned part = try_triangle(g, at >> 2, place, &point);
             looks++;
@@ -121,15 +131,17 @@ static unsigned step_around(const he_ground *g, uint32_t c, he_vec3 place, he_gr
     return found;
 }
 
-void he_ground_walk(const he_ground *g, he_vec3 place, uint32_t from, he_ground_point *out)
+/* Walks, across edges that are held only if `held` is true. */
+static inline void walk(const he_ground *g, he_vec3 place, uint32_t from, bool held,
+                        he_ground_point *out)
 {
     unsigned part = try_triangle(g, from, place, out);
     for (unsigned steps = 0; part != INSIDE && steps < HE_GROUND_STEPS; steps++) {
         if (part >= AT_CORNER) {
-            part = step_around(g, 4 * out->triangle + (part - AT_CORNER), place, out);
+            part = step_around(g, 4 * out->triangle + (part - AT_CORNER), place, held, out);
             continue;
         }
-        uint32_t twin = g->triangles[out->triangle].twin[part - ON_EDGE];
+        uint32_t twin = across(g, 4 * out->triangle + (part - ON_EDGE), held);
         he_ground_point point;
         if (twin == HE_NONE) {
             return;
@@ -142,6 +154,16 @@ void he_ground_walk(const he_ground *g, he_vec3 place, uint32_t from, he_ground_
     }
 }
 
+void he_ground_walk(const he_ground *g, he_vec3 place, uint32_t from, he_ground_point *out)
+{
+    walk(g, place, from, true, out);
+}
+
+void he_ground_walk_beside(const he_ground *g, he_vec3 place, uint32_t from, he_ground_point *out)
+{
+    walk(g, place, from, false, out);
+}
+
 he_status he_ground_copy(const he_net *n, bool sizes, he_ground *out, he_error *err)
 {
     he_ground g = {.triangle_count = n->triangle_count, .vertex_count = n->vertex_count};
@@ -150,8 +172,10 @@ he_status he_ground_copy(const he_net *n, bool sizes, he_ground *out, he_error *
     g.face = he_mem_array(NULL, (size_t)n->triangle_count + 1, sizeof *g.face);
     g.vertex = he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *g.vertex);
     g.size = sizes ? he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *g.size) : NULL;
+    const bool held = n->line != NULL;
+    g.held = held ? he_mem_array(NULL, (size_t)n->triangle_count + 1, sizeof *g.held) : NULL;
     if (g.triangles == NULL || g.place == NULL || g.face == NULL || g.vertex == NULL ||
-        (sizes && g.size == NULL)) {
+        (sizes && g.size == NULL) || (held && g.held == NULL)) {
         he_ground_clear(&g);
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a copy of %u triangles",
                              n->triangle_count);
@@ -162,6 +186,9 @@ he_status he_ground_copy(const he_net *n, bool sizes, he_ground *out, he_error *
             g.triangles[t].twin[i] = n->triangles[t].twin[i];
         }
         g.face[t] = n->ids[t].face;
+        if (held) {
+            g.held[t] = n->triangles[t].marks & (7 * HE_NET_HELD);
+        }
     }
     for (uint32_t v = 0; v < n->vertex_count; v++) {
         g.place[v] = n->vertices[v].p;
@@ -181,5 +208,6 @@ void he_ground_clear(he_ground *g)
     he_mem_free(g->size);
     he_mem_free(g->face);
     he_mem_free(g->vertex);
+    he_mem_free(g->held);
     *g = (he_ground){.triangles = NULL};
 }

@@ -20,6 +20,7 @@ typedef struct he_ground {
     float *size; /* the wanted length of edges at each vertex; NULL if it is the same everywhere */
     uint32_t *face;   /* the face of the mesh that each triangle is */
     uint32_t *vertex; /* the vertex of the mesh that each vertex is */
+    uint8_t *held;    /* bit i of each triangle: its edge i is held; NULL if no edge is */
     uint32_t triangle_count, vertex_count;
 } he_ground;
 
@@ -48,5 +49,7 @@ void he_ground_nearest(const he_ground *g, he_vec3 place, uint32_t triangle, he_
  * its nearest point. The walk ends after HE_GROUND_STEPS triangles at the latest. */
 enum { HE_GROUND_STEPS = 256 };
 void he_ground_walk(const he_ground *g, he_vec3 place, uint32_t from, he_ground_point *out);
+/* Walks as he_ground_walk does, but across no edge that is held. */
+void he_ground_walk_beside(const he_ground *g, he_vec3 place, uint32_t from, he_ground_point *out);
 
 #endif

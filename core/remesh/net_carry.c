@@ -90,18 +90,33 @@ static bool has_changed(const carrier *w, uint32_t t)
     return changed;
 }
 
-/* The corner's values are those of a point that is a little nearer to the middle of the face than
- * the corner, so that the values come from the right side of a line. */
+/* On a line, a corner's values are those on the side of the line on which a point is that is a
+ * little nearer to the middle of the face than the corner. */
 static const double INWARD = 1.0 / 64;
+
+/* Finds the point of the ground that is nearest to a corner, on its side of the lines. All corners
+ * at a vertex that is not on a line get the same point, and those at a vertex of a line, on one
+ * side of it, the same up to rounding: the values have no seams but those of before. */
+static void find_place(const carrier *w, uint32_t c, he_vec3 middle, uint32_t from,
+                       he_ground_point *at)
+{
+    const he_net *n = w->n;
+    const uint32_t v = he_net_origin(n, c);
+    he_vec3 p = he_net_place(n, v);
+    if (!he_net_has(n, v, HE_NET_LINE | HE_NET_FIXED)) {
+        he_ground_walk(w->g, p, n->ground[v], at);
+        return;
+    }
+    he_vec3 in = he_vec3_add(p, he_vec3_scale(he_vec3_sub(middle, p), INWARD));
+    he_ground_walk(w->g, in, from, at);
+    he_ground_walk_beside(w->g, p, at->triangle, at);
+}
 
 static void carry_corner(const carrier *w, uint32_t c, he_vec3 middle, uint32_t from)
 {
-    he_vec3 p = he_net_place(w->n, he_net_origin(w->n, c));
     he_ground_point at;
     uint32_t rows[3];
-    he_vec3 in = he_vec3_add(p, he_vec3_scale(he_vec3_sub(middle, p), INWARD));
-    he_ground_walk(w->g, in, from, &at);
-    he_ground_nearest(w->g, p, at.triangle, &at);
+    find_place(w, c, middle, from, &at);
     uint32_t h = w->m->c.face_halfedge[w->g->face[at.triangle]];
     for (unsigned i = 0; i < 3; i++) {
         rows[i] = h;

@@ -115,6 +115,85 @@ static void hold_materials(he_net *n, const he_mesh *m)
     }
 }
 
+/* Numbers on the two sides of an edge differ if they do so by more than this fraction of the
+ * largest number of the attribute: where an attribute has no seam, interpolation leaves rounding
+ * errors. */
+static const double FLOAT_ROUNDING = 1e-6, DOUBLE_ROUNDING = 1e-9;
+
+/* An attribute of corners that may have seams, and by how much its numbers must differ. */
+typedef struct seamed {
+    const he_column *column;
+    double least;
+} seamed;
+
+static double number_at(const he_column *column, uint32_t row, uint32_t k)
+{
+    const unsigned char *value = he_column_value(column, row);
+    if (column->type == HE_FLOAT) {
+        float narrow;
+        memcpy(&narrow, value + k * sizeof narrow, sizeof narrow);
+        return (double)narrow;
+    }
+    double wide;
+    memcpy(&wide, value + k * sizeof wide, sizeof wide);
+    return wide;
+}
+
+/* Returns true if an attribute is interpolated over the surface, and says more than its shape, as
+ * normals and tangents do not: faces that are drawn flat have other ones on each side of each
+ * edge. */
+static bool may_have_seams(const he_column *column)
+{
+    return column != NULL && column->domain == HE_HALFEDGE && column->rule == HE_INTERPOLATE &&
+           (column->type == HE_FLOAT || column->type == HE_DOUBLE) &&
+           strcmp(column->name, "normal") != 0 && strcmp(column->name, "tangent") != 0;
+}
+
+static seamed look_at(const he_net *n, const he_column *column)
+{
+    double most = 0;
+    for (uint32_t c = 0; c < 4 * n->triangle_count; c++) {
+        for (uint32_t k = 0; k < column->components && (c & 3) != 3; k++) {
+            const double number = fabs(number_at(column, he_net_halfedge(n, c), k));
+            most = number > most && isfinite(number) ? number : most;
+        }
+    }
+    return (seamed){column, most * (column->type == HE_FLOAT ? FLOAT_ROUNDING : DOUBLE_ROUNDING)};
+}
+
+static bool differ(const seamed *of, uint32_t h, uint32_t other)
+{
+    for (uint32_t k = 0; k < of->column->components; k++) {
+        if (fabs(number_at(of->column, h, k) - number_at(of->column, other, k)) > of->least) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Returns true if the values at one of the ends of an edge are not the same on both its sides. */
+static bool is_seam(const he_net *n, const seamed *of, uint32_t c, uint32_t twin)
+{
+    return differ(of, he_net_halfedge(n, c), he_net_halfedge(n, he_net_next(twin))) ||
+           differ(of, he_net_halfedge(n, he_net_next(c)), he_net_halfedge(n, twin));
+}
+
+static void hold_seams(he_net *n, const he_mesh *m)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        if (!may_have_seams(m->c.columns[i])) {
+            continue;
+        }
+        const seamed of = look_at(n, m->c.columns[i]);
+        for (uint32_t c = 0; c < 4 * n->triangle_count; c++) {
+            const uint32_t twin = (c & 3) == 3 ? HE_NONE : he_net_twin(n, c);
+            if (twin != HE_NONE && c < twin && is_seam(n, &of, c, twin)) {
+                hold(n, c, HE_NET_HELD);
+            }
+        }
+    }
+}
+
 static void hold_marked(he_net *n, const he_mesh *m, const he_net_choice *choice)
 {
     he_marks marks = {.feature = NULL};
@@ -158,6 +237,9 @@ he_status he_net_hold(he_net *n, const he_mesh *m, const he_net_choice *choice, 
     if (status == HE_OK) {
         hold_marked(n, m, choice);
         hold_materials(n, m);
+        if (choice->keep_seams) {
+            hold_seams(n, m);
+        }
         freeze_borders(n);
     }
     return status;

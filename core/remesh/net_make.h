@@ -12,6 +12,7 @@ typedef struct he_net_choice {
      * and a vertex inside a line is fixed if the line turns by more than this angle; in radians. */
     double crease;
     bool fixed_boundary; /* edges on the boundary are frozen */
+    bool keep_seams;     /* seams are held, as remesh.h says */
 } he_net_choice;
 
 /* Makes the net of the chosen faces, except locked ones, which count as not chosen. The caller

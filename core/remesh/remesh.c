@@ -340,7 +340,7 @@ static he_status compute(const he_mesh *m, const he_remesh_options *options, he_
                          he_remesh_stop *stop, he_error *err)
 {
     const he_net_choice choice = {options->faces, options->face_count, options->crease,
-                                  options->fixed_boundary};
+                                  options->fixed_boundary, options->keep_seams};
     double length = 0;
     he_status status = he_progress_phase(r->progress, "preparing", PREPARED, err);
     if (status == HE_OK) {

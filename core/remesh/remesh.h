@@ -16,7 +16,9 @@
  * WHAT STAYS. Vertices never leave these LINES, along which they may move:
  *
  *     boundaries; edges that are marked `feature`; edges where the normals of the faces differ by
- *     more than the angle `crease`; edges between faces of different materials.
+ *     more than the angle `crease`; edges between faces of different materials; SEAMS, if they
+ *     are kept: edges on whose two sides an attribute of corners has different values at an end,
+ *     if it is a float or double that is interpolated, and neither `normal` nor `tangent`.
  *
  * The ends and branches of lines stay in place, and so do vertices at which a line turns by more
  * than `crease`; a closed line keeps two of its vertices. New vertices on a line are points of the
@@ -34,10 +36,11 @@
  *
  * ATTRIBUTES. Values stay where they were on the surface: a vertex that is new or was moved gets
  * the values of that point of the old surface that is nearest to it, and a corner or face those of
- * the point nearest to it. The rule of the attribute says how: interpolated between the corners of
- * the old face; copied from the nearest of them (an old vertex keeps its own value); or the default
- * value. Edges: parts of an edge have its values, unless the rule is `default`; parts of `feature`
- * edges are features under any rule; edges that were made inside a face have default values. */
+ * the point nearest to it, on its side of the lines. The rule of the attribute says how:
+ * interpolated between the corners of the old face; copied from the nearest of them (an old vertex
+ * keeps its own value); or the default value. Edges: parts of an edge have its values, unless the
+ * rule is `default`; parts of `feature` edges are features under any rule; edges that were made
+ * inside a face have default values. */
 #ifndef HE_REMESH_REMESH_H
 #define HE_REMESH_REMESH_H
 
@@ -76,6 +79,7 @@ typedef struct he_remesh_options {
     unsigned steps;        /* 1 to HE_REMESH_STEPS */
     bool project;          /* vertices are moved back onto the old surface, and fitted at last */
     bool fixed_boundary;   /* boundary edges are not changed at all */
+    bool keep_seams;       /* seams are lines; see the head of this file */
     double crease;         /* an angle in radians, from 0 to pi; see the head of this file */
     const uint32_t *faces; /* the ids of the faces to replace; NULL stands for all faces */
     size_t face_count;

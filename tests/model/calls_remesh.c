@@ -83,6 +83,9 @@ static bool draw_remesh(md_draft *d)
     if (md_chance(d->r, 20)) {
         md_give_flag(d, "keep_boundary", true);
     }
+    if (md_chance(d->r, 50)) {
+        md_give_flag(d, "keep_seams", false);
+    }
     if (md_chance(d->r, 20)) {
         md_give_flag(d, "project", false);
     }
@@ -106,6 +109,7 @@ static he_status run(const md_call *c, he_mesh *m)
                                  .steps = (unsigned)md_get(c, "steps")->number,
                                  .crease = md_get(c, "crease")->number,
                                  .fixed_boundary = md_get(c, "keep_boundary")->flag,
+                                 .keep_seams = md_get(c, "keep_seams")->flag,
                                  .project = md_get(c, "project")->flag,
                                  .faces = faces->given ? faces->ids : NULL,
                                  .face_count = faces->count};

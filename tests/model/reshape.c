@@ -190,6 +190,7 @@ static void draw_remesh(drawing *w)
         md_give_number(&w->d, "crease", md_unit(w->r) * 3.14);
     }
     md_give_flag(&w->d, "keep_boundary", md_chance(w->r, 20));
+    md_give_flag(&w->d, "keep_seams", md_chance(w->r, 50));
     md_give_flag(&w->d, "project", md_chance(w->r, 80));
     if (md_chance(w->r, 30)) {
         give_some(w, "faces", HE_FACE, 100 * md_unit(w->r));

@@ -131,6 +131,7 @@ static he_remesh_options draw(const he_mesh *m, md_random *r, he_ids *faces, uin
                                  .steps = md_from(r, 1, 6),
                                  .project = md_chance(r, 80),
                                  .fixed_boundary = md_chance(r, 20),
+                                 .keep_seams = md_chance(r, 50),
                                  .crease = md_chance(r, 70) ? HE_REMESH_CREASE : md_unit(r) * 3};
     if (options.by == HE_REMESH_BY_ERROR) {
         options.min_length = options.edge_length / 4;

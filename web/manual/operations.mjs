@@ -247,7 +247,7 @@ export const OPERATIONS = {
     ),
     remesh: solid(
         'tetrahedron',
-        'Simulations need triangles of even size. Feature edges and corners stay where they are.',
+        'Simulations need triangles of even size. Feature edges, seams of `uv` and corners stay where they are.',
         () => ({ op: 'remesh', target_faces: 120, steps: 5 }),
     ),
     smooth: solid(
