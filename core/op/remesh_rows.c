@@ -31,24 +31,29 @@ enum {
     REMESH_OUT_DISTANCE
 };
 
-static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+static he_remesh_options remesh_options(const he_arg *args)
 {
     const he_arg *faces = &args[REMESH_FACES];
-    he_remesh_options options = {.by = args[REMESH_ERROR].given          ? HE_REMESH_BY_ERROR
-                                       : args[REMESH_TARGET_FACES].given ? HE_REMESH_BY_FACES
-                                                                         : HE_REMESH_BY_LENGTH,
-                                 .edge_length = args[REMESH_EDGE_LENGTH].number,
-                                 .target_faces = (uint32_t)args[REMESH_TARGET_FACES].number,
-                                 .error = args[REMESH_ERROR].number,
-                                 .min_length = args[REMESH_MIN_LENGTH].number,
-                                 .max_length = args[REMESH_MAX_LENGTH].number,
-                                 .steps = (unsigned)args[REMESH_STEPS].number,
-                                 .crease = args[REMESH_CREASE].number,
-                                 .fixed_boundary = args[REMESH_KEEP_BOUNDARY].flag,
-                                 .keep_seams = args[REMESH_KEEP_SEAMS].flag,
-                                 .project = args[REMESH_PROJECT].flag,
-                                 .faces = faces->given ? faces->ids : NULL,
-                                 .face_count = faces->count};
+    return (he_remesh_options){.by = args[REMESH_ERROR].given          ? HE_REMESH_BY_ERROR
+                                     : args[REMESH_TARGET_FACES].given ? HE_REMESH_BY_FACES
+                                                                       : HE_REMESH_BY_LENGTH,
+                               .edge_length = args[REMESH_EDGE_LENGTH].number,
+                               .target_faces = (uint32_t)args[REMESH_TARGET_FACES].number,
+                               .error = args[REMESH_ERROR].number,
+                               .min_length = args[REMESH_MIN_LENGTH].number,
+                               .max_length = args[REMESH_MAX_LENGTH].number,
+                               .steps = (unsigned)args[REMESH_STEPS].number,
+                               .crease = args[REMESH_CREASE].number,
+                               .fixed_boundary = args[REMESH_KEEP_BOUNDARY].flag,
+                               .keep_seams = args[REMESH_KEEP_SEAMS].flag,
+                               .project = args[REMESH_PROJECT].flag,
+                               .faces = faces->given ? faces->ids : NULL,
+                               .face_count = faces->count};
+}
+
+static he_status run_remesh(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
+{
+    const he_remesh_options options = remesh_options(args);
     he_remeshed done;
     he_status status = he_remesh(m, &options, &done, err);
     if (status == HE_OK) {
@@ -72,20 +77,15 @@ static unsigned remesh_times(const he_arg *args)
     return 1 + (unsigned)args[REMESH_STEPS].number / (2 * HE_REMESH_STEPS_USUAL);
 }
 
-/* A wanted length that depends on the curvature is not foreseen. */
+/* What will be refused makes no faces. */
 static double remesh_growth(const he_mesh *mesh, const he_arg *args)
 {
+    const he_remesh_options options = remesh_options(args);
     const uint32_t faces = mesh == NULL ? 0 : he_mesh_faces(mesh);
-    double wanted = faces;
-    if (faces == 0 || args[REMESH_ERROR].given) {
-        return 1;
-    }
-    if (args[REMESH_TARGET_FACES].given) {
-        wanted = args[REMESH_TARGET_FACES].number;
-    } else if (args[REMESH_EDGE_LENGTH].number > 0) {
-        wanted = he_remesh_foretell(mesh, args[REMESH_EDGE_LENGTH].number);
-    }
-    return fmax(1, wanted / faces);
+    const bool foreseen = options.by == HE_REMESH_BY_LENGTH  ? options.edge_length > 0
+                          : options.by == HE_REMESH_BY_ERROR ? options.error > 0
+                                                             : true;
+    return faces == 0 || !foreseen ? 1 : fmax(1, he_remesh_foretell(mesh, &options) / faces);
 }
 
 const he_op he_remesh_rows[] = {

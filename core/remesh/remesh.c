@@ -69,16 +69,16 @@ static he_status check(const he_mesh *m, const he_remesh_options *options, he_er
                                                     HE_REPEATED_ELEMENT, err);
 }
 
-/* The mean area of triangles if the wanted length is 1: that of regular triangles whose sides are
- * as long as the mean of the edges that result, about 0.95. */
-static const double MEAN_AREA = 0.39;
-
 /* Estimates how many triangles are needed if edges are `scale` times as long as wanted: so many as
  * have the same area, and for a triangle that is longer but much lower than the length, as many as
  * fit along it. */
-static double estimate(const he_net *n, double scale)
+typedef struct expected {
+    double by_area, in_slivers;
+} expected;
+
+static expected estimate(const he_net *n, double scale)
 {
-    double sum = 0;
+    expected sum = {0, 0};
     for (uint32_t t = 0; t < n->triangle_count; t++) {
         if (he_net_is_gone(n, t)) {
             continue;
@@ -91,45 +91,12 @@ static double estimate(const he_net *n, double scale)
         double longest =
             sqrt(fmax(he_remesh_square(p->p, q->p),
                       fmax(he_remesh_square(q->p, r->p), he_remesh_square(r->p, p->p))));
-        sum += area / (MEAN_AREA * length * length);
+        sum.by_area += area / (HE_REMESH_MEAN_AREA * length * length);
         if (longest > length && 2 * area < 0.5 * length * longest) {
-            sum += longest / length;
+            sum.in_slivers += longest / length;
         }
     }
     return sum;
-}
-
-/* Estimates how many triangles of edges of a length take the place of a face, as `estimate` does.
- */
-static double foretell_face(const he_mesh *m, he_face f, double edge_length)
-{
-    const double area = he_face_area(m, f);
-    const double many = area / edge_length / edge_length / MEAN_AREA;
-    const he_halfedge first = he_face_halfedge(m, f);
-    double longest = 0;
-    he_halfedge h = first;
-    for (unsigned i = 0; i < 3; i++) {
-        longest = fmax(longest, he_edge_length(m, he_edge_of(h)));
-        h = he_next(m, h);
-    }
-    const bool is_sliver = longest > edge_length && 2 * area < 0.5 * edge_length * longest;
-    return is_sliver ? many + longest / edge_length : many;
-}
-
-double he_remesh_foretell(const he_mesh *m, double edge_length)
-{
-    enum { SAMPLES = 4096 };
-    const uint32_t issued = he_mesh_issued(m, HE_FACE);
-    const uint32_t stride = issued / SAMPLES + 1;
-    double sum = 0, count = 0;
-    for (uint32_t f = 0; f < issued; f += stride) {
-        if (he_mesh_is_live(m, HE_FACE, f)) {
-            sum += foretell_face(m, (he_face){f}, edge_length);
-            count++;
-        }
-    }
-    const double faces = count > 0 ? sum / count * he_mesh_faces(m) : 0;
-    return fmin(faces, HE_REMESH_FACES);
 }
 
 static double extent_of(const he_net *n)
@@ -158,7 +125,8 @@ static double length_for(he_net *n, double target, double least)
     set_sizes(n, 1);
     while (high > low * (1 + 1e-3)) {
         double middle = sqrt(low * high);
-        if (estimate(n, middle) > target) {
+        const expected e = estimate(n, middle);
+        if (e.by_area + e.in_slivers > target) {
             low = middle;
         } else {
             high = middle;
@@ -167,9 +135,13 @@ static double length_for(he_net *n, double target, double least)
     return high;
 }
 
-static he_status require_few(const he_net *n, const he_remesh_options *options, he_error *err)
+/* Refuses what would make too many triangles. Slivers are counted only if `slivers` is true: where
+ * they lie side by side, collapses leave few of them. */
+static he_status require_few(const he_net *n, const he_remesh_options *options, bool slivers,
+                             he_error *err)
 {
-    double faces = estimate(n, 1);
+    const expected e = estimate(n, 1);
+    const double faces = e.by_area + (slivers ? e.in_slivers : 0);
     if (faces <= HE_REMESH_FACES) {
         return HE_OK;
     }
@@ -308,7 +280,7 @@ static he_status run_steps(he_remeshing *r, const he_remesh_options *options, do
      * cut into more pieces than are needed. */
     he_status status = he_remesh_collapse(r, true, err);
     if (status == HE_OK && options->by != HE_REMESH_BY_FACES) {
-        status = require_few(&r->net, options, err);
+        status = require_few(&r->net, options, true, err);
     }
     for (unsigned i = 0; i < options->steps && status == HE_OK; i++) {
         double to = PREPARED + (STEPPED - PREPARED) * (i + 1) / options->steps;
@@ -348,6 +320,9 @@ static he_status compute(const he_mesh *m, const he_remesh_options *options, he_
     }
     if (status == HE_OK) {
         status = find_lengths(&r->net, options, r->progress, &length, err);
+    }
+    if (status == HE_OK && options->by != HE_REMESH_BY_FACES) {
+        status = require_few(&r->net, options, false, err);
     }
     if (status == HE_OK) {
         r->net.most_triangles = HE_REMESH_FACES;

@@ -127,9 +127,10 @@ enum { HE_REMESH_RECORDED = 20000 };
 HE_NODISCARD he_status he_remesh(he_mesh *m, const he_remesh_options *options, he_remeshed *out,
                                  he_error *err);
 
-/* Estimates how many faces there would be with edges of a length above 0, from at most some
- * thousand faces of the mesh, so that it takes no longer for a large mesh. At most HE_REMESH_FACES.
- */
-double he_remesh_foretell(const he_mesh *m, double edge_length);
+/* Estimates how many faces the mesh would have, from at most some thousand faces, so that it takes
+ * no longer for a large mesh. The list of faces need not be valid; the lengths and the error that
+ * `by` tells of must be above 0. If lengths depend on the curvature and that changes within a few
+ * faces, there may be a few times as many. Returns at most HE_REMESH_FACES. */
+double he_remesh_foretell(const he_mesh *m, const he_remesh_options *options);
 
 #endif

@@ -12,6 +12,10 @@
 #define HE_REMESH_LONG  1.19
 #define HE_REMESH_SHORT 0.75
 
+/* The mean area of triangles if the wanted length is 1: that of regular triangles whose sides are
+ * as long as the mean of the edges that result, about 0.95. */
+#define HE_REMESH_MEAN_AREA 0.39
+
 typedef struct he_remeshing {
     he_net net;
     he_ground ground;

@@ -2,13 +2,7 @@
 
 #include "geometry/scale.h"
 
-/* The curvature around a vertex: a symmetric tensor whose eigenvectors are the directions of
- * curvature, times the area for which it stands. */
-typedef struct tensor {
-    double xx, xy, xz, yy, yz, zz, area;
-} tensor;
-
-static void add(tensor *to, const tensor *of)
+static void add(he_bending *to, const he_bending *of)
 {
     to->xx += of->xx;
     to->xy += of->xy;
@@ -27,30 +21,37 @@ static he_vec3 area_of(const he_net *n, uint32_t t)
                          he_vec3_sub(he_net_place(n, v[2]), a));
 }
 
-/* Adds half of an edge, bent by an angle, to the tensors of its ends. */
-static void add_edge(const he_net *n, uint32_t c, tensor *of)
+void he_sizing_bend(he_vec3 way, he_vec3 left, he_vec3 right, he_bending *to)
 {
-    uint32_t twin = he_net_twin(n, c), from = he_net_origin(n, c), to = he_net_target(n, c);
-    he_vec3 left, right, along;
-    he_vec3 way = he_vec3_sub(he_net_place(n, to), he_net_place(n, from));
-    if (!he_vec3_normalise(area_of(n, c >> 2), &left) ||
-        !he_vec3_normalise(area_of(n, twin >> 2), &right) || !he_vec3_normalise(way, &along)) {
-        return;
+    he_vec3 along;
+    if (he_vec3_normalise(way, &along)) {
+        double sine = he_vec3_dot(he_vec3_cross(left, right), along);
+        double bend = 0.5 * atan2(sine, he_vec3_dot(left, right)) * he_vec3_length(way);
+        const he_bending half = {bend * along.x * along.x,
+                                 bend * along.x * along.y,
+                                 bend * along.x * along.z,
+                                 bend * along.y * along.y,
+                                 bend * along.y * along.z,
+                                 bend * along.z * along.z,
+                                 0};
+        add(to, &half);
     }
-    double sine = he_vec3_dot(he_vec3_cross(left, right), along);
-    double bend = 0.5 * atan2(sine, he_vec3_dot(left, right)) * he_vec3_length(way);
-    tensor half = {bend * along.x * along.x,
-                   bend * along.x * along.y,
-                   bend * along.x * along.z,
-                   bend * along.y * along.y,
-                   bend * along.y * along.z,
-                   bend * along.z * along.z,
-                   0};
-    add(&of[from], &half);
-    add(&of[to], &half);
 }
 
-static he_status find_tensors(const he_net *n, tensor *of, he_progress *progress, he_error *err)
+/* Adds half of an edge to the tensors of each of its ends. */
+static void add_edge(const he_net *n, uint32_t c, he_bending *of)
+{
+    uint32_t twin = he_net_twin(n, c), from = he_net_origin(n, c), to = he_net_target(n, c);
+    he_vec3 left, right;
+    he_vec3 way = he_vec3_sub(he_net_place(n, to), he_net_place(n, from));
+    if (he_vec3_normalise(area_of(n, c >> 2), &left) &&
+        he_vec3_normalise(area_of(n, twin >> 2), &right)) {
+        he_sizing_bend(way, left, right, &of[from]);
+        he_sizing_bend(way, left, right, &of[to]);
+    }
+}
+
+static he_status find_tensors(const he_net *n, he_bending *of, he_progress *progress, he_error *err)
 {
     he_status status = HE_OK;
     for (uint32_t t = 0; t < n->triangle_count && status == HE_OK; t++) {
@@ -68,7 +69,7 @@ static he_status find_tensors(const he_net *n, tensor *of, he_progress *progress
 }
 
 /* Adds to the tensor of each vertex those of its neighbours, except across held edges. */
-static void gather_tensors(const he_net *n, const tensor *of, tensor *to)
+static void gather_tensors(const he_net *n, const he_bending *of, he_bending *to)
 {
     for (uint32_t v = 0; v < n->vertex_count; v++) {
         to[v] = of[v];
@@ -83,7 +84,7 @@ static void gather_tensors(const he_net *n, const tensor *of, tensor *to)
 /* Returns the greatest magnitude of the curvatures. One of the three eigenvalues, that in the
  * direction of the normal, is nearly zero, so the others follow from the trace and the sum of the
  * squares. */
-static double greatest(const tensor *t)
+static double greatest(const he_bending *t)
 {
     if (!(t->area > 0)) {
         return 0;
@@ -101,6 +102,11 @@ static double length_for(double curvature, const he_sizing *s)
     double square = curvature > 0 ? 6 * s->error / curvature - 3 * s->error * s->error : HUGE_VAL;
     double length = square > 0 ? sqrt(square) : 0;
     return fmin(fmax(length, s->least), s->most);
+}
+
+double he_sizing_length(const he_bending *of, const he_sizing *s)
+{
+    return length_for(greatest(of), s);
 }
 
 /* Shortens the wanted lengths at the vertices inside lines that are curved. */
@@ -166,8 +172,8 @@ static he_status limit_slopes(he_net *n, he_progress *progress, he_error *err)
 
 he_status he_sizing_find(he_net *n, const he_sizing *sizing, he_progress *progress, he_error *err)
 {
-    tensor *own = he_mem_zero((size_t)n->vertex_count + 1, sizeof *own);
-    tensor *sum = he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *sum);
+    he_bending *own = he_mem_zero((size_t)n->vertex_count + 1, sizeof *own);
+    he_bending *sum = he_mem_array(NULL, (size_t)n->vertex_count + 1, sizeof *sum);
     he_status status = HE_OK;
     if (own == NULL || sum == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the curvature at %u vertices",
@@ -179,7 +185,7 @@ he_status he_sizing_find(he_net *n, const he_sizing *sizing, he_progress *progre
     if (status == HE_OK) {
         gather_tensors(n, own, sum);
         for (uint32_t v = 0; v < n->vertex_count; v++) {
-            n->vertices[v].size = (float)length_for(greatest(&sum[v]), sizing);
+            n->vertices[v].size = (float)he_sizing_length(&sum[v], sizing);
         }
         follow_lines(n, sizing);
         status = limit_slopes(n, progress, err);

@@ -4,11 +4,23 @@
 
 #include "remesh/net.h"
 
+/* How a part of a surface is bent: a symmetric tensor whose eigenvectors are the directions of
+ * curvature, times the area for which it stands. */
+typedef struct he_bending {
+    double xx, xy, xz, yy, yz, zz, area;
+} he_bending;
+
 /* All are lengths in coordinates of the net. */
 typedef struct he_sizing {
     double error;       /* how far the triangles may be from a smooth surface */
     double least, most; /* limits of the wanted length */
 } he_sizing;
+
+/* Adds half of an edge to a tensor. `way` goes from one of its ends to the other; `left` and
+ * `right` are the unit normals of the faces beside it, as seen in that direction. */
+void he_sizing_bend(he_vec3 way, he_vec3 left, he_vec3 right, he_bending *to);
+/* Returns the wanted length where a surface is bent so. */
+double he_sizing_length(const he_bending *of, const he_sizing *s);
 
 /* Finds the wanted length at each vertex of a net that has not been changed yet (M. Dunyach, D.
  * Vanderhaeghe, L. Barthe and M. Botsch, "Adaptive remeshing for real-time mesh deformation",

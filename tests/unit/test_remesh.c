@@ -198,12 +198,12 @@ static void what_a_length_makes_is_foreseen(void **state)
     he_arg args[HE_OP_PARAMS];
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         he_mesh *m = dense_shape("icosphere", "subdivisions", 4);
-        const double before = he_mesh_faces(m), told = he_remesh_foretell(m, lengths[i]);
+        const he_remesh_options options = remesh_options(lengths[i]);
+        const double before = he_mesh_faces(m), told = he_remesh_foretell(m, &options);
         he_op_defaults(op, args);
         args[0].given = true; /* edge_length */
         args[0].number = lengths[i];
         assert_true(fabs(he_op_growth(op, m, args) - fmax(1, told / before)) < 1e-12);
-        const he_remesh_options options = remesh_options(lengths[i]);
         const double after = remesh_mesh(m, &options).faces;
         assert_true(told > 0.6 * after && told < 3 * after);
         he_mesh_free(m);
@@ -217,6 +217,84 @@ static void what_a_length_makes_is_foreseen(void **state)
     assert_int_equal(he_op_pace(op, args), 7 * once);
 }
 
+/* Remembers the phase of a remeshing that was told last. */
+static bool remember(void *context, const char *phase, double done)
+{
+    (void)done;
+    *(const char **)context = phase;
+    return true;
+}
+
+static void what_would_make_too_many_faces_is_refused_before_it_begins(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i < 2; i++) {
+        he_mesh *m = dense_shape("icosphere", "subdivisions", 4), *first = dense_copy(m);
+        he_remesh_options options = remesh_options(i == 0 ? 1e-5 : 0);
+        const char *phase = NULL;
+        he_progress progress;
+        he_error err = {0};
+        he_progress_init(&progress, remember, &phase);
+        if (i == 1) {
+            options.by = HE_REMESH_BY_ERROR;
+            options.error = 1e-10;
+        }
+        he_mesh_set_progress(m, &progress);
+        assert_int_equal(he_remesh(m, &options, NULL, &err), HE_LIMIT);
+        he_mesh_set_progress(m, NULL);
+        assert_non_null(phase);
+        assert_string_equal(phase, "preparing");
+        assert_true(strstr(err.text, "there would be about") != NULL);
+        assert_true(he_mesh_equal(m, first));
+        assert_true(he_remesh_foretell(m, &options) >= HE_REMESH_FACES);
+        he_mesh_free(first);
+        he_mesh_free(m);
+    }
+}
+
+static he_mesh *bent(unsigned which)
+{
+    return which == 0   ? dense_shape("icosphere", "subdivisions", 4)
+           : which == 1 ? dense_torus(40)
+           : which == 2 ? dense_grid(40, dense_waves, 1)
+                        : dense_cube(20);
+}
+
+static void what_an_error_makes_is_foreseen(void **state)
+{
+    (void)state;
+    static const double parts[] = {2e-5, 1e-4, 1e-3};
+    static uint32_t half[4000];
+    const he_op *op = he_op_find("remesh", 6);
+    for (unsigned i = 0; i < 4 * 3 * 2; i++) {
+        he_mesh *m = bent(i % 4);
+        he_box box;
+        (void)he_surface_box(m, &box);
+        he_remesh_options options = remesh_options(0);
+        options.by = HE_REMESH_BY_ERROR;
+        options.error = parts[i / 4 % 3] * he_vec3_extent(he_vec3_sub(box.max, box.min));
+        if (i >= 4 * 3) {
+            options.faces = half;
+            options.face_count = he_mesh_faces(m) / 2;
+            for (uint32_t f = 0; f < options.face_count; f++) {
+                half[f] = f;
+            }
+        }
+        const double before = he_mesh_faces(m), told = he_remesh_foretell(m, &options);
+        he_arg args[HE_OP_PARAMS];
+        he_op_defaults(op, args);
+        args[2].given = true; /* error */
+        args[2].number = options.error;
+        if (options.faces == NULL) {
+            assert_true(fabs(he_op_growth(op, m, args) - fmax(1, told / before)) < 1e-12);
+        }
+        (void)remesh_mesh(m, &options);
+        const double after = he_mesh_faces(m);
+        assert_true(told > 0.7 * after && told < 1.4 * after);
+        he_mesh_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -227,6 +305,8 @@ int main(void)
         cmocka_unit_test(a_second_remeshing_changes_little),
         cmocka_unit_test(the_number_of_faces_is_met),
         cmocka_unit_test(what_a_length_makes_is_foreseen),
+        cmocka_unit_test(what_an_error_makes_is_foreseen),
+        cmocka_unit_test(what_would_make_too_many_faces_is_refused_before_it_begins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
