@@ -1,5 +1,9 @@
 #include "remesh/ground.h"
 
+/* A walk consists of a few calls, whose arguments and results are points: passing these in memory
+ * takes as long as computing them. */
+#define ALWAYS_INLINE inline __attribute__((always_inline))
+
 /* The part of a triangle in which its nearest point lies: inside, on edge i, or at corner i. */
 enum { INSIDE, ON_EDGE = 1, AT_CORNER = 4 };
 
@@ -17,7 +21,7 @@ static void set_weights(double weight[3], double a, double b, double c)
 
 /* Finds the point of a triangle that is nearest to p, by the regions of C. Ericson, "Real-Time
  * Collision Detection", 2005, 5.1.5. Returns the part of the triangle in which it lies. */
-static unsigned nearest(const he_vec3 corner[3], he_vec3 p, double weight[3])
+static ALWAYS_INLINE unsigned nearest(const he_vec3 corner[3], he_vec3 p, double weight[3])
 {
     he_vec3 ab = he_vec3_sub(corner[1], corner[0]), ac = he_vec3_sub(corner[2], corner[0]);
     he_vec3 ap = he_vec3_sub(p, corner[0]);
@@ -58,14 +62,17 @@ static unsigned nearest(const he_vec3 corner[3], he_vec3 p, double weight[3])
     }
     double sum = a + b + c;
     /* Rounding may put the weights of a thin triangle outside their range. */
-    b = fmin(share(b, sum), 1);
-    c = fmin(share(c, sum), 1 - b);
+    b = share(b, sum);
+    c = share(c, sum);
+    b = b < 1 ? b : 1;
+    c = c < 1 - b ? c : 1 - b;
     set_weights(weight, 1 - b - c, b, c);
     return INSIDE;
 }
 
 /* Finds the nearest point of one triangle. Returns the part in which it lies. */
-static unsigned try_triangle(const he_ground *g, uint32_t t, he_vec3 place, he_ground_point *out)
+static ALWAYS_INLINE unsigned try_triangle(const he_ground *g, uint32_t t, he_vec3 place,
+                                           he_ground_point *out)
 {
     const uint32_t *v = g->triangles[t].v;
     const he_vec3 corner[3] = {g->place[v[0]], g->place[v[1]], g->place[v[2]]};

@@ -149,17 +149,22 @@ static uint32_t corner_to(const order *o, uint32_t c)
     return c == HE_NONE || o->to[c >> 2] == HE_NONE ? HE_NONE : 4 * o->to[c >> 2] + (c & 3);
 }
 
-static void write_triangles(const he_net *n, const order *o, he_net *to)
+static void write_triangles(const he_net *n, const order *o, he_net_triangle *to)
 {
     for (uint32_t i = 0; i < o->triangles; i++) {
         const he_net_triangle *from = &n->triangles[o->triangle[i]];
-        he_net_triangle *t = &to->triangles[i];
-        *t = *from;
+        to[i] = *from;
         for (unsigned k = 0; k < 3; k++) {
-            t->v[k] = o->vertex_to[from->v[k]];
-            t->twin[k] = corner_to(o, from->twin[k]);
+            to[i].v[k] = o->vertex_to[from->v[k]];
+            to[i].twin[k] = corner_to(o, from->twin[k]);
         }
-        to->ids[i] = n->ids[o->triangle[i]];
+    }
+}
+
+static void write_ids(const he_net *n, const order *o, he_net_ids *to)
+{
+    for (uint32_t i = 0; i < o->triangles; i++) {
+        to[i] = n->ids[o->triangle[i]];
     }
 }
 
@@ -180,20 +185,26 @@ static void write_vertices(const he_net *n, const order *o, he_net *to)
     }
 }
 
+/* Allocates what he_net_tidy needs. Fresh pages are expensive, so the old triangles' memory becomes
+ * that of the ids, and if the vertices fit into the old ids' memory, they get that; otherwise
+ * `to->vertices` is allocated. */
 static bool make_room(const he_net *n, order *o, he_net *to)
 {
+    const size_t fits = n->triangle_room * sizeof *n->ids / sizeof *n->vertices;
+    const bool is_reused = fits > n->live_vertices && fits < UINT32_MAX;
+    to->vertex_room = is_reused ? (uint32_t)fits : n->vertex_room;
     o->triangle = he_mem_array(NULL, n->live_triangles, sizeof *o->triangle);
     o->to = he_mem_array(NULL, n->triangle_count, sizeof *o->to);
     o->vertex_to = he_mem_array(NULL, n->vertex_count, sizeof *o->vertex_to);
     to->triangles = he_mem_array(NULL, n->triangle_room, sizeof *to->triangles);
-    to->ids = he_mem_array(NULL, n->triangle_room, sizeof *to->ids);
-    to->vertices = he_mem_array(NULL, n->vertex_room, sizeof *to->vertices);
-    to->corner = he_mem_array(NULL, n->vertex_room, sizeof *to->corner);
-    to->ground = he_mem_array(NULL, n->vertex_room, sizeof *to->ground);
-    to->vertex_id = he_mem_array(NULL, n->vertex_room, sizeof *to->vertex_id);
-    to->arc = n->arc == NULL ? NULL : he_mem_array(NULL, n->vertex_room, sizeof *to->arc);
+    to->ids = NULL;
+    to->vertices = is_reused ? NULL : he_mem_array(NULL, to->vertex_room, sizeof *to->vertices);
+    to->corner = he_mem_array(NULL, to->vertex_room, sizeof *to->corner);
+    to->ground = he_mem_array(NULL, to->vertex_room, sizeof *to->ground);
+    to->vertex_id = he_mem_array(NULL, to->vertex_room, sizeof *to->vertex_id);
+    to->arc = n->arc == NULL ? NULL : he_mem_array(NULL, to->vertex_room, sizeof *to->arc);
     return o->triangle != NULL && o->to != NULL && o->vertex_to != NULL && to->triangles != NULL &&
-           to->ids != NULL && to->vertices != NULL && to->corner != NULL && to->ground != NULL &&
+           (is_reused || to->vertices != NULL) && to->corner != NULL && to->ground != NULL &&
            to->vertex_id != NULL && (n->arc == NULL || to->arc != NULL);
 }
 
@@ -206,6 +217,22 @@ static void free_elements(he_net *n)
     he_mem_free(n->ground);
     he_mem_free(n->vertex_id);
     he_mem_free(n->arc);
+}
+
+/* Writes the elements in their new order. Each array is read for the last time before its memory is
+ * given to the next one. */
+static void rewrite(he_net *n, const order *o, he_net *to)
+{
+    _Static_assert(sizeof(he_net_ids) <= sizeof(he_net_triangle), "ids fit where triangles were");
+    write_triangles(n, o, to->triangles);
+    to->ids = (he_net_ids *)(void *)n->triangles;
+    n->triangles = NULL;
+    write_ids(n, o, to->ids);
+    if (to->vertices == NULL) {
+        to->vertices = (he_net_vertex *)(void *)n->ids;
+        n->ids = NULL;
+    }
+    write_vertices(n, o, to);
 }
 
 he_status he_net_tidy(he_net *n, he_error *err)
@@ -224,8 +251,7 @@ he_status he_net_tidy(he_net *n, he_error *err)
     memset(o.to, 0xFF, n->triangle_count * sizeof *o.to);
     memset(o.vertex_to, 0xFF, n->vertex_count * sizeof *o.vertex_to);
     search(n, &o);
-    write_triangles(n, &o, &to);
-    write_vertices(n, &o, &to);
+    rewrite(n, &o, &to);
     to.triangle_count = o.triangles;
     to.vertex_count = to.live_vertices = o.vertices;
     for (uint32_t i = 0; i < n->lines.count; i++) {

@@ -164,7 +164,8 @@ static bool has(const flood *of, uint32_t t)
 static void look_at_corner(const face *f, over *own, unsigned k, flood *to)
 {
     own->corner[k] = look_at(f, f->g->place[f->g->triangles[own->triangle].v[k]]);
-    to->highest = fmax(to->highest, fabs(own->corner[k].at.z));
+    const double height = fabs(own->corner[k].at.z);
+    to->highest = height > to->highest ? height : to->highest;
 }
 
 /* Adds the triangle beyond the edge k of a triangle that was looked at. */
