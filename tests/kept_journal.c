@@ -606,7 +606,7 @@ void kept_journal_damage(kept_journal *journal, const char *id, size_t n, kept_d
         if (how == KEPT_CUT) {
             kept->record.body_size = at;
         } else {
-            body[at] ^= how == KEPT_NEWER ? 3 : 1;
+            body[at] ^= how == KEPT_NEWER ? 2 : 1;
         }
     }
     pthread_mutex_unlock(&journal->lock);

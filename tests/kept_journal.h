@@ -47,7 +47,7 @@ size_t kept_journal_out(kept_journal *journal);
 /* Damages the n-th record after the base (n from 0), as a disk could. KEPT_CUT removes the end of
  * its body and KEPT_TURNED inverts a bit, and the checksum still matches in both cases; KEPT_SUM
  * makes only the checksum wrong. KEPT_NEWER changes the format version in the first byte from 1 to
- * 2, or from 2 to 1. */
+ * 3, or from 3 to 1. */
 typedef enum kept_damage { KEPT_CUT, KEPT_TURNED, KEPT_SUM, KEPT_NEWER } kept_damage;
 void kept_journal_damage(kept_journal *journal, const char *id, size_t n, kept_damage how,
                          size_t at);

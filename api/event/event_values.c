@@ -68,6 +68,7 @@ static he_status note_record(touched *t, const he_delta *delta, const he_record 
         return HE_OK;
     case HE_COL_PARENT:
     case HE_COL_MERGED:
+    case HE_COL_POSITIONS: /* such events are stale (events.c) */
     case HE_COL_REPLACED:
         return HE_OK;
     case HE_COL_ATTRIBUTE:

@@ -149,11 +149,24 @@ void api_event_stale(api_text *text, const st_mesh_info *info)
     api_text_clear(&data);
 }
 
+/* Returns true if the event about a delta would be too long: the delta has many records, or a
+ * record of all positions, which is only made if many vertices move. If the whole content was
+ * replaced, the event is short. */
+static bool is_long(const he_delta *delta)
+{
+    bool all = false, replaced = false;
+    for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
+        all |= delta->records[i].column == HE_COL_POSITIONS;
+        replaced |= delta->records[i].column == HE_COL_REPLACED;
+    }
+    return delta->count > API_MAX_EVENT_ROWS || (all && !replaced);
+}
+
 /* Returns the elements that a delta changed: the sets in `change` if they were computed already;
  * otherwise computes them into `found`. Returns NULL if the delta is too large or memory is out. */
 static const he_changes *changes_of(const st_change *change, he_changes *found)
 {
-    if (change->delta->count > API_MAX_EVENT_ROWS) {
+    if (is_long(change->delta)) {
         return NULL;
     }
     if (change->changes != NULL) {

@@ -206,22 +206,59 @@ static size_t count_columns(const he_mesh *mesh)
     return count;
 }
 
+/* Makes the body, which has a value for each issued id, the memory of the column. */
+static void take_body(api_writing *w)
+{
+    he_column *column = w->column;
+    void *rows = he_mem_array(w->body.bytes, w->count, column->row_bytes);
+    column->data = rows != NULL ? rows : w->body.bytes;
+    column->rows = column->capacity = w->count;
+    w->body = (api_text){0};
+}
+
+/* Makes the values of the request the rows of its column of positions, as doubles. The body of a
+ * request with doubles becomes the memory of the column, because it may be large. */
+static bool fill_positions(api_exchange *x, api_writing *w, const he_mesh *mesh)
+{
+    const uint32_t issued = he_mesh_issued(mesh, HE_VERTEX);
+    he_column *column = NULL;
+    he_error err = {0};
+    if (!(w->octets ? fits(x, w, issued) : fill(x, w, mesh))) {
+        return false;
+    }
+    if (w->octets) {
+        take_body(w);
+    }
+    if (w->column->type == HE_DOUBLE) {
+        return true;
+    }
+    if (he_column_new(&he_position_schema, &column, &err) != HE_OK ||
+        he_column_reserve(column, issued, &err) != HE_OK) {
+        he_column_free(column);
+        return api_fail_core(x, &err);
+    }
+    column->rows = issued;
+    for (size_t i = 0; i < 3 * (size_t)issued; i++) {
+        float narrow;
+        memcpy(&narrow, w->column->data + i * sizeof narrow, sizeof narrow);
+        const double wide = narrow;
+        memcpy(column->data + i * sizeof wide, &wide, sizeof wide);
+    }
+    he_column_free(w->column);
+    w->column = column;
+    return true;
+}
+
 /* Moves all vertices to the positions that the request has, and ends the write. */
 static void put_positions(api_exchange *x, api_writing *w)
 {
     he_mesh *mesh = x->write.content;
-    const uint32_t issued = he_mesh_issued(mesh, HE_VERTEX);
     he_error err = {0};
-    /* Values that came as binary data are used where they are, because they may be many. */
-    bool good = w->octets ? fits(x, w, issued) : fill(x, w, mesh);
-    const void *values = w->octets ? (const void *)w->body.bytes : w->column->data;
-    const he_vec3 *points = NULL;
-    if (good && issued > 0) {
-        points = api_writing_convert(x, w->column->type, values, 3 * (size_t)issued, HE_DOUBLE);
-        good = points != NULL;
-    }
-    if (good && he_positions_write(mesh, NULL, issued, points, false, &err) != HE_OK) {
+    bool good = fill_positions(x, w, mesh);
+    if (good && he_positions_put(mesh, w->column, &err) != HE_OK) {
         good = api_writing_refuse(x, w, &err);
+    } else if (good) {
+        w->column = NULL;
     }
     api_writing_publish(x, w, "attribute_write", 200, good);
 }

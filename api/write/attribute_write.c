@@ -35,7 +35,7 @@ api_writing *api_writing_begin(api_exchange *x)
 /* --- ending a write --- */
 
 /* Writes the whole answer before the commit, so that no failure can follow the commit. Only the
- * revision is filled in after it. */
+ * revision is filled in after it. A client that prefers no body gets none, so it is not written. */
 static bool write_answer(api_exchange *x, api_writing *w)
 {
     const he_mesh *mesh = x->write.content;
@@ -73,7 +73,7 @@ void api_writing_publish(api_exchange *x, api_writing *w, const char *op, int st
         good = api_fail_core(x, &err);
     }
     w->effect = good && !he_changes_none(&x->write.changes);
-    good = good && write_answer(x, w);
+    good = good && (x->prefer.minimal || write_answer(x, w));
     bool commits = good && w->effect && !w->dry_run;
     if (!commits) {
         st_write_abort(&x->write);
@@ -85,13 +85,13 @@ void api_writing_publish(api_exchange *x, api_writing *w, const char *op, int st
         api_publish(x, status == 201 ? 201 : 204);
         api_attribute_path(x, x->location);
     }
-    api_out_fill(&x->text, w->revision_at, x->info.revision + (w->dry_run && w->effect ? 1 : 0));
     if (!w->dry_run) {
         api_answer_etag(x, "attribute");
     }
     if (api_answer_minimal(x)) {
         return;
     }
+    api_out_fill(&x->text, w->revision_at, x->info.revision + (w->dry_run && w->effect ? 1 : 0));
     if (!w->dry_run && status == 201) {
         api_answer_header(x, "Location", x->location);
     }

@@ -2,6 +2,7 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <stdbool.h>
 #include <string.h>
 #include <sys/mman.h>
 
@@ -181,6 +182,15 @@ static he_status sort_many(he_ids *list, he_error *err)
     return HE_OK;
 }
 
+static bool is_sorted(const he_ids *list)
+{
+    size_t i = 1;
+    while (i < list->count && list->ids[i - 1] <= list->ids[i]) {
+        i++;
+    }
+    return i == list->count;
+}
+
 he_status he_ids_sort(he_ids *list, he_error *err)
 {
     if (list->count < 2) {
@@ -188,7 +198,7 @@ he_status he_ids_sort(he_ids *list, he_error *err)
     }
     if (list->count <= FEW) {
         sort_few(list->ids, list->count);
-    } else {
+    } else if (!is_sorted(list)) {
         he_status status = sort_many(list, err);
         if (status != HE_OK) {
             return status;

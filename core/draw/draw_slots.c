@@ -333,6 +333,15 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
 /* Adds the elements whose entries in the drawing may change because of one record of a delta. A
  * half-edge that moves to another face has a record of the column `face` with the old and the new
  * face. So for a record of another column of a half-edge, only its present face is added. */
+static he_status touch_all(he_touched *t, uint32_t vertices, he_error *err)
+{
+    he_status status = he_ids_reserve(&t->moved, vertices, err);
+    for (uint32_t v = 0; v < vertices && status == HE_OK; v++) {
+        t->moved.ids[t->moved.count++] = v;
+    }
+    return status;
+}
+
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -350,6 +359,8 @@ static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_e
         return he_ids_add(&t->faces, r->row, err);
     case HE_COL_POSITION:
         return he_ids_add(&t->moved, r->row, err);
+    case HE_COL_POSITIONS:
+        return touch_all(t, r->row, err);
     case HE_COL_REPLACED:
         return he_fail_plain(err, HE_UNSUPPORTED, "the whole content of the mesh was replaced");
     case HE_COL_PREV:

@@ -171,6 +171,7 @@ static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
     case HE_COL_MATERIAL:
+    case HE_COL_POSITIONS:
     case HE_COL_REPLACED:
         return HE_OK;
     case HE_COL_ATTRIBUTE:
@@ -228,6 +229,12 @@ typedef struct words {
     /* what the edits did to each entry of the mesh's array of attribute columns */
     attribute_slot *slots;
     size_t slot_count;
+    /* The positions that the first `moved` vertices had before all edits, if one of the edits wrote
+     * all positions at once (HE_COL_POSITIONS); single words of these positions are then not among
+     * the records. */
+    const he_vec3 *from;
+    he_vec3 *own_from; /* `from`, if it is a copy that must be freed, else NULL */
+    uint32_t moved;
 } words;
 
 /* Evaluates a record which says that an attribute column was added to a slot (an entry of the
@@ -256,10 +263,76 @@ static bool is_written_later(const words *w, uint32_t slot)
     return slot < w->slot_count && w->slots[slot].has_changed;
 }
 
+static bool is_moved(const words *w, uint64_t key)
+{
+    return key >> 40 == HE_COL_POSITION && (uint32_t)key < w->moved;
+}
+
+/* Evaluates the first record which says that all positions were written at once. The column that it
+ * names now holds the positions from before that; words that were written earlier are put back in a
+ * copy of them. A later record of this kind has more vertices only if those were made since. */
+static he_status note_positions(words *w, const he_change_part *part, const he_record *r,
+                                he_error *err)
+{
+    const he_column *kept = part->delta->objects[r->before];
+    size_t earlier = 0, rest = 0;
+    if (w->from != NULL || r->row == 0) {
+        return HE_OK;
+    }
+    w->from = (const he_vec3 *)(const void *)kept->data;
+    w->moved = r->row;
+    for (size_t i = 0; i < w->count; i++) {
+        earlier += is_moved(w, w->records[i].key);
+    }
+    if (earlier == 0) {
+        return HE_OK;
+    }
+    w->own_from = he_mem_array(NULL, w->moved, sizeof *w->own_from);
+    if (w->own_from == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %u changes", w->moved);
+    }
+    memcpy(w->own_from, w->from, w->moved * sizeof *w->own_from);
+    w->from = w->own_from;
+    for (size_t i = w->count; i > 0; i--) {
+        const word_record *one = &w->records[i - 1];
+        if (is_moved(w, one->key)) {
+            unsigned char *row = (unsigned char *)&w->own_from[(uint32_t)one->key];
+            memcpy(row + 4 * (one->key >> 32 & 255), &one->before, sizeof one->before);
+        }
+    }
+    for (size_t i = 0; i < w->count; i++) {
+        if (!is_moved(w, w->records[i].key)) {
+            w->records[rest++] = w->records[i];
+        }
+    }
+    w->count = rest;
+    return HE_OK;
+}
+
+/* Adds the vertices whose positions differ from those before all edits, which wrote all positions
+ * at once, to the list of modified vertices. */
+static he_status note_moved(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
+{
+    const unsigned char *before = (const unsigned char *)w->from;
+    const unsigned char *now = (const unsigned char *)mesh->c.position;
+    he_status status = HE_OK;
+    for (uint32_t v = 0; v < w->moved && status == HE_OK; v++) {
+        if (v % HE_PROGRESS_STRIDE == 0) {
+            status = he_progress_step(mesh->progress, 1, 2, err);
+        }
+        const size_t at = v * sizeof *w->from;
+        if (status == HE_OK && memcmp(before + at, now + at, sizeof *w->from) != 0) {
+            status = he_ids_add(&out->modified[HE_VERTEX], v, err);
+        }
+    }
+    return status;
+}
+
 static void words_clear(words *w)
 {
     he_mem_free(w->records);
     he_mem_free(w->slots);
+    he_mem_free(w->own_from);
 }
 
 static he_status gather_part(const he_change_part *part, words *w, he_changes *found,
@@ -278,6 +351,9 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
         if (r->column >= HE_COL_ATTRIBUTE && is_written_later(w, r->column - HE_COL_ATTRIBUTE)) {
             continue;
         }
+        if (r->column == HE_COL_POSITION && r->row < w->moved) {
+            continue;
+        }
         if (is_word(r)) {
             w->records[w->count++] = (word_record){key_of(r), part->undone ? r->after : r->before,
                                                    part->undone ? r->before : r->after};
@@ -289,6 +365,8 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
             note_slot(w, part, r);
         } else if (r->column == HE_COL_MATERIAL) {
             found->others = true;
+        } else if (r->column == HE_COL_POSITIONS) {
+            status = note_positions(w, part, r, err);
         }
     }
     return status;
@@ -471,7 +549,10 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
     if (status != HE_OK || found.replaced) {
         goto out;
     }
-    status = note_all(mesh, &w, &found, err);
+    status = note_moved(mesh, &w, &found, err);
+    if (status == HE_OK) {
+        status = note_all(mesh, &w, &found, err);
+    }
     if (status == HE_OK) {
         status = note_slots(mesh, &w, &found, err);
     }

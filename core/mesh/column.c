@@ -36,6 +36,8 @@ static he_column_schema schema_of(const he_column *column)
                               column->rule};
 }
 
+const he_column_schema he_position_schema = {"position", HE_VERTEX, HE_DOUBLE, 3, HE_INTERPOLATE};
+
 he_status he_column_new(const he_column_schema *schema, he_column **out, he_error *err)
 {
     size_t length = strlen(schema->name);

@@ -38,6 +38,9 @@ typedef struct he_column_schema {
     he_rule rule;
 } he_column_schema;
 
+/* Describes the positions of the vertices as a column named "position", of three doubles. */
+extern const he_column_schema he_position_schema;
+
 struct he_column {
     char name[HE_COLUMN_NAME]; /* UTF-8, ends in NUL */
     he_kind domain;

@@ -25,6 +25,9 @@ HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_e
  * one pair for each edge. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
+/* Exchanges the positions of the first vertices with the rows of `other`, a column of
+ * he_position_schema with at most as many rows as ids of vertices are issued. */
+void he_content_exchange_positions(he_content *c, he_column *other);
 /* Applies some records of a delta (the log of an edit) to the arrays of a mesh. If `from` <= `to`,
  * the records `from` to `to` - 1 are applied forwards. If `from` > `to`, the records `from` - 1
  * down to `to` are applied backwards. Records that name a column, a material or a whole content

@@ -43,6 +43,19 @@ static void swap_material(void **objects, he_content *c, const he_record *r)
     c->materials.rows[r->row] = other;
 }
 
+void he_content_exchange_positions(he_content *c, he_column *other)
+{
+    he_vec3 block[256];
+    assert(other->rows <= c->vertices.issued);
+    for (size_t i = 0; i < other->rows; i += sizeof block / sizeof *block) {
+        const size_t left = other->rows - i, most = sizeof block / sizeof *block;
+        const size_t bytes = (left < most ? left : most) * sizeof *block;
+        memcpy(block, he_column_row(other, i), bytes);
+        memcpy(he_column_row(other, i), &c->position[i], bytes);
+        memcpy(&c->position[i], block, bytes);
+    }
+}
+
 static void swap_content(void **objects, he_content *c, const he_record *r)
 {
     he_content *other = objects[r->before];
@@ -52,8 +65,8 @@ static void swap_content(void **objects, he_content *c, const he_record *r)
 }
 
 /* Applies one record of a delta to the mesh data `c`: changes a 32-bit word from `before` to
- * `after`, or exchanges an attribute column, a material or all mesh data with the object that the
- * record names in the array `objects`. */
+ * `after`, or exchanges an attribute column, a material, positions or all mesh data with the object
+ * that the record names in the array `objects`. */
 static void apply(void **objects, he_content *c, const he_record *r, uint32_t before,
                   uint32_t after)
 {
@@ -94,6 +107,9 @@ static void apply(void **objects, he_content *c, const he_record *r, uint32_t be
         return;
     case HE_COL_MATERIAL:
         swap_material(objects, c, r);
+        return;
+    case HE_COL_POSITIONS:
+        he_content_exchange_positions(c, objects[r->before]);
         return;
     case HE_COL_REPLACED:
         swap_content(objects, c, r);

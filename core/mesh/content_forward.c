@@ -207,8 +207,8 @@ static bool material_is(const he_content *c, const he_record *r, const he_materi
     return (row == NULL ? 0 : row->mark) == r->after && (slot == SIZE_MAX || slot == r->row);
 }
 
-/* Returns true if record r can be applied to the mesh data: they have the value, column or material
- * that the record replaces. */
+/* Returns true if record r can be applied to the mesh data: they have the value, column, material
+ * or vertices that the record replaces. */
 static bool holds(const he_content *c, void **objects, const he_record *r)
 {
     size_t halfedges = 2 * (size_t)c->edges.issued;
@@ -237,6 +237,8 @@ static bool holds(const he_content *c, void **objects, const he_record *r)
         return r->row < c->column_count && c->columns[r->row] != NULL && objects[r->before] == NULL;
     case HE_COL_MATERIAL:
         return material_is(c, r, objects[r->before]);
+    case HE_COL_POSITIONS:
+        return r->row <= c->vertices.issued;
     case HE_COL_ATTRIBUTE:
         break;
     }

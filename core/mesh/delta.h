@@ -4,11 +4,12 @@
  * A delta is a list of records of 16 bytes. Most records say that one 32-bit word in the entry
  * (row) of one element in one array (column) of the mesh changed from `before` to `after`. Links,
  * positions and attribute values are all taken as arrays of such words. Other records say that an
- * attribute column was added or dropped, that a material was set, replaced or removed, or that the
- * whole content (all arrays of the mesh, he_content) was replaced. Such a record names an object:
- * the column, material or content. The delta owns the object if it is not in the mesh: after an
- * edit or a redo the delta owns the old object, after an undo the new one. Lineage records (this
- * element came from that one, this one was merged into that one) change nothing in the mesh.
+ * attribute column was added or dropped, that a material was set, replaced or removed, that all
+ * positions were written at once, or that the whole content (all arrays of the mesh, he_content)
+ * was replaced. Such a record names an object: the column, material, positions or content. The
+ * delta owns the object if it is not in the mesh: after an edit or a redo the delta owns the old
+ * object, after an undo the new one. Lineage records (this element came from that one, this one was
+ * merged into that one) change nothing in the mesh.
  *
  * Applied backwards, a delta undoes its edit; applied forwards, it does the edit again, bit for
  * bit. The ids of elements that an edit has made stay issued when the edit is undone: the elements
@@ -48,6 +49,10 @@ typedef enum he_col {
      * `objects`, `after` the `mark` (hash) of the material that was there before the edit, 0 if
      * there was none */
     HE_COL_MATERIAL,
+    /* `row` is the number of vertices, which are those with the first ids; `before` is the index in
+     * `objects` of a column with their other positions, which undo and redo exchange with those in
+     * the mesh */
+    HE_COL_POSITIONS,
     /* `before` is the index in `objects` of the replaced content (all data of the mesh); `row` is 1
      * if ids name other elements after the replacement than before it, else 0 */
     HE_COL_REPLACED,
@@ -65,12 +70,14 @@ typedef struct he_record {
 struct he_delta {
     he_record *records;
     size_t count, capacity;
-    /* Columns, materials and contents; the record that names an object says what it is. */
+    /* Columns, materials, positions and contents; the record that names an object says what it is.
+     */
     void **objects;
     size_t object_count, object_capacity;
 };
 
-/* Returns true if the record names an object (column, material or content) of its delta. */
+/* Returns true if the record names an object (column, material, positions or content) of its
+ * delta. */
 static inline bool he_has_object(const he_record *r)
 {
     return r->column >= HE_COL_COLUMN_ADDED && r->column < HE_COL_ATTRIBUTE;
@@ -102,7 +109,7 @@ void he_delta_trim(he_delta *delta);
  * with the `before` of the first and the `after` of the last. Lineage records stay. Edits that
  * write a word many times call this function, so that the delta has no more records than words that
  * changed. The caller must not roll back to a savepoint after `from`, and no column or content may
- * have been replaced since `from`.
+ * have been replaced, and not all positions written at once, since `from`.
  * Returns HE_NO_MEMORY if memory is out; the records are as they were.
  * Returns HE_CANCELLED if the work was cancelled; some records are then combined, and undo and redo
  * still lead to equal states. */

@@ -221,9 +221,9 @@ static he_status slot_for_column(he_mesh *m, he_error *err)
     return m->delta == NULL ? HE_OK : he_delta_reserve(m->delta, 1, 1, err);
 }
 
-/* Records in the delta that an attribute column, a material or all data of the mesh were added,
- * removed or replaced. `object` is what was taken out of the mesh, which the delta then owns; NULL
- * if nothing was taken out. */
+/* Records in the delta that an attribute column, a material, all positions or all data of the mesh
+ * were added, removed or replaced. `object` is what was taken out of the mesh, which the delta then
+ * owns; NULL if nothing was taken out. */
 static void record_object(he_mesh *m, uint32_t column, uint32_t row, uint32_t after, void *object)
 {
     he_delta *d = m->delta;
@@ -287,6 +287,24 @@ he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes, he_e
     } else {
         record_object(m, HE_COL_MATERIAL, (uint32_t)slot, before == NULL ? 0 : before->mark,
                       before);
+    }
+    return HE_OK;
+}
+
+he_status he_exchange_positions(he_mesh *m, he_column *takes, he_error *err)
+{
+    const uint32_t rows = m->c.vertices.issued;
+    assert(takes->row_bytes == sizeof *m->c.position && takes->rows == rows);
+    he_status status = m->delta == NULL ? HE_OK : he_delta_reserve(m->delta, 1, 1, err);
+    if (status != HE_OK) {
+        return status;
+    }
+    /* Nothing below can fail. */
+    he_content_exchange_positions(&m->c, takes);
+    if (m->delta == NULL) {
+        he_column_free(takes);
+    } else {
+        record_object(m, HE_COL_POSITIONS, rows, 0, takes);
     }
     return HE_OK;
 }

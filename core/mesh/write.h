@@ -183,6 +183,13 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
     }
     m->c.position[v.i] = position;
 }
+/* Writes the positions of all vertices at once: exchanges them with the values of `takes`, a column
+ * of he_position_schema with a row for each issued id, in which deleted vertices are at the origin.
+ * The delta gets one record and keeps the column, with the old positions; a record of each word
+ * would take four times as much memory. On success the delta owns `takes`, or it is freed if no
+ * delta is recording.
+ * Returns HE_NO_MEMORY if memory is out. */
+HE_NODISCARD he_status he_exchange_positions(he_mesh *m, he_column *takes, he_error *err);
 /* Writes the attribute value of element `row` to the column in slot (array entry) `slot` of the
  * mesh. `value` has row_bytes bytes. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);

@@ -66,11 +66,11 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     if (!taken || magic != HE_CONTENT_MAGIC) {
         return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0, "the bytes are not a stored mesh");
     }
-    if (version != HE_STORED_VERSION) {
-        return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
+    if (version != HE_CONTENT_VERSION) {
+        return he_fail_at(err, version > HE_CONTENT_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
                           HE_PLACE_BYTE, 4,
                           "the stored mesh has version %u, but this release reads version %u",
-                          version, (unsigned)HE_STORED_VERSION);
+                          version, (unsigned)HE_CONTENT_VERSION);
     }
     if (bytes < HE_CONTENT_HEADER || bytes % 8 != 0 || bytes > r->most) {
         return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 8,

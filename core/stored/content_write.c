@@ -99,7 +99,7 @@ static void make_header(he_stored_writer *w)
         0,
     };
     unsigned char *to = he_put_u32(w->scratch, HE_CONTENT_MAGIC);
-    to = he_put_u64(he_put_u32(to, HE_STORED_VERSION), w->header);
+    to = he_put_u64(he_put_u32(to, HE_CONTENT_VERSION), w->header);
     set_scratch(w, he_put_bytes(to, words, sizeof words));
     w->stage = c->column_count > 0 ? SLOT : MATERIAL;
 }

@@ -24,7 +24,8 @@ typedef enum he_object {
     HE_OBJECT_ADDED = 1,
     HE_OBJECT_DROPPED = 2,
     HE_OBJECT_REPLACED = 3,
-    HE_OBJECT_MATERIAL = 4
+    HE_OBJECT_MATERIAL = 4,
+    HE_OBJECT_POSITIONS = 5
 } he_object;
 
 /* The kind of element that each number stands for in a stored lineage record (delta.h). */

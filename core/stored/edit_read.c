@@ -22,6 +22,7 @@ enum { MOST_SLOTS = (1 << 24) - HE_COL_ATTRIBUTE };
 
 typedef struct edit_reader {
     he_cursor c;
+    unsigned version;
     uint64_t changes; /* number of changes that are not read yet */
     /* code (kind of change) of the current run, which is a sequence of changes to one column */
     he_code code;
@@ -40,12 +41,13 @@ static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, 
     if (!he_take_bytes(&r->c, 1, &version)) {
         return he_refuse_at(&r->c, err, "the stored edit is empty");
     }
-    if (version != HE_STORED_VERSION) {
-        return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
+    if (version == 0 || version > HE_EDIT_VERSION) {
+        return he_fail_at(err, version > HE_EDIT_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
                           HE_PLACE_BYTE, 0,
-                          "the stored edit has version %u, but this release reads version %u",
-                          version, (unsigned)HE_STORED_VERSION);
+                          "the stored edit has version %u, but this release reads up to version %u",
+                          version, (unsigned)HE_EDIT_VERSION);
     }
+    r->version = version;
     if (!he_take_varint(&r->c, he_left(&r->c) / HE_CHANGE_LEAST, &r->changes)) {
         return he_refuse_at(&r->c, err,
                             "the stored edit declares more changes than its bytes can hold");
@@ -60,9 +62,12 @@ static he_status begin_object(edit_reader *r, he_error *err)
     if (!he_take_bytes(&r->c, 1, &kind) || !he_take_u64(&r->c, &length) ||
         length > he_left(&r->c)) {
         return he_refuse_at(
-            &r->c, err, "a stored attribute, content or material runs past the end of the edit");
+            &r->c, err,
+            "a stored attribute, content or material, or stored positions, run past the end of the "
+            "edit");
     }
-    if (kind < HE_OBJECT_ADDED || kind > HE_OBJECT_MATERIAL) {
+    const unsigned last = r->version < 2 ? HE_OBJECT_MATERIAL : HE_OBJECT_POSITIONS;
+    if (kind < HE_OBJECT_ADDED || kind > last) {
         return he_refuse_at(&r->c, err, "the stored edit holds an object of an unknown kind");
     }
     r->kind = (he_object)kind;
@@ -216,6 +221,23 @@ static he_status take_added(he_cursor *c, uint32_t *slot, he_column **out, he_er
     return HE_OK;
 }
 
+/* Reads positions of the first vertices, up to the end of the bytes; *count is their number. */
+static he_status take_positions(he_cursor *c, uint32_t *count, he_column **out, he_error *err)
+{
+    he_column *column = NULL;
+    he_status status = he_column_new(&he_position_schema, &column, err);
+    if (status == HE_OK) {
+        status = take_rows(c, column, err);
+    }
+    if (status != HE_OK) {
+        he_column_free(column);
+        return status;
+    }
+    *count = (uint32_t)column->rows;
+    *out = column;
+    return HE_OK;
+}
+
 static bool same_head(const he_column *a, const he_column *b)
 {
     return strcmp(a->name, b->name) == 0 && a->domain == b->domain && a->type == b->type &&
@@ -293,8 +315,8 @@ static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot,
     return status;
 }
 
-/* Reads the object of the current change (an attribute, a material or mesh data) and appends it to
- * the objects of the delta. */
+/* Reads the object of the current change (an attribute, a material, positions or mesh data) and
+ * appends it to the objects of the delta. */
 static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *named, he_delta *delta,
                              he_record *out, he_error *err)
 {
@@ -327,6 +349,10 @@ static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *name
         out->column = HE_COL_MATERIAL;
         status = take_put_material(&r->object, out, &slot, &material, err);
         break;
+    case HE_OBJECT_POSITIONS:
+        out->column = HE_COL_POSITIONS;
+        status = take_positions(&r->object, &slot, &column, err);
+        break;
     }
     if (status != HE_OK) {
         return status;
@@ -334,7 +360,7 @@ static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *name
     if (r->kind != HE_OBJECT_REPLACED) {
         out->row = slot;
     }
-    if (r->kind != HE_OBJECT_REPLACED && r->kind != HE_OBJECT_MATERIAL &&
+    if ((r->kind == HE_OBJECT_ADDED || r->kind == HE_OBJECT_DROPPED) &&
         slot < he_mesh_columns(mesh)) {
         he_bits_set(named, slot);
     }
@@ -405,10 +431,12 @@ static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
     }
     for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
         const he_record *r = &delta->records[i];
-        if (r->column == HE_COL_COLUMN_ADDED && !fits(delta->objects[r->before], issued)) {
-            return he_fail_at(
-                err, HE_CORRUPT, HE_PLACE_BYTE, 0,
-                "the attribute that change %zu adds has more values than the mesh has elements", i);
+        const bool rows = r->column == HE_COL_COLUMN_ADDED || r->column == HE_COL_POSITIONS;
+        if (rows && !fits(delta->objects[r->before], issued)) {
+            return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0,
+                              "the attribute or the positions that change %zu puts into the mesh "
+                              "have more values than the mesh has elements",
+                              i);
         }
     }
     return HE_OK;

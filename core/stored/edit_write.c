@@ -31,6 +31,7 @@ static he_code code_of(const he_record *r)
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
     case HE_COL_MATERIAL:
+    case HE_COL_POSITIONS:
     case HE_COL_REPLACED:
         return HE_CODE_OBJECT;
     case HE_COL_ATTRIBUTE:
@@ -102,6 +103,9 @@ static size_t object_room(const he_delta *delta, size_t i, const he_mesh *after)
         const he_material *row = put_material(delta, i, after);
         return HE_OBJECT_HEAD + HE_SLOT_ROOM + sizeof(uint32_t) +
                (row == NULL ? 0 : he_material_code_bytes(row));
+    }
+    if (r->column == HE_COL_POSITIONS) {
+        return HE_OBJECT_HEAD + HE_VARINT_BYTES + r->row * sizeof(he_vec3);
     }
     const he_column *column = added_column(delta, i, next_of_slot(delta, i), after);
     return HE_OBJECT_HEAD + HE_SLOT_ROOM + HE_HEAD_ROOM + he_labels_bytes(column->labels) +
@@ -186,6 +190,44 @@ static unsigned char *put_added(unsigned char *to, const he_delta *delta, size_t
     return end_object(from, to);
 }
 
+/* Writes the positions that record i put into the mesh. They are those that the next such record
+ * has kept or, if there is none, those of the mesh; positions that were written between have
+ * records of their own, so they are undone in the written values. */
+static unsigned char *put_positions(unsigned char *to, const he_delta *delta, size_t i,
+                                    const he_mesh *after)
+{
+    const uint32_t rows = delta->records[i].row;
+    size_t next = i + 1;
+    while (next < delta->count && delta->records[next].column != HE_COL_POSITIONS) {
+        next++;
+    }
+    const void *values = after->c.position;
+    if (next < delta->count) {
+        values = ((const he_column *)delta->objects[delta->records[next].before])->data;
+    }
+    unsigned char *from = begin_object(to, HE_OBJECT_POSITIONS);
+    unsigned char *written = he_put_varint(from, rows);
+    to = he_put_bytes(written, values, rows * sizeof(he_vec3));
+    for (size_t k = next; k > i + 1; k--) {
+        const he_record *r = &delta->records[k - 1];
+        if (r->column == HE_COL_POSITION && r->row < rows) {
+            memcpy(written + r->row * sizeof(he_vec3) + 4 * (size_t)r->word, &r->before, 4);
+        }
+    }
+    return end_object(from, to);
+}
+
+/* Writes the object (an attribute, a material or positions) of record i. */
+static unsigned char *put_object(unsigned char *to, const he_delta *delta, size_t i,
+                                 const he_mesh *after)
+{
+    const he_record *r = &delta->records[i];
+    return r->column == HE_COL_COLUMN_ADDED ? put_added(to, delta, i, after)
+           : r->column == HE_COL_MATERIAL   ? put_material_change(to, delta, i, after)
+           : r->column == HE_COL_POSITIONS  ? put_positions(to, delta, i, after)
+                                            : put_dropped(to, delta, r);
+}
+
 static unsigned char *put_change(unsigned char *to, he_code code, uint32_t last, const he_record *r)
 {
     to = he_put_varint(to, he_difference(r->row, last));
@@ -212,9 +254,7 @@ static unsigned char *put_changes(unsigned char *to, const he_delta *delta, cons
         const he_record *r = &delta->records[i];
         he_code code = code_of(r);
         if (code == HE_CODE_OBJECT) {
-            to = r->column == HE_COL_COLUMN_ADDED ? put_added(to, delta, i, after)
-                 : r->column == HE_COL_MATERIAL   ? put_material_change(to, delta, i, after)
-                                                  : put_dropped(to, delta, r);
+            to = put_object(to, delta, i, after);
             i++;
             continue;
         }
@@ -234,10 +274,19 @@ static unsigned char *put_changes(unsigned char *to, const he_delta *delta, cons
     return to;
 }
 
+static unsigned version_of(const he_delta *delta)
+{
+    unsigned version = 1;
+    for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
+        version = delta->records[i].column == HE_COL_POSITIONS ? HE_EDIT_VERSION : version;
+    }
+    return version;
+}
+
 size_t he_stored_edit_write(const he_delta *delta, const he_mesh *after, unsigned char *to)
 {
     bool renumbers, whole = replaces(delta, &renumbers);
-    unsigned char *at = he_put_byte(to, HE_STORED_VERSION);
+    unsigned char *at = he_put_byte(to, whole ? 1 : version_of(delta));
     at = he_put_varint(at, whole ? 1 : delta->count);
     if (whole) {
         unsigned char *from = begin_object(at, HE_OBJECT_REPLACED);

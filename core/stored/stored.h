@@ -8,7 +8,8 @@
  * possible; a signed number is a varint of 2n or -2n - 1.
  *
  * EDIT
- *     1 byte       the version
+ *     1 byte       the version, 1 or 2; an edit of version 2 has objects of kind 5, and only these
+ *                  edits do, so that a release that reads only version 1 refuses them as newer
  *     varint       how many changes
  *     runs         each a sequence of changes to one column, in the order in which they were made:
  *       varint     16 * (changes - 1) + code, 0 to 10 as in edit_code.h
@@ -26,6 +27,7 @@
  *                     new content
  *                  4  a material put in a slot: the slot (varint), the mark of the one that was
  *                     there (4 bytes, 0 for none; material.h), the new one, or nothing
+ *                  5  the positions of the first vertices: how many (varint), three doubles each
  *
  * If a delta replaced the content, only the content after it is coded: the delta read back is one
  * replacement. The high-water marks after an edit (how many ids of each kind were ever issued) are
@@ -72,7 +74,8 @@
 
 #include "mesh/delta.h"
 
-enum { HE_STORED_VERSION = 1 };
+/* The newest version of an edit, and the version of a content. */
+enum { HE_EDIT_VERSION = 2, HE_CONTENT_VERSION = 1 };
 
 /* --- edits --- */
 

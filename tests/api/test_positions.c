@@ -231,6 +231,83 @@ static void every_way_of_writing_equals_the_oracle(void **state)
     }
 }
 
+/* --- many positions --- */
+
+enum { MAJOR = 200, MINOR = 100, MANY = MAJOR * MINOR };
+
+static void expect_all(api_bench *b, const double *at)
+{
+    const char *const accept[] = {"Accept", OCTETS, NULL};
+    bench_reply r = bench_expect(200, bench_send(b, "GET", PATH, accept, NULL));
+    assert_int_equal(r.length, 3 * MANY * sizeof *at);
+    assert_memory_equal(r.body, at, r.length);
+    bench_done(r);
+}
+
+/* A move of many vertices is one record of the history, whatever part of them moves; listeners are
+ * told to read the mesh again, and undo and redo restore every bit. */
+static void many_positions_are_one_step(void **state)
+{
+    (void)state;
+    char shape[100];
+    double *first = calloc(3 * MANY, sizeof *first), *last = calloc(3 * MANY, sizeof *last);
+    float *narrow = calloc(3 * MANY, sizeof *narrow);
+    const char *const accept[] = {"Accept", OCTETS, NULL};
+    const char *const put[] = {"Content-Type", OCTETS, "Prefer", "return=minimal", NULL};
+    api_bench *b = bench_new();
+    snprintf(shape, sizeof shape,
+             "{\"shape\":\"torus\",\"major_segments\":%d,\"minor_segments\":%d}", MAJOR, MINOR);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", shape)));
+    bench_reply r = bench_expect(200, bench_send(b, "GET", PATH, accept, NULL));
+    assert_int_equal(r.length, 3 * MANY * sizeof *first);
+    memcpy(first, r.body, r.length);
+    bench_done(r);
+
+    for (size_t i = 0; i < 3 * MANY; i++) {
+        narrow[i] = (float)first[i] + 1;
+        last[i] = (double)narrow[i];
+    }
+    send_bytes(b, 200, "PUT " PATH "?type=float", narrow, 3 * MANY * sizeof *narrow);
+    expect_all(b, last);
+    last[7] += 0.5;
+    for (size_t i = 0; i < 3 * MANY; i += 3) {
+        last[i] = -last[i];
+    }
+    const bench_request request = {"PUT", PATH, put, (const char *)last, 3 * MANY * sizeof *last};
+    r = bench_expect(204, bench_send_bytes(b, &request));
+    assert_int_equal(r.length, 0);
+    bench_done(r);
+    expect_all(b, last);
+    /* the same values again are no change */
+    bench_done(bench_expect(204, bench_send_bytes(b, &request)));
+
+    r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits"));
+    const cJSON *entries = cJSON_GetObjectItem(r.json, "entries");
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 3);
+    assert_true(cJSON_GetObjectItem(cJSON_GetArrayItem(entries, 0), "bytes")->valueint <
+                (int)(4 * MANY * sizeof *last));
+    bench_done(r);
+    r = bench_expect(200, bench_post(b, "/v1/meshes/m/undo", "{\"steps\":2}"));
+    assert_int_equal(cJSON_GetArraySize(
+                         cJSON_GetObjectItem(cJSON_GetObjectItem(r.json, "modified"), "vertices")),
+                     MANY);
+    bench_done(r);
+    expect_all(b, first);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/redo", "{\"steps\":2}")));
+    expect_all(b, last);
+    for (int revision = 1; revision <= 3; revision += 2) {
+        char target[100];
+        snprintf(target, sizeof target, PATH "?revision=%d", revision);
+        r = bench_expect(200, bench_send(b, "GET", target, accept, NULL));
+        assert_memory_equal(r.body, revision == 1 ? first : last, r.length);
+        bench_done(r);
+    }
+    bench_free(b);
+    free(first);
+    free(last);
+    free(narrow);
+}
+
 /* --- refusals --- */
 
 static void what_is_wrong_is_refused_and_changes_nothing(void **state)
@@ -371,6 +448,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_way_of_writing_equals_the_oracle),
+        cmocka_unit_test(many_positions_are_one_step),
         cmocka_unit_test(what_is_wrong_is_refused_and_changes_nothing),
         cmocka_unit_test(octets_that_do_not_fit_are_refused),
         cmocka_unit_test(other_attributes_are_patched_by_octets_too),

@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -83,13 +84,33 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     }
 }
 
+/* Moves most vertices by one record of all positions, and then one vertex by records of words. */
+static void write_positions(he_mesh *m, md_random *random)
+{
+    he_column present, *column;
+    he_mesh_position_column(m, &present);
+    assert_int_equal(he_column_copy(&present, &column, NULL), HE_OK);
+    for (uint32_t v = 0; v < column->rows; v++) {
+        if (md_below(random, 4) > 0 && he_mesh_is_live(m, HE_VERTEX, v)) {
+            const he_vec3 to = {md_below(random, 4), md_below(random, 9), v};
+            memcpy(he_column_row(column, v), &to, sizeof to);
+        }
+    }
+    assert_int_equal(he_exchange_positions(m, column, NULL), HE_OK);
+    const uint32_t v = md_below(random, he_mesh_issued(m, HE_VERTEX));
+    if (he_mesh_is_live(m, HE_VERTEX, v)) {
+        assert_int_equal(he_reserve(m, (he_reservation){.positions = 1}, NULL), HE_OK);
+        he_set_position(m, (he_vertex){v}, (he_vec3){md_below(random, 3), 0, v});
+    }
+}
+
 /* Makes one random change to a mesh. The mesh is recording its changes, so this change is added to
  * its delta. */
 static void change(he_mesh *m, md_random *random, unsigned serial)
 {
     char text[96];
     size_t slot;
-    switch (md_below(random, 8)) {
+    switch (md_below(random, 9)) {
     case 0:
         edit_log_add_column(m, random, serial);
         return;
@@ -109,13 +130,16 @@ static void change(he_mesh *m, md_random *random, unsigned serial)
         }
         return;
     case 4:
+        write_positions(m, random);
+        return;
+    case 5:
         snprintf(text, sizeof text, "vertex_add position=%u,1,%u", serial, md_below(random, 9));
         break;
-    case 5:
+    case 6:
         snprintf(text, sizeof text, "face_delete face=#%u",
                  md_below(random, he_mesh_issued(m, HE_FACE)));
         break;
-    case 6:
+    case 7:
         snprintf(text, sizeof text, "face_poke face=#%u",
                  md_below(random, he_mesh_issued(m, HE_FACE)));
         break;

@@ -201,6 +201,23 @@ static void change_materials(he_mesh *m)
     assert_int_equal(he_mesh_put_material(m, 1, NULL, NULL), HE_OK);
 }
 
+/* Moves all vertices twice at once, and one of them before, between and after. */
+static void write_positions(he_mesh *m)
+{
+    script_prepare(m, "vertex_move vertex=1 by=0.5,0,1");
+    for (int turn = 0; turn < 2; turn++) {
+        he_column present, *moved;
+        he_mesh_position_column(m, &present);
+        assert_int_equal(he_column_copy(&present, &moved, NULL), HE_OK);
+        for (size_t i = 0; i < 3 * moved->rows; i++) {
+            const double value = turn + (double)i / 8;
+            memcpy(moved->data + i * sizeof value, &value, sizeof value);
+        }
+        assert_int_equal(he_exchange_positions(m, moved, NULL), HE_OK);
+        script_prepare(m, "vertex_move vertex=2 by=0.5,0,1");
+    }
+}
+
 static void compact(he_mesh *m)
 {
     script_prepare(m, "face_delete face=0");
@@ -226,6 +243,7 @@ static const specimen specimens[] = {
     {"columns", NULL, change_columns, false, false},
     {"columns_dropped", NULL, drop_columns, true, false},
     {"compact", NULL, compact, false, false},
+    {"positions", NULL, write_positions, false, false},
     {"material_set", "material_set name=red roughness=0.125 face=3", NULL, false, true},
     {"materials", NULL, change_materials, false, false},
     {"materials_compact", NULL, compact, false, true},
@@ -481,12 +499,12 @@ static void a_newer_version_is_refused_and_both_versions_are_named(void **state)
     he_delta *delta = NULL;
     he_mesh *m = NULL;
     he_error err;
-    run.edit.bytes[0] = 2;
+    run.edit.bytes[0] = 3;
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),
         HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 0,
-                "the stored edit has version 2, but this release reads version 1");
+                "the stored edit has version 3, but this release reads up to version 2");
     run.content.bytes[5 + 4] = 7; /* the version, which follows the part's coding and length */
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_UNSUPPORTED);

@@ -60,36 +60,109 @@ static he_status check(const he_mesh *m, const plan *p, uint64_t *moved, he_erro
     return status;
 }
 
+/* Words of positions that are changed one by one are listed to those who follow the mesh, so only
+ * a move of more vertices than any list shows is kept as all positions at once. */
+enum { MANY = 1 << 14 };
+
+/* Returns true if a record of all positions takes less memory than records of the words of those
+ * that change. */
+static bool is_most(const he_mesh *m, uint64_t moved)
+{
+    return moved >= MANY && sizeof(he_vec3) * (uint64_t)he_mesh_issued(m, HE_VERTEX) <
+                                HE_POSITION_RECORDS * sizeof(he_record) * moved;
+}
+
+/* Moves the vertices that move, one by one. */
+static he_status move_each(he_mesh *m, const plan *p, uint64_t moved, he_error *err)
+{
+    he_status status = he_reserve(m, (he_reservation){.positions = moved}, err);
+    /* Nothing below can fail. */
+    for (size_t i = 0; i < p->count && status == HE_OK; i++) {
+        he_progress_note(m->progress, i, p->count);
+        if (moves(m, p, i)) {
+            he_set_position(m, vertex_at(p, i), p->points[i * p->step]);
+        }
+    }
+    return status;
+}
+
+/* Writes all positions at once, those of vertices that stay too. */
+static he_status move_all(he_mesh *m, const plan *p, he_error *err)
+{
+    he_column *column = NULL;
+    he_column present;
+    he_mesh_position_column(m, &present);
+    he_status status = he_column_copy(&present, &column, err);
+    for (size_t i = 0; i < p->count && status == HE_OK; i++) {
+        he_progress_note(m->progress, i, p->count);
+        if (moves(m, p, i)) {
+            memcpy(he_column_row(column, vertex_at(p, i).i), &p->points[i * p->step],
+                   sizeof *p->points);
+        }
+    }
+    if (status == HE_OK) {
+        status = he_exchange_positions(m, column, err);
+    }
+    if (status != HE_OK) {
+        he_column_free(column);
+    }
+    return status;
+}
+
+static he_status check_count(const he_mesh *m, size_t count, he_error *err)
+{
+    return count == he_mesh_issued(m, HE_VERTEX)
+               ? HE_OK
+               : he_fail_plain(err, HE_BAD_VALUE, "%zu points are given for the %u ids of vertices",
+                               count, he_mesh_issued(m, HE_VERTEX));
+}
+
 he_status he_positions_write(he_mesh *m, const uint32_t *ids, size_t count, const he_vec3 *points,
                              bool same, he_error *err)
 {
     const plan p = {ids, count, points, same ? 0 : 1};
     uint64_t moved = 0;
-    he_status status = HE_OK;
-    if (ids != NULL) {
-        status = he_list_require(m, HE_VERTEX, ids, count, HE_REPEATED_ELEMENT, err);
-    } else if (count != he_mesh_issued(m, HE_VERTEX)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "%zu points are given for the %u ids of vertices",
-                             count, he_mesh_issued(m, HE_VERTEX));
-    }
+    he_status status = ids != NULL
+                           ? he_list_require(m, HE_VERTEX, ids, count, HE_REPEATED_ELEMENT, err)
+                           : check_count(m, count, err);
     if (status == HE_OK) {
         status = check(m, &p, &moved, err);
     }
     if (status == HE_OK) {
         status = he_progress_phase(m->progress, "moving", 1, err);
     }
+    if (status != HE_OK) {
+        return status;
+    }
+    return is_most(m, moved) ? move_all(m, &p, err) : move_each(m, &p, moved, err);
+}
+
+he_status he_positions_put(he_mesh *m, he_column *takes, he_error *err)
+{
+    const plan p = {NULL, takes->rows, (const he_vec3 *)(const void *)takes->data, 1};
+    uint64_t moved = 0;
+    he_status status = check_count(m, p.count, err);
     if (status == HE_OK) {
-        status = he_reserve(m, (he_reservation){.positions = moved}, err);
+        status = check(m, &p, &moved, err);
+    }
+    if (status == HE_OK) {
+        status = he_progress_phase(m->progress, "moving", 1, err);
     }
     if (status != HE_OK) {
         return status;
     }
-    /* Nothing below can fail. */
-    for (size_t i = 0; i < count; i++) {
-        he_progress_note(m->progress, i, count);
-        if (moves(m, &p, i)) {
-            he_set_position(m, vertex_at(&p, i), points[i * p.step]);
+    if (!is_most(m, moved)) {
+        status = move_each(m, &p, moved, err);
+        if (status == HE_OK) {
+            he_column_free(takes);
+        }
+        return status;
+    }
+    for (size_t i = 0; i < p.count; i++) {
+        if (!moves(m, &p, i)) {
+            const he_vec3 stays = he_position(m, vertex_at(&p, i));
+            memcpy(he_column_row(takes, i), &stays, sizeof stays);
         }
     }
-    return HE_OK;
+    return he_exchange_positions(m, takes, err);
 }
