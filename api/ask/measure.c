@@ -405,7 +405,7 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const sele
     const size_t count = of->count;
     if (of->ids == NULL) {
         uint64_t pass = api_elements_of(a->mesh);
-        pass += q->as_text ? (uint64_t)count * q->measure->components : 0;
+        pass += q->as_text ? (uint64_t)count * (q->measure->components + 1) : 0;
         if (!api_asker_waits(a, (double)pass / API_MEASURE_PER_SECOND)) {
             return false;
         }
@@ -478,21 +478,26 @@ static void write_value(api_out *out, const measure *what, const double *value)
     }
 }
 
-static bool find_dense(api_asker *a, const api_in *question, const asked *q, double **out,
-                       size_t *count)
+/* Finds the values of many elements; `count` of the result is the number of elements at first. */
+static bool find_dense(api_asker *a, const api_in *question, const asked *q, api_measured *out)
 {
-    *count = q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->target.kind);
-    double *values = he_mem_array(NULL, *count + 1, q->measure->components * sizeof *values);
-    if (values == NULL) {
+    out->count = q->target.of != NULL ? q->target.count : he_mesh_count(a->mesh, q->target.kind);
+    out->values = he_mem_array(NULL, out->count + 1, q->measure->components * sizeof *out->values);
+    if (out->values == NULL) {
         return api_in_fail(question, HE_NO_MEMORY,
-                           "no memory for the measured values of %zu elements", *count);
+                           "no memory for the measured values of %zu elements", out->count);
     }
-    if (!find(a, question, q, &(selection){q->target.of, *count}, values)) {
-        he_mem_free(values);
-        return false;
-    }
-    *out = values;
-    return true;
+    const selection of = {q->target.of, out->count};
+    out->count *= q->measure->components;
+    return find(a, question, q, &of, out->values) &&
+           api_asker_name(a, question, &q->target, &out->named);
+}
+
+void api_measured_clear(api_measured *measured)
+{
+    he_mem_free(measured->values);
+    he_ids_clear(&measured->named.ids);
+    *measured = (api_measured){.count = 0};
 }
 
 bool api_measure_is_dense(const api_in *question)
@@ -502,44 +507,43 @@ bool api_measure_is_dense(const api_in *question)
            api_in_find(question, "of", &in) && api_target_is_dense(&in);
 }
 
-bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count)
+bool api_measure_dense(api_asker *a, const api_in *question, api_measured *out)
 {
     asked q;
-    if (!read(a, question, &q)) {
-        return false;
+    return read(a, question, &q) && (a->reads_only || find_dense(a, question, &q, out));
+}
+
+static he_status write_many(api_asker *a, const measure *what, const api_measured *found,
+                            he_error *err)
+{
+    he_status status = HE_OK;
+    api_out_object_begin(a->out);
+    api_out_key_string(a->out, "measure", what->name);
+    api_out_key_u64(a->out, "components", what->components);
+    if (found->named.all) {
+        api_out_key_ids(a->out, "elements", found->named.ids.ids, found->named.ids.count);
     }
-    if (a->reads_only) {
-        return true;
+    api_out_key(a->out, "values");
+    api_out_array_begin(a->out);
+    for (size_t i = 0; i < found->count && status == HE_OK; i += what->components) {
+        status = he_progress_at(&a->x->progress, i, found->count, err);
+        write_value(a->out, what, found->values + i);
     }
-    if (!find_dense(a, question, &q, out, count)) {
-        return false;
-    }
-    *count *= q.measure->components;
-    return true;
+    api_out_array_end(a->out);
+    api_out_object_end(a->out);
+    return status;
 }
 
 static bool ask_many(api_asker *a, const api_in *question, const asked *q)
 {
-    double *values;
-    size_t count;
-    if (!find_dense(a, question, q, &values, &count)) {
-        return false;
-    }
-    api_out_object_begin(a->out);
-    api_out_key_string(a->out, "measure", q->measure->name);
-    api_out_key_u64(a->out, "components", q->measure->components);
-    api_out_key(a->out, "values");
-    api_out_array_begin(a->out);
+    api_measured found = {.count = 0};
     he_error err = {0};
-    he_status status = HE_OK;
-    for (size_t i = 0; i < count && status == HE_OK; i++) {
-        status = he_progress_at(&a->x->progress, i, count, &err);
-        write_value(a->out, q->measure, values + i * q->measure->components);
+    bool good = find_dense(a, question, q, &found);
+    if (good && write_many(a, q->measure, &found, &err) != HE_OK) {
+        good = api_asker_refuse(a, question, &err);
     }
-    api_out_array_end(a->out);
-    api_out_object_end(a->out);
-    he_mem_free(values);
-    return status == HE_OK || api_asker_refuse(a, question, &err);
+    api_measured_clear(&found);
+    return good;
 }
 
 bool api_measure_ask(api_asker *a, const api_in *question)

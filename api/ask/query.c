@@ -51,12 +51,19 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
 
 /* --- binary answers --- */
 
-/* A binary answer consists of two blocks of bytes; all values are little-endian. */
-enum { BLOCKS = 2 };
+/* A binary answer consists of blocks of bytes; all values are little-endian:
+ *
+ *     offsets, ids      the neighbours of n elements: n + 1 offsets (32 bits), and the ids (32
+ * bits) values            or a measure of n elements: doubles, with NaN for null elements, n only
+ * if the question is about "all": the ids of the n elements (32 bits), and their number n (32
+ * bits), from which a reader knows where the blocks begin */
+enum { OFFSETS, VALUES = OFFSETS, IDS, ELEMENTS, COUNT, BLOCKS };
 
 typedef struct octets {
     he_dense dense;
-    double *values;
+    api_measured measured;
+    api_named named; /* of `dense` */
+    uint32_t count;
     struct {
         const void *bytes;
         size_t length;
@@ -68,7 +75,8 @@ static void free_octets(void *stream)
 {
     octets *o = stream;
     he_dense_clear(&o->dense);
-    he_mem_free(o->values);
+    he_ids_clear(&o->named.ids);
+    api_measured_clear(&o->measured);
     he_mem_free(o);
 }
 
@@ -92,46 +100,51 @@ static int64_t read_octets(void *stream, char *buffer, size_t size)
 }
 
 /* Converts ids to little-endian; on a little-endian machine compilers reduce this to nothing. */
-static void order_ids(octets *o, int block, he_ids *list)
+static void order_ids(octets *o, int block, uint32_t *ids, size_t count)
 {
-    for (size_t i = 0; i < list->count; i++) {
-        uint32_t id = list->ids[i];
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t id = ids[i];
         const unsigned char bytes[4] = {(unsigned char)id, (unsigned char)(id >> 8),
                                         (unsigned char)(id >> 16), (unsigned char)(id >> 24)};
-        memcpy(&list->ids[i], bytes, sizeof bytes);
+        memcpy(&ids[i], bytes, sizeof bytes);
     }
-    o->blocks[block].bytes = list->ids;
-    o->blocks[block].length = list->count * sizeof *list->ids;
+    o->blocks[block].bytes = ids;
+    o->blocks[block].length = count * sizeof *ids;
 }
 
-static void order_values(octets *o, size_t count)
+static void order_values(octets *o, double *values, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         uint64_t bits;
         unsigned char bytes[8];
-        memcpy(&bits, &o->values[i], sizeof bits);
+        memcpy(&bits, &values[i], sizeof bits);
         for (unsigned k = 0; k < 8; k++) {
             bytes[k] = (unsigned char)(bits >> 8 * k);
         }
-        memcpy(&o->values[i], bytes, sizeof bytes);
+        memcpy(&values[i], bytes, sizeof bytes);
     }
-    o->blocks[0].bytes = o->values;
-    o->blocks[0].length = count * sizeof *o->values;
+    o->blocks[VALUES].bytes = values;
+    o->blocks[VALUES].length = count * sizeof *values;
 }
 
 static bool fill_octets(octets *o, api_asker *a, const api_in *question)
 {
-    size_t count = 0;
-    bool measured = api_measure_is_dense(question);
-    if (measured ? !api_measure_dense(a, question, &o->values, &count)
-                 : !api_question_dense(a, question, &o->dense)) {
+    const bool measured = api_measure_is_dense(question);
+    if (measured ? !api_measure_dense(a, question, &o->measured)
+                 : !api_question_dense(a, question, &o->dense, &o->named)) {
         return false;
     }
+    const api_named *named = measured ? &o->measured.named : &o->named;
     if (measured) {
-        order_values(o, count);
+        order_values(o, o->measured.values, o->measured.count);
     } else {
-        order_ids(o, 0, &o->dense.offsets);
-        order_ids(o, 1, &o->dense.ids);
+        order_ids(o, OFFSETS, o->dense.offsets.ids, o->dense.offsets.count);
+        order_ids(o, IDS, o->dense.ids.ids, o->dense.ids.count);
+    }
+    if (named->all) {
+        o->count = (uint32_t)named->ids.count;
+        order_ids(o, ELEMENTS, named->ids.ids, named->ids.count);
+        order_ids(o, COUNT, &o->count, 1);
     }
     return true;
 }
@@ -147,7 +160,10 @@ static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
         free_octets(o);
         return;
     }
-    const int64_t length = (int64_t)(o->blocks[0].length + o->blocks[1].length);
+    int64_t length = 0;
+    for (int i = 0; i < BLOCKS; i++) {
+        length += (int64_t)o->blocks[i].length;
+    }
     const api_stream stream = {length, read_octets, o, free_octets};
     api_answer_stream(x, 200, "application/octet-stream", &stream);
 }

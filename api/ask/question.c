@@ -215,6 +215,23 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out)
     return read_many(a, &member, out);
 }
 
+bool api_asker_name(api_asker *a, const api_in *question, const api_target *of, api_named *out)
+{
+    he_error err = {0};
+    out->all = of->dense && of->of == NULL;
+    if (!out->all) {
+        return true;
+    }
+    if (he_ids_reserve(&out->ids, he_mesh_count(a->mesh, of->kind), &err) != HE_OK) {
+        return api_asker_refuse(a, question, &err);
+    }
+    for (uint32_t id = he_mesh_next_live(a->mesh, of->kind, 0); id != HE_NONE;
+         id = he_mesh_next_live(a->mesh, of->kind, (uint64_t)id + 1)) {
+        out->ids.ids[out->ids.count++] = id;
+    }
+    return true;
+}
+
 /* --- questions about neighbours --- */
 
 /* A decoded question about neighbours. */
@@ -292,7 +309,8 @@ static uint64_t looked_at(const he_mesh *mesh, const asked *q, size_t ids)
     return q->target.of != NULL ? total : he_mesh_count(mesh, HE_HALFEDGE);
 }
 
-static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_dense *out)
+static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_dense *out,
+                       api_named *named)
 {
     he_error err = {0};
     uint64_t count =
@@ -313,13 +331,33 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_
         return api_asker_refuse(a, question, &err);
     }
     api_asker_pay(a, count + looked_at(a->mesh, q, out->ids.count));
-    return true;
+    return api_asker_name(a, question, &q->target, named);
 }
 
-bool api_question_dense(api_asker *a, const api_in *question, he_dense *out)
+bool api_question_dense(api_asker *a, const api_in *question, he_dense *out, api_named *named)
 {
     asked q;
-    return read_relation(a, question, &q) && (a->reads_only || find_dense(a, question, &q, out));
+    return read_relation(a, question, &q) &&
+           (a->reads_only || find_dense(a, question, &q, out, named));
+}
+
+static bool ask_dense(api_asker *a, const api_in *question, const asked *q)
+{
+    he_dense dense = {0};
+    api_named named = {0};
+    const bool good = find_dense(a, question, q, &dense, &named);
+    if (good) {
+        api_out_object_begin(a->out);
+        if (named.all) {
+            api_out_key_ids(a->out, "elements", named.ids.ids, named.ids.count);
+        }
+        api_out_key_ids(a->out, "offsets", dense.offsets.ids, dense.offsets.count);
+        api_out_key_ids(a->out, "ids", dense.ids.ids, dense.ids.count);
+        api_out_object_end(a->out);
+    }
+    he_ids_clear(&named.ids);
+    he_dense_clear(&dense);
+    return good;
 }
 
 static bool ask_relation(api_asker *a, const api_in *question)
@@ -330,16 +368,7 @@ static bool ask_relation(api_asker *a, const api_in *question)
         return false;
     }
     if (q.target.dense) {
-        he_dense dense = {0};
-        if (!find_dense(a, question, &q, &dense)) {
-            return false;
-        }
-        api_out_object_begin(a->out);
-        api_out_key_ids(a->out, "offsets", dense.offsets.ids, dense.offsets.count);
-        api_out_key_ids(a->out, "ids", dense.ids.ids, dense.ids.count);
-        api_out_object_end(a->out);
-        he_dense_clear(&dense);
-        return true;
+        return ask_dense(a, question, &q);
     }
     a->first.count = 0;
     if (he_relation_append(a->mesh, q.relation, q.target.id, q.flags, &a->first, &err) != HE_OK) {

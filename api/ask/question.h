@@ -71,16 +71,30 @@ bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *
 bool api_question_ask(api_asker *a, const api_in *question);
 bool api_walk_ask(api_asker *a, const api_in *walk);
 
-/* api_question_is_dense returns true if the question is about the neighbours of many elements. Then
- * api_question_dense finds the answer and puts it into `out`, which the caller clears. */
-bool api_question_is_dense(const api_in *question);
-bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
+/* The elements of an answer about "all" elements, in the order of ids: the answer names them,
+ * because the question does not. {0} names none. */
+typedef struct api_named {
+    bool all; /* false: the question has a list of elements, and `ids` is empty */
+    he_ids ids;
+} api_named;
 
+/* api_question_is_dense returns true if the question is about the neighbours of many elements. Then
+ * api_question_dense finds the answer and puts it into `out` and `named`, which the caller clears,
+ * also after a failure. */
+bool api_question_is_dense(const api_in *question);
+bool api_question_dense(api_asker *a, const api_in *question, he_dense *out, api_named *named);
+
+/* The values of a measure of many elements, which the caller clears. A missing value is NaN. */
+typedef struct api_measured {
+    double *values;
+    size_t count; /* number of values: three for an element whose measure is a vector */
+    api_named named;
+} api_measured;
 /* api_measure_is_dense returns true if the question is about a measure of many elements. Then
- * api_measure_dense finds the values and their number; the caller frees `out`. A missing value is
- * NaN. */
+ * api_measure_dense finds the values. */
 bool api_measure_is_dense(const api_in *question);
-bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count);
+bool api_measure_dense(api_asker *a, const api_in *question, api_measured *out);
+void api_measured_clear(api_measured *measured);
 
 /* --- functions that only the files in api/ask call --- */
 bool api_measure_ask(api_asker *a, const api_in *question);
@@ -100,6 +114,9 @@ typedef struct api_target {
 } api_target;
 
 bool api_target_is_dense(const api_in *of);
+/* Lists the elements if the question is about all of them. Returns false with the problem filled
+ * when memory is out. */
+bool api_asker_name(api_asker *a, const api_in *question, const api_target *of, api_named *out);
 /* Reads which elements a question is about; they must be live. */
 bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))

@@ -12,18 +12,19 @@
 #include "api/describe/parameters.h"
 #include "api/request/handlers.h"
 
-#define ELEMENTS(of, one, many, words)                                                           \
+#define ELEMENTS(of, one, many, words, media, more)                                              \
     {                                                                                            \
         .method = "GET", .path = "/v1/meshes/{mesh}/" many, .name = "list_" many, .kind = (of),  \
         .run = api_elements_list, .role = API_ROLE_READ, .reads = API_READS_LOCKED,              \
-        .cost = api_elements_cost, .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,     \
+        .cost = api_elements_cost, .flags = API_EXPENSIVE | API_LONG, .produces = (media),       \
         .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},    \
         .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",      \
         .item = (one), .summary = "List the " words,                                             \
         .doc =                                                                                   \
             "A page of elements in the order of ids; as application/x-ndjson, all elements in "  \
             "lines of JSON, with {\"end\":true,\"count\":n} as the last line. Later pages show " \
-            "the same revision as the first page, as long as the history holds that revision."   \
+            "the same revision as the first page, as long as the history holds that "            \
+            "revision." more                                                                     \
     }
 
 #define ELEMENT(of, one, many, text)                                                            \
@@ -50,9 +51,14 @@
 
 /* All rows about elements, in the order that they have in the table of routes. */
 #define ELEMENT_ROWS                                                                               \
-    ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices"),                                         \
-        ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges"),                              \
-        ELEMENTS(HE_EDGE, "edge", "edges", "edges"), ELEMENTS(HE_FACE, "face", "faces", "faces"),  \
+    ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices", lines_too, ""),                          \
+        ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges", lines_too, ""),               \
+        ELEMENTS(HE_EDGE, "edge", "edges", "edges", lines_too, ""),                                \
+        ELEMENTS(HE_FACE, "face", "faces", "faces", lines_or_octets_too,                           \
+                 " As application/octet-stream, the corners of all n faces: n + 1 offsets, the "   \
+                 "vertices at the corners (those of face i begin at position offsets[i] and end "  \
+                 "before position offsets[i + 1]), the ids of the faces, and n itself, as "        \
+                 "little-endian 32-bit integers."),                                                \
         ELEMENT(HE_VERTEX, "vertex", "vertices",                                                   \
                 "One vertex: its position, a half-edge that leaves it, its degree."),              \
         ELEMENT(HE_HALFEDGE, "halfedge", "halfedges",                                              \

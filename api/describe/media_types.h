@@ -9,6 +9,8 @@
 
 static const char *const json[] = {"application/json", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
+static const char *const lines_or_octets_too[] = {"application/json", "application/x-ndjson",
+                                                  "application/octet-stream", NULL};
 static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
 static const char *const octets[] = {"application/octet-stream", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};

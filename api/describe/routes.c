@@ -275,8 +275,10 @@ static const api_route routes[] = {
          "Neighbours, walks, elements, half-edges between vertices, measures, rays, nearest points "
          "and self-intersections, all of the same revision. A single question about many elements "
          "can be answered as application/octet-stream: for a relation n + 1 offsets and the ids as "
-         "32-bit integers, for a measure doubles with NaN for null, all little-endian. A question "
-         "that would take more than a second becomes a job, unless the client waits. Examples are "
+         "32-bit integers, for a measure doubles with NaN for null, all little-endian. If the "
+         "question is about all elements, their n ids and then n itself follow, as 32-bit "
+         "integers. A question that would take more than a second becomes a job, unless the client "
+         "waits. Examples are "
          "the first ray or nearest point on 580,000 quads, self-intersections of 340,000 quads, "
          "and relations and measures of all elements of a mesh with several million."},
     {.method = "POST",

@@ -251,6 +251,8 @@ const api_member api_answer_members[] = {
     {"adjacency", "relation", "text", REQUIRED, NULL},
     {"adjacency", "ids", "*id", REQUIRED, NULL},
 
+    {"dense", "elements", "*id", OPTIONAL,
+     "The ids of the elements, in the same order, if the question is about all of them."},
     {"dense", "offsets", "*count", REQUIRED,
      "n + 1 positions in `ids`: the ids of element i begin at position offsets[i] and end before "
      "position offsets[i + 1]."},
@@ -339,6 +341,8 @@ const api_member api_answer_members[] = {
 
     {"measured_many", "measure", "#measure_name", REQUIRED, NULL},
     {"measured_many", "components", "count", REQUIRED, "1, or 3 for a vector."},
+    {"measured_many", "elements", "*id", OPTIONAL,
+     "The ids of the elements, in the same order, if the question is about all of them."},
     {"measured_many", "values", "*#measured_value", REQUIRED, "One value for each element."},
 
     {"share", "vertex", "id", REQUIRED, NULL},

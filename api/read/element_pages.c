@@ -1,8 +1,9 @@
 /* element_pages.c - GET .../vertices, halfedges, edges, faces: a page of the elements of one kind,
- * or all of them as lines of JSON. */
+ * or all of them as lines of JSON; faces also as binary data. */
 #include "api/request/handlers.h"
 
 #include "api/read/elements.h"
+#include "api/read/face_octets.h"
 #include "api/read/records.h"
 #include "api/request/mesh_access.h"
 
@@ -185,19 +186,24 @@ static void answer_lines(api_exchange *x)
 
 /* --- handlers --- */
 
+static bool wants_page(const api_exchange *x)
+{
+    return strcmp(x->media_out, "application/json") == 0;
+}
+
 static bool wants_lines(const api_exchange *x)
 {
     return strcmp(x->media_out, "application/x-ndjson") == 0;
 }
 
-/* Estimates the cost of reading elements. Lines are made from a copy of the mesh, and writing an
- * element takes about as long as copying twenty elements. */
+/* Estimates the cost of reading elements. Answers with all elements are made from a copy of the
+ * mesh, and writing an element of a page takes about as long as copying twenty elements. */
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";
     uint64_t count = he_mesh_count(mesh, x->kind), from;
-    x->reading.tag = wants_lines(x) ? "lines" : "page";
-    if (!wants_lines(x)) {
+    x->reading.tag = wants_page(x) ? "page" : wants_lines(x) ? "lines" : "octets";
+    if (wants_page(x)) {
         out->elements = 20 * (page_limit(x) < count ? page_limit(x) : count);
         return read_from(x, &from);
     }
@@ -205,15 +211,17 @@ bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
         (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
     return api_param_text(x, of_pages) == NULL ||
            api_fail(x, API_BAD_PARAMETER,
-                    "\"%s\" cannot be combined with application/x-ndjson, which has all elements",
-                    of_pages);
+                    "\"%s\" cannot be combined with %s, which has all elements", of_pages,
+                    x->media_out);
 }
 
 void api_elements_list(api_exchange *x)
 {
-    if (wants_lines(x)) {
+    if (wants_page(x)) {
+        answer_page(x);
+    } else if (wants_lines(x)) {
         answer_lines(x);
     } else {
-        answer_page(x);
+        api_face_octets(x);
     }
 }

@@ -94,9 +94,10 @@ static void vectors_have_three_components(void **state)
     expect_answer(
         b, "{\"measure\":\"centroid\",\"of\":{\"face\":0}}",
         "{\"revision\":1,\"of\":{\"face\":0},\"measure\":\"centroid\",\"value\":[1,1,0]}");
-    expect_answer(
-        b, "{\"measure\":\"normal\",\"of\":{\"vertices\":\"all\"},\"weights\":\"uniform\"}",
-        "{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],[0,0,1],[0,0,1],[0,0,1]]}");
+    expect_answer(b,
+                  "{\"measure\":\"normal\",\"of\":{\"vertices\":\"all\"},\"weights\":\"uniform\"}",
+                  "{\"measure\":\"normal\",\"components\":3,\"elements\":[0,1,2,3],"
+                  "\"values\":[[0,0,1],[0,0,1],[0,0,1],[0,0,1]]}");
     /* Half-edge 1 is on the boundary, so it is not the corner of a face and has the normal 0. */
     expect_answer(b, "{\"measure\":\"normal\",\"of\":{\"halfedges\":[0,1]},\"crease\":0}",
                   "{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],[0,0,0]]}");
@@ -111,7 +112,8 @@ static void what_has_no_value_is_null(void **state)
     api_bench *b = bench_new();
     put(b, "{\"vertices\":[[0,0,0],[1,0,0],[2,0,0],[5,5,5]],\"faces\":[[0,1,2]]}");
     expect_answer(b, "{\"measure\":\"dihedral\",\"of\":{\"edges\":\"all\"}}",
-                  "{\"measure\":\"dihedral\",\"components\":1,\"values\":[null,null,null]}");
+                  "{\"measure\":\"dihedral\",\"components\":1,\"elements\":[0,1,2],"
+                  "\"values\":[null,null,null]}");
     expect_answer(b, "{\"measure\":\"cotangent\",\"of\":{\"edge\":0}}",
                   "{\"revision\":1,\"of\":{\"edge\":0},\"measure\":\"cotangent\",\"value\":null}");
     expect_answer(b, "{\"measure\":\"mean_curvature\",\"of\":{\"vertices\":[0,3]}}",
@@ -135,6 +137,12 @@ static double octet_double(const char *bytes)
     return value;
 }
 
+static uint32_t octet_word(const char *bytes)
+{
+    const unsigned char *p = (const unsigned char *)bytes;
+    return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
 static void octets_are_doubles_and_null_is_nan(void **state)
 {
     (void)state;
@@ -145,7 +153,11 @@ static void octets_are_doubles_and_null_is_nan(void **state)
                                "{\"queries\":[{\"measure\":\"gaussian_curvature\","
                                "\"of\":{\"vertices\":\"all\"}}]}");
     assert_int_equal(r.status, 200);
-    assert_int_equal(r.length, 9 * 8);
+    assert_int_equal(r.length, 9 * 8 + 9 * 4 + 4);
+    for (uint32_t i = 0; i < 9; i++) {
+        assert_int_equal(octet_word(r.body + 9 * 8 + (size_t)4 * i), i);
+    }
+    assert_int_equal(octet_word(r.body + 9 * 8 + 9 * 4), 9);
     int numbers = 0;
     for (size_t i = 0; i < 9; i++) {
         double value = octet_double(r.body + 8 * i);
@@ -190,9 +202,10 @@ static void quality_and_degree_differ_between_elements(void **state)
     put(b, "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0],[-1,1,0],[-1,0,0],[9,9,9]],"
            "\"faces\":[[0,1,2],[0,2,3,4]]}");
     expect_answer(b, "{\"measure\":\"degree\",\"of\":{\"vertices\":\"all\"}}",
-                  "{\"measure\":\"degree\",\"components\":1,\"values\":[3,2,3,2,2,0]}");
+                  "{\"measure\":\"degree\",\"components\":1,\"elements\":[0,1,2,3,4,5],"
+                  "\"values\":[3,2,3,2,2,0]}");
     expect_answer(b, "{\"measure\":\"degree\",\"of\":{\"faces\":\"all\"}}",
-                  "{\"measure\":\"degree\",\"components\":1,\"values\":[3,4]}");
+                  "{\"measure\":\"degree\",\"components\":1,\"elements\":[0,1],\"values\":[3,4]}");
     bench_reply r;
     const cJSON *both = ask(b, "{\"measure\":\"smallest_angle\",\"of\":{\"faces\":\"all\"}}", &r);
     const cJSON *values = in(both, "values");

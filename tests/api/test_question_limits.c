@@ -736,6 +736,7 @@ static void every_allocation_may_fail(void **state)
         }
     }
     try_without_memory(b, "/v1/meshes/m/faces", "application/x-ndjson", NULL);
+    try_without_memory(b, "/v1/meshes/m/faces", "application/octet-stream", NULL);
     try_without_memory(b, walk, NULL, WALK("\"loop\",\"from\":{\"halfedge\":2}"));
     try_without_memory(b, walk, NULL, WALK("\"rings\",\"from\":{\"vertex\":1},\"depth\":3"));
     try_without_memory(b, walk, NULL, PATH("\"path\":[\"next\",\"twin\"],\"until\":\"start\""));

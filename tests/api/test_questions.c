@@ -306,12 +306,14 @@ static void queries_answer_in_order(void **state)
 }
 
 /* Requests a relation of all elements of a kind. The request names the elements as "all" or, if
- * `backwards` is set, by a list of their ids in descending order. */
+ * `backwards` is set, by a list of their ids in descending order. Only an answer about "all" names
+ * the elements: in octets, their ids and their number follow. */
 static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const char *what,
                                bool backwards)
 {
     static const char *const octets[] = {"Accept", "application/octet-stream", NULL};
-    page offsets = {.used = 0}, ids = {.used = 0}, body = {.used = 0}, wanted = {.used = 0};
+    page offsets = {.used = 0}, ids = {.used = 0}, body = {.used = 0}, wanted = {.used = 0},
+         elements = {.used = 0};
     unsigned numbers[2000] = {0}, total = 0, n = specimen_count(pg, kind);
     page_say(&body, "{\"queries\":[{\"relation\":\"%s\",\"of\":{\"%s\":", what,
              specimen_kinds[kind].plural);
@@ -334,14 +336,23 @@ static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const 
         }
     }
     page_say(&body, "%s}}]}", backwards ? "]" : "");
-    page_say(&wanted, "{\"revision\":1,\"results\":[{\"offsets\":%s],\"ids\":[%s]}]}", offsets.text,
-             ids.text);
+    size_t length = n + 1 + total;
+    for (unsigned i = 0; i < n && !backwards; i++) {
+        page_say(&elements, "%s%u", i == 0 ? "\"elements\":[" : ",", i);
+        numbers[length++] = i;
+    }
+    if (!backwards) {
+        page_say(&elements, n == 0 ? "\"elements\":[]," : "],");
+        numbers[length++] = n;
+    }
+    page_say(&wanted, "{\"revision\":1,\"results\":[{%s\"offsets\":%s],\"ids\":[%s]}]}",
+             backwards ? "" : elements.text, offsets.text, ids.text);
     page_expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
 
     bench_reply r = bench_send(b, "POST", "/v1/meshes/m/query", octets, body.text);
     assert_int_equal(r.status, 200);
     assert_string_equal(bench_header(&r, "Content-Type"), "application/octet-stream");
-    assert_int_equal(r.length, 4 * (n + 1 + total));
+    assert_int_equal(r.length, 4 * length);
     for (size_t i = 0; i < r.length / 4; i++) {
         const unsigned char *p = (const unsigned char *)r.body + 4 * i;
         assert_int_equal(p[0] | (unsigned)p[1] << 8 | (unsigned)p[2] << 16 | (unsigned)p[3] << 24,
@@ -364,6 +375,59 @@ static void dense_answers_are_offsets_and_ids(void **state)
 {
     (void)state;
     for_each_specimen(try_dense);
+}
+
+/* The corners of all faces as octets must be the answer to the relation `vertices` of all faces, at
+ * every revision. */
+static void expect_face_octets(api_bench *b, const char *mesh, int revision)
+{
+    static const char *const octets[] = {"Accept", "application/octet-stream", NULL};
+    static const char all[] =
+        "{\"queries\":[{\"relation\":\"vertices\",\"of\":{\"faces\":\"all\"}}]}";
+    char target[80];
+    snprintf(target, sizeof target, "/v1/meshes/%s/query?revision=%d", mesh, revision);
+    bench_reply asked = bench_expect(200, bench_send(b, "POST", target, octets, all));
+    snprintf(target, sizeof target, "/v1/meshes/%s/faces?revision=%d", mesh, revision);
+    bench_reply r = bench_expect(200, bench_send(b, "GET", target, octets, NULL));
+    assert_string_equal(bench_header(&r, "Content-Type"), "application/octet-stream");
+    assert_int_equal(r.length, asked.length);
+    assert_memory_equal(r.body, asked.body, r.length);
+    bench_done(r);
+    bench_done(asked);
+}
+
+static void try_face_octets(api_bench *b, const pg_mesh *pg)
+{
+    (void)pg;
+    expect_face_octets(b, "m", 1);
+}
+
+static void corners_of_all_faces_are_octets(void **state)
+{
+    (void)state;
+    static const char *const octets[] = {"Accept", "application/octet-stream", NULL};
+    for_each_specimen(try_face_octets);
+    api_bench *b = bench_new();
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=p",
+                                            "{\"shape\":\"grid\","
+                                            "\"columns\":60,\"rows\":60}")));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/p/edits",
+                                            "{\"ops\":[{\"op\":\"face_poke\",\"face\":7},"
+                                            "{\"op\":\"face_delete\",\"face\":0},"
+                                            "{\"op\":\"face_delete\",\"face\":3599}]}")));
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/p/edits", "{\"op\":\"triangulate\"}")));
+    for (int revision = 1; revision <= 3; revision++) {
+        expect_face_octets(b, "p", revision);
+    }
+    bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/p/faces", octets, NULL));
+    char tag[64];
+    snprintf(tag, sizeof tag, "%s", bench_header(&r, "ETag"));
+    bench_done(r);
+    const char *const known[] = {"Accept", "application/octet-stream", "If-None-Match", tag, NULL};
+    bench_done(bench_expect(304, bench_send(b, "GET", "/v1/meshes/p/faces", known, NULL)));
+    bench_done(bench_expect(400, bench_send(b, "GET", "/v1/meshes/p/faces?limit=9", octets, NULL)));
+    bench_done(bench_expect(406, bench_send(b, "GET", "/v1/meshes/p/edges", octets, NULL)));
+    bench_free(b);
 }
 
 /* A question with ?revision= must be answered for that revision, as JSON and as octets. It must be
@@ -413,7 +477,7 @@ static void questions_are_of_the_revision(void **state)
         r = bench_expect(200, bench_send(b, "POST", target, octets, dense));
         uint32_t end;
         memcpy(&end, r.body + 4 * (size_t)rows[i].faces, sizeof end);
-        assert_int_equal(r.length, 4 * ((size_t)rows[i].faces + 1 + end));
+        assert_int_equal(r.length, 4 * (2 * (size_t)rows[i].faces + 2 + end));
         bench_done(r);
         snprintf(target, sizeof target, "/v1/meshes/p/traverse?revision=%d", rows[i].revision);
         r = bench_expect(rows[i].walked == 0 ? 422 : 200,
@@ -441,6 +505,7 @@ int main(void)
         cmocka_unit_test(edges_and_common_faces_of_two_vertices_are_found),
         cmocka_unit_test(queries_answer_in_order),
         cmocka_unit_test(dense_answers_are_offsets_and_ids),
+        cmocka_unit_test(corners_of_all_faces_are_octets),
         cmocka_unit_test(questions_are_of_the_revision),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

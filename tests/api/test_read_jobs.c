@@ -56,6 +56,7 @@ static const reading readings[] = {
     {"GET", "/v1/meshes/m/progressive?revision=1", NULL, NULL, true},
     {"GET", "/v1/meshes/m/vertices?limit=5", NULL, NULL, false},
     {"GET", "/v1/meshes/m/faces", NULL, "application/x-ndjson", true},
+    {"GET", "/v1/meshes/m/faces", NULL, "application/octet-stream", true},
     {"GET", "/v1/meshes/m/attributes/faces/a", NULL, NULL, false},
     {"GET", "/v1/meshes/m/attributes/faces/a", NULL, "application/octet-stream", true},
     {"GET", "/v1/meshes/m/boundaries", NULL, NULL, false},

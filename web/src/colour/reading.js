@@ -22,7 +22,7 @@ export async function readValues(source, content, signal) {
 async function readCorners(mesh, faces, revision, signal) {
     const [vertices, halfedges] = await Promise.all(
         ['vertices', 'halfedges'].map((relation) =>
-            api.relateAll(mesh, relation, 'faces', faces.length, revision, signal),
+            api.relateAll(mesh, relation, 'faces', revision, signal),
         ),
     );
     return new Corners(faces, vertices, halfedges);

@@ -280,15 +280,23 @@ export async function query(mesh, queries) {
 // an element has no value. A vector is three numbers.
 export async function measureAll(mesh, measure, kind, revision, signal) {
     const question = { measure, of: { [kind]: 'all' } };
-    return new Float64Array(await ask(mesh, question, revision, signal));
+    const bytes = await ask(mesh, question, revision, signal);
+    return new Float64Array(bytes, 0, (bytes.byteLength - 4 * (countElements(bytes) + 1)) / 8);
 }
 
-// Returns the neighbours of all elements that exist, whose number is `count`, in the order of their
-// ids: {offsets, ids}; those of the element at index i are ids[offsets[i]] to ids[offsets[i + 1] - 1].
-export async function relateAll(mesh, relation, kind, count, revision, signal) {
+// Returns the neighbours of all elements that exist, in the order of their ids: {offsets, ids}; those
+// of the element at index i are ids[offsets[i]] to ids[offsets[i + 1] - 1].
+export async function relateAll(mesh, relation, kind, revision, signal) {
     const question = { relation, of: { [kind]: 'all' } };
-    const words = new Uint32Array(await ask(mesh, question, revision, signal));
-    return { offsets: words.subarray(0, count + 1), ids: words.subarray(count + 1) };
+    const bytes = await ask(mesh, question, revision, signal);
+    const words = new Uint32Array(bytes);
+    const count = countElements(bytes);
+    return { offsets: words.subarray(0, count + 1), ids: words.subarray(count + 1, -count - 1) };
+}
+
+// An answer about all elements ends with their ids and their number, of 4 bytes each.
+function countElements(bytes) {
+    return new DataView(bytes).getUint32(bytes.byteLength - 4, true);
 }
 
 function ask(mesh, question, revision, signal) {
