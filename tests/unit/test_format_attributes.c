@@ -234,6 +234,32 @@ static void glb_keeps_them_all(void **state)
     round_trip("glb", "binary", attributes, sizeof attributes / sizeof *attributes);
 }
 
+/* A stored mesh may have attributes with the name that is now that of the positions. */
+static void a_reserved_name_is_read_as_another(void **state)
+{
+    (void)state;
+    static const attribute attributes[] = {{"position", HE_VERTEX, HE_DOUBLE, 2, 0},
+                                           {"position", HE_FACE, HE_INT32, 1, 0}};
+    md_random random = {seed_of_run()};
+    he_mesh *m = worn_grid(&random, attributes, 2);
+    he_warnings warnings;
+    size_t length;
+    char *bytes = write_encoded("glb", "binary", m, 777, &warnings, &length);
+    he_import import = {0};
+    assert_int_equal(
+        read_pieces(&(format_file){"glb", bytes, length}, 333, NULL, &import, &(he_error){0}),
+        HE_OK);
+    assert_int_equal(find_warning(&import.warnings, "renamed_attribute", "position")->count, 2);
+    for (size_t i = 0; i < 2; i++) {
+        assert_non_null(find_column(&import, attributes[i].domain, "position_1"));
+    }
+    assert_int_equal(import.soup.column_count, 2);
+    he_mesh_free(build_import(&import));
+    he_import_clear(&import);
+    free(bytes);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -241,6 +267,7 @@ int main(void)
         cmocka_unit_test(obj_keeps_the_values_of_corners),
         cmocka_unit_test(off_keeps_normals_colors_and_texture),
         cmocka_unit_test(glb_keeps_them_all),
+        cmocka_unit_test(a_reserved_name_is_read_as_another),
     };
     return cmocka_run_group_tests_name("format_attributes", tests, NULL, NULL);
 }

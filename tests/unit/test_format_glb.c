@@ -368,12 +368,14 @@ static void attributes_of_vertices(void **state)
     float first;
     memcpy(&first, any->data, sizeof first);
     assert_true(first == 1);
-    static const char *const ignored[] = {"_",       "other",     "TEXCOORD_0", "COLOR_01",
-                                          "TANGENT", "_position", "JOINTS_0"};
+    assert_non_null(find_warning(&import.warnings, "renamed_attribute", "position"));
+    assert_non_null(find_column(&import, HE_VERTEX, "position_1"));
+    static const char *const ignored[] = {"_",        "other",   "TEXCOORD_0",
+                                          "COLOR_01", "TANGENT", "JOINTS_0"};
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++) {
         assert_non_null(find_warning(&import.warnings, "ignored_attribute", ignored[i]));
     }
-    assert_int_equal(import.soup.column_count, 5);
+    assert_int_equal(import.soup.column_count, 6);
     he_import_clear(&import);
 }
 

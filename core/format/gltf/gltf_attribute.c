@@ -41,6 +41,17 @@ he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *co
     return status == HE_OK ? he_column_extend(column, rows, err) : status;
 }
 
+void he_gltf_rename(he_gltf *asset, char name[HE_COLUMN_NAME], uint32_t value)
+{
+    if (strcmp(name, he_position_schema.name) == 0) {
+        he_gltf_note_text(asset, "renamed_attribute",
+                          "attribute % is renamed to position_1, because position is a reserved "
+                          "name",
+                          name, value);
+        snprintf(name, HE_COLUMN_NAME, "position_1");
+    }
+}
+
 /* Reads the number at the end of an attribute's name, such as 1 in TEXCOORD_1: at most three
  * digits, and no leading 0. */
 static bool read_number(const char *p, unsigned *number)
@@ -73,8 +84,7 @@ static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
         return true;
     }
     size_t length = strlen(semantic);
-    if (semantic[0] != '_' || length < 2 || length > HE_COLUMN_NAME ||
-        strcmp(semantic, "_position") == 0) {
+    if (semantic[0] != '_' || length < 2 || length > HE_COLUMN_NAME) {
         return false;
     }
     for (size_t i = 1; i < length; i++) {
@@ -237,6 +247,7 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, att
     if (status != HE_OK) {
         return status;
     }
+    he_gltf_rename(s->asset, name, value);
     he_type type = column_type(a, out->known);
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
     const he_column *corners = he_gltf_find_column(soup, HE_HALFEDGE, name);

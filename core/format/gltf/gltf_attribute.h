@@ -5,7 +5,7 @@
  *     COLOR_0, _1 ...      color, color1 ...: fractions, also from normalized integers
  *     JOINTS_0, _1 ...     joints, joints1 ...
  *     WEIGHTS_0, _1 ...    weights, weights1 ...
- *     _ANY                 ANY
+ *     _ANY                 ANY; the reserved name position becomes position_1
  *
  * Floats stay float, normalized integers become float, and other integers become int32 or uint32.
  * Only uv is double: for a float v, 1 - v is exact in double, so that v is written back as it
@@ -55,6 +55,9 @@ HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he
 /* Adds warnings about vertices that have no value of an attribute that other vertices have. */
 void he_gltf_note_attributes(he_gltf_surface *surface);
 
+/* Renames an attribute called position, which is the name of the positions of vertices in the API,
+ * to position_1, and adds a warning that names the JSON value `value`. */
+void he_gltf_rename(he_gltf *asset, char name[HE_COLUMN_NAME], uint32_t value);
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
 /* Extends a column (the array of an attribute's values) to `end` values; new values are the
  * default. Errors name the JSON value `value`.

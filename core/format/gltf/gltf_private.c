@@ -196,6 +196,7 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
         he_json_string(json, he_json_find(json, object, "name"), d->name, sizeof d->name) == 0) {
         return HE_OK;
     }
+    he_gltf_rename(s->asset, d->name, object);
     he_status status = get_words(s->asset, object, "accessor", &d->words, fits, err);
     uint64_t width = d->components * words_of(d->type);
     *fits =
