@@ -491,10 +491,11 @@ bench-reshape: $(SIDES) | $(INSTALLED) ## remeshing, smoothing, filling, deformi
 bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangulation: our figures alone
 	@for program in $(SPACE); do $$program; done
 
-bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd; steps a second of dragging 50,176 vertices
+bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd; steps a second of dragging 50,176 vertices; a million positions both ways
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks
 	@sh tests/bench/http_store.sh $(HEDGED) build/durable
 	@sh tests/bench/drag.sh $(HEDGED)
+	@sh tests/bench/arrays.sh $(HEDGED)
 
 $(addprefix $(BUILD)/tests/bench/,store checks): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
 	@mkdir -p $(@D)
