@@ -20,6 +20,9 @@ enum { BATCH = 64 };
  * BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
+/* How long the copy of a mesh is kept after its last use. */
+enum { COPY_MICROS = 1000 * 1000 };
+
 /* LOCK_NANOS: how long a thread waits for the lock of the table of meshes. DISK_MICROS: how long it
  * waits for the disk if meshes can be evicted once their changes are durable. */
 enum {
@@ -268,6 +271,7 @@ void st_store_rest(st_store *store)
 {
     const uint64_t share = st_memory_budget() / 16, now = st_clock_micros();
     bool locked;
+    st_store_expire_copies(store, now > COPY_MICROS ? now - COPY_MICROS : 0);
     if (!store->journal.keeps || share == 0) {
         return;
     }

@@ -3,6 +3,7 @@
 #include "store/history_cursor.h"
 #include "store/mesh_load.h"
 #include "store/table.h"
+#include "system/clock.h"
 #include "system/lock.h"
 #include "system/memory.h"
 
@@ -29,6 +30,13 @@ static void count_copy(st_copy *copy, const st_mesh *mesh)
     copy->counts = &mesh->followers->counts;
     copy->bytes = he_mesh_bytes(he_replay_mesh(copy->replay));
     st_count(&copy->counts->copies, copy->bytes);
+}
+
+/* Adds a reference to a copy for a snapshot. The caller holds the lock of the cache of the copy. */
+static void use(st_copy *copy)
+{
+    atomic_store_explicit(&copy->used, st_clock_micros(), memory_order_relaxed);
+    atomic_fetch_add_explicit(&copy->uses, 1, memory_order_relaxed);
 }
 
 /* Returns true if only the cache has a reference to a copy. The caller holds the snapshot lock,
@@ -98,7 +106,7 @@ st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out)
     st_lock_mutex(&mesh->snapshot_lock);
     snapshot->copy = present_copy(mesh);
     if (snapshot->copy != NULL) {
-        atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
+        use(snapshot->copy);
         st_mesh_facts(mesh, &snapshot->info);
     }
     pthread_mutex_unlock(&mesh->snapshot_lock);
@@ -235,7 +243,7 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
         /* The snapshot states the revision and time of the copy, and the present name and counts of
          * the mesh. */
         snapshot->copy = mesh->past;
-        atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
+        use(snapshot->copy);
         (void)st_read_begin(mesh, &snapshot->info);
         st_read_end(mesh);
         snapshot->info.revision = revision;
@@ -261,6 +269,7 @@ const he_mesh *st_snapshot_content(const st_snapshot *snapshot, st_mesh_info *in
 void st_snapshot_release(st_snapshot *snapshot)
 {
     if (snapshot != NULL) {
+        atomic_store_explicit(&snapshot->copy->used, st_clock_micros(), memory_order_relaxed);
         st_copy_release(snapshot->copy);
         he_mem_free(snapshot);
     }
@@ -272,6 +281,35 @@ static void shed(st_copy **copy)
         st_copy_release(*copy);
         *copy = NULL;
     }
+}
+
+/* Takes a copy that no thread is reading, and that was last used before `before`, out of its cache,
+ * so that it can be freed without the lock of the cache, which freeing many bytes would hold long.
+ */
+static st_copy *take_expired(st_copy **copy, pthread_mutex_t *lock, uint64_t before)
+{
+    st_copy *taken = NULL;
+    if (pthread_mutex_trylock(lock) != 0) {
+        return NULL;
+    }
+    if (*copy != NULL && is_cached_alone(*copy) &&
+        atomic_load_explicit(&(*copy)->used, memory_order_relaxed) < before) {
+        taken = *copy;
+        *copy = NULL;
+    }
+    pthread_mutex_unlock(lock);
+    return taken;
+}
+
+/* How much longer the copy of an earlier revision is kept: it takes many deltas, or reading the
+ * mesh from the disk, to make it again. */
+enum { PAST_MICROS = 10 * 1000 * 1000 };
+
+void st_copy_expire(st_mesh *mesh, uint64_t before)
+{
+    const uint64_t past = before > PAST_MICROS ? before - PAST_MICROS : 0;
+    st_copy_release(take_expired(&mesh->copy, &mesh->snapshot_lock, before));
+    st_copy_release(take_expired(&mesh->past, &mesh->past_lock, past));
 }
 
 void st_copy_shed(st_mesh *mesh)

@@ -410,6 +410,22 @@ void st_store_shed(st_store *store)
     }
 }
 
+void st_store_expire_copies(st_store *store, uint64_t before)
+{
+    st_mesh *batch[MESH_BATCH];
+    char after[ST_MESH_ID + 1] = "";
+    size_t count;
+    /* Most of the time there are no copies, and the meshes, which may be many, are not visited. */
+    while (st_counted(&store->followers.counts.copies) > 0 &&
+           (count = st_list(store, after, batch, MESH_BATCH)) > 0) {
+        memcpy(after, batch[count - 1]->info.id, sizeof after);
+        for (size_t i = 0; i < count; i++) {
+            st_copy_expire(batch[i], before);
+            st_release(batch[i]);
+        }
+    }
+}
+
 /* --- holders of meshes --- */
 
 st_status st_limit_holders(st_store *store, const st_holder_limit *limits, size_t count)

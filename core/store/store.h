@@ -172,7 +172,13 @@ void st_store_measure(st_store *store, st_store_measures *out);
  * short, unused meshes of that store are evicted before the allocation is refused. A NULL store
  * means that the thread works for no store. */
 void st_store_serve(const st_store *store);
-/* Must be called about once a second. While less than an eighth of the memory budget is free, this
+/* Frees the copies of meshes that no thread is reading and that were last used before `before`
+ * (st_clock_micros); copies of earlier revisions are kept ten seconds longer. The caller must hold
+ * no lock. */
+void st_store_expire_copies(st_store *store, uint64_t before);
+/* Must be called about once a second. Frees copies of meshes that nobody has used for a second; a
+ * copy takes as much memory as its mesh, and pages and exports that follow each other share it.
+ * While less than an eighth of the memory budget is free, this
  * function evicts meshes (removes them from memory) that were not used for a minute, the least
  * recently used first. */
 void st_store_rest(st_store *store);

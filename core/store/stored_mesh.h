@@ -17,6 +17,7 @@
  * to it; while a snapshot exists, the copy does not change. */
 typedef struct st_copy {
     _Atomic uint32_t uses;
+    _Atomic uint64_t used; /* st_clock_micros when a snapshot of it was last taken or released */
     uint64_t revision;
     /* Time at which the revision of the copy was made; set only if it is not the present
      * revision. */
@@ -191,5 +192,9 @@ void st_rebase_drop(st_mesh *mesh);
 void st_copy_release(st_copy *copy);
 /* Frees the cached copy of a mesh, unless a thread is reading the copy. */
 void st_copy_shed(st_mesh *mesh);
+/* Frees the cached copies of a mesh that no thread is reading and that were last used before
+ * `before`, or ten seconds earlier if they show an earlier revision. Does not wait for a thread
+ * that is making a copy. */
+void st_copy_expire(st_mesh *mesh, uint64_t before);
 
 #endif

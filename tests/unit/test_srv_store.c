@@ -7,6 +7,7 @@
 
 #include "edit/local/vertex.h"
 #include "store/store.h"
+#include "system/clock.h"
 #include "system/memory.h"
 #include "tests/failing.h"
 
@@ -396,6 +397,42 @@ static void a_held_snapshot_does_not_change_and_a_new_one_is_current(void **stat
     st_snapshot_release(a);
 }
 
+static uint64_t bytes_of_copies(void)
+{
+    st_store_measures measures;
+    st_store_measure(store, &measures);
+    return measures.snapshot_bytes;
+}
+
+static void a_copy_that_nobody_uses_is_freed(void **state)
+{
+    (void)state;
+    st_mesh *mesh = create("m");
+    st_snapshot *a = NULL, *b = NULL, *past = NULL;
+    move(mesh, 1, false, NULL);
+    assert_int_equal(st_snapshot_take(mesh, &a), ST_OK);
+    const he_mesh *shared = st_snapshot_content(a, NULL);
+    st_store_expire_copies(store, UINT64_MAX); /* the copy is in use */
+    assert_true(bytes_of_copies() > 0);
+    assert_true(he_position(shared, (he_vertex){0}).x == 1);
+    st_snapshot_release(a);
+    st_store_expire_copies(store, 0); /* the copy was used later */
+    assert_int_equal(st_snapshot_take(mesh, &b), ST_OK);
+    assert_ptr_equal(st_snapshot_content(b, NULL), shared);
+    st_snapshot_release(b);
+    assert_int_equal(st_snapshot_at(mesh, 1, &past), ST_OK);
+    st_snapshot_release(past);
+    const uint64_t both = bytes_of_copies();
+    st_store_expire_copies(store, st_clock_micros() + 1000000); /* the present revision only */
+    assert_in_range(bytes_of_copies(), 1, both - 1);
+    st_store_expire_copies(store, UINT64_MAX);
+    assert_int_equal(bytes_of_copies(), 0);
+    assert_int_equal(st_snapshot_take(mesh, &a), ST_OK);
+    assert_true(he_position(st_snapshot_content(a, NULL), (he_vertex){0}).x == 1);
+    st_snapshot_release(a);
+    st_release(mesh);
+}
+
 static void a_cached_value_lasts_until_the_mesh_changes(void **state)
 {
     (void)state;
@@ -748,6 +785,7 @@ int main(void)
         TEST(the_undo_history_stays_within_its_budget),
         TEST(long_names_of_operations_are_cut),
         TEST(a_held_snapshot_does_not_change_and_a_new_one_is_current),
+        TEST(a_copy_that_nobody_uses_is_freed),
         TEST(a_cached_value_lasts_until_the_mesh_changes),
         TEST(calls_without_memory_are_refused_and_change_nothing),
         TEST(memory_is_short_before_it_is_full),
