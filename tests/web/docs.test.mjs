@@ -200,7 +200,10 @@ test('the programs of the guides run, and print what they should', async (t) => 
     const folder = new URL('../../web/manual/guides/', import.meta.url);
     const wanted = {
         'half-edges.md': ['half-edge 0 leads to vertex 1\nhalf-edge 5 leads to vertex 2\nhalf-edge 9 leads to vertex 3\n'],
-        'arrays.md': ['162 values, the last is 0.99'],
+        'arrays.md': [
+            '162 values, the last is 0.99',
+            '8 points, 6 faces; face 0 has [0, 3, 2, 1]\nmoved 8\n',
+        ],
         'large.md': ['done 65536 faces'],
         'errors.md': ['422 wrong_degree - vertex 3 has degree 3', '422 wrong_degree - vertex 3 has degree 3'],
     };
