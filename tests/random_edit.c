@@ -134,6 +134,11 @@ static void put_value(draft *d, const he_param *p, he_arg *arg)
         put(d, "\"%s\":%u", p->name, element(d, p->kind));
         return;
     case HE_PARAM_ELEMENT:
+        if (p->each != NULL && md_chance(d->random, 20)) {
+            const uint32_t one = element(d, p->kind), other = element(d, p->kind);
+            put(d, one == other ? "\"%s\":[%u]" : "\"%s\":[%u,%u]", p->each, one, other);
+            return;
+        }
         put(d, "\"%s\":%u", p->name, element(d, p->kind));
         return;
     case HE_PARAM_CYCLE:

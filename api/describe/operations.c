@@ -98,6 +98,10 @@ static const api_field param_fields[] = {
     API_FIELD("name", "text", shown_param, param.name, .required = true),
     API_FIELD("plural", "text", shown_param, param.plural,
               .doc = "The name of the parameter that takes a list of ids instead of one id."),
+    API_FIELD("each", "text", shown_param, param.each,
+              .doc = "The name of the parameter that takes a list instead of one value. The "
+                     "operation then runs once for each item of the list, in order, and its other "
+                     "parameters may be lists of the same length."),
     API_FIELD("set", "flag", shown_param, set, .zero_is_none = true,
               .doc = "True if a set such as {\"selected\":true} or {\"patch\":3} may be given "
                      "instead of a list of ids."),
@@ -386,6 +390,74 @@ static void write_value_schema(api_out *out, const he_param *param)
     }
 }
 
+/* Returns true if the operation can run once for each item of a list. */
+static bool runs_each(const he_op *op)
+{
+    bool each = false;
+    for (size_t i = 0; i < he_op_params(op); i++) {
+        each = each || op->params[i].each != NULL;
+    }
+    return each;
+}
+
+/* Returns true if a parameter of the operation may be given as a column. */
+static bool is_column(const he_op *op, const he_param *param)
+{
+    return runs_each(op) && he_op_is_column(param) &&
+           (param->each == NULL || strcmp(param->each, param->name) == 0);
+}
+
+/* Writes the members of the schema of a value or a column of values. */
+static void write_column_schema(api_out *out, const he_param *param)
+{
+    if (param->type == HE_PARAM_POINT) {
+        api_schema_reference(out, "points");
+        return;
+    }
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    api_out_object_begin(out);
+    write_value_schema(out, param);
+    api_out_object_end(out);
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "array");
+    api_out_key(out, "items");
+    api_out_object_begin(out);
+    write_value_schema(out, param);
+    api_out_object_end(out);
+    api_out_key_u64(out, "minItems", 1);
+    api_out_object_end(out);
+    api_out_array_end(out);
+}
+
+/* Writes the schema of the list for each of whose items the operation runs. */
+static void write_each_schema(api_out *out, const he_param *param)
+{
+    api_out_key_string(out, "description",
+                       "A list: the operation runs once for each item, in order. Other parameters "
+                       "may then be lists of the same length, or one value for all.");
+    if (param->type == HE_PARAM_ELEMENT) {
+        api_out_key(out, "oneOf");
+        api_out_array_begin(out);
+        api_out_object_begin(out);
+        write_list_schema(out, 1);
+        api_out_object_end(out);
+        api_schema_ref(out, "schemas", "set");
+        api_out_array_end(out);
+        return;
+    }
+    api_out_key_string(out, "type", "array");
+    if (param->type == HE_PARAM_POINT) {
+        api_schema_ref_key(out, "items", "point");
+    } else {
+        api_out_key(out, "items");
+        api_out_object_begin(out);
+        write_list_schema(out, 0);
+        api_out_object_end(out);
+    }
+    api_out_key_u64(out, "minItems", 1);
+}
+
 static void add_choices(api_text *text, const char *before, const char *const *choices)
 {
     for (; *choices != NULL; choices++) {
@@ -423,6 +495,12 @@ static void write_description(api_out *out, const he_op *op, const he_param *par
     api_text_clear(&text);
 }
 
+/* Returns true if the list for each of whose items the operation runs has a name of its own. */
+static bool has_own_list(const he_param *param)
+{
+    return param->each != NULL && strcmp(param->each, param->name) != 0;
+}
+
 static void write_param_schema(api_out *out, const he_op *op, const he_param *param)
 {
     api_out_key(out, param->name);
@@ -430,8 +508,18 @@ static void write_param_schema(api_out *out, const he_op *op, const he_param *pa
     if (param->doc != NULL) {
         write_description(out, op, param);
     }
-    write_value_schema(out, param);
+    if (is_column(op, param)) {
+        write_column_schema(out, param);
+    } else {
+        write_value_schema(out, param);
+    }
     api_out_object_end(out);
+    if (has_own_list(param)) {
+        api_out_key(out, param->each);
+        api_out_object_begin(out);
+        write_each_schema(out, param);
+        api_out_object_end(out);
+    }
     if (param->plural == NULL) {
         return;
     }
@@ -459,7 +547,8 @@ static void describe_groups(api_text *text, const he_op *op)
             first = first && !(same && j < i);
             required = required || (same && (op->params[j].flags & HE_REQUIRED));
         }
-        if (!first || !required || (param->group == 0 && param->plural == NULL)) {
+        if (!first || !required ||
+            (param->group == 0 && param->plural == NULL && !has_own_list(param))) {
             continue;
         }
         const char *before = " Give exactly one of ";
@@ -468,8 +557,9 @@ static void describe_groups(api_text *text, const he_op *op)
             if (j == i || (param->group != 0 && other->group == param->group)) {
                 api_text_add_format(text, "%s`%s`", before, other->name);
                 before = ", ";
-                if (other->plural != NULL) {
-                    api_text_add_format(text, "%s`%s`", before, other->plural);
+                if (other->plural != NULL || has_own_list(other)) {
+                    api_text_add_format(text, "%s`%s`", before,
+                                        other->plural != NULL ? other->plural : other->each);
                 }
             }
         }
@@ -519,7 +609,8 @@ static void write_op_schema(api_out *out, const he_op *op)
     api_out_string(out, "op");
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
-        if ((param->flags & HE_REQUIRED) && param->group == 0 && param->plural == NULL) {
+        if ((param->flags & HE_REQUIRED) && param->group == 0 && param->plural == NULL &&
+            !has_own_list(param)) {
             api_out_string(out, param->name);
         }
     }
@@ -573,12 +664,47 @@ static void write_result_schema(api_out *out, const he_result_row *result)
     api_out_object_end(out);
 }
 
+/* Writes the schema of the columns of results, if the operation can run for each item of a list. */
+static void write_columns_schema(api_out *out, const he_op *op)
+{
+    api_out_key(out, "each");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "object");
+    api_out_key_string(out, "description",
+                       "If the operation ran for each item of a list: the results, each as a list "
+                       "with one value for each item. The other members are then missing.");
+    api_out_key(out, "properties");
+    api_out_object_begin(out);
+    for (size_t i = 0; i < he_op_results(op); i++) {
+        api_out_key(out, op->results[i].name);
+        api_out_object_begin(out);
+        api_out_key_string(out, "type", "array");
+        api_out_key(out, "items");
+        if (op->results[i].type == HE_RESULT_ELEMENTS) {
+            api_out_object_begin(out);
+            write_array(out, write_id);
+            api_out_object_end(out);
+        } else if (op->results[i].type == HE_RESULT_NUMBER) {
+            static const char type[] = "{\"anyOf\":[{\"type\":\"number\"},{\"type\":\"null\"}]}";
+            api_out_raw(out, type, sizeof type - 1);
+        } else {
+            write_nullable_id(out);
+        }
+        api_out_object_end(out);
+    }
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
 /* Writes the schema done_NAME of the object that has an operation's name and results. */
 static void write_done_schema(api_out *out, const he_op *op)
 {
     begin_named(out, "done", op, NULL);
     for (size_t i = 0; i < he_op_results(op); i++) {
         write_result_schema(out, &op->results[i]);
+    }
+    if (runs_each(op)) {
+        write_columns_schema(out, op);
     }
     api_out_object_end(out);
     api_out_key(out, "required");

@@ -9,7 +9,8 @@
 #include "store/store.h"
 
 /* Writes the results of one operation as an object, for the list `results`:
- * {"op":"edge_split","vertex":17,"edges":[30,31,32]}. */
+ * {"op":"edge_split","vertex":17,"edges":[30,31,32]}. If it ran once for each item of a list, the
+ * results are columns: {"op":"edge_split","each":{"vertex":[17,18],"edges":[[30,31],[32]]}}. */
 void api_write_results(api_out *out, const he_op *op, const he_results *results);
 
 /* Writes the members created, deleted, modified, parents and merged into an object that the caller

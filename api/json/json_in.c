@@ -173,7 +173,7 @@ void api_in_pointer(const api_in *in, char *out, size_t size)
     while (steps > 0) {
         const api_in *step = way[--steps];
         char index[24];
-        const char *name = step->value->string;
+        const char *name = step->value == NULL ? NULL : step->value->string;
         if (name == NULL) {
             snprintf(index, sizeof index, "%zu", step->index);
             name = index;
@@ -334,6 +334,11 @@ bool api_in_next(api_in *child)
     child->value = child->value->next;
     child->index++;
     return child->value != NULL;
+}
+
+api_in api_in_item(const api_in *array, size_t i)
+{
+    return (api_in){.parent = array, .index = i, .problem = array->problem};
 }
 
 const char *api_in_name(const api_in *member)

@@ -106,6 +106,8 @@ size_t api_in_count(const api_in *in);
  */
 bool api_in_first(const api_in *in, api_in *child);
 bool api_in_next(api_in *child);
+/* Returns a cursor that names item `i` of an array in a refusal. It has no value to read. */
+api_in api_in_item(const api_in *array, size_t i);
 const char *api_in_name(const api_in *member); /* returns the name of a member of an object */
 
 /* --- reading values --- */

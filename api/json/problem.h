@@ -41,6 +41,9 @@
       "A string such as \"$a.vertex\" stands for the result `vertex` of an earlier operation of "  \
       "the list, which has the member \"as\":\"a\". The list has no earlier operation with this "  \
       "name, or its result is not of the kind that the parameter needs.")                          \
+    X(REPEATED, "repeated", 400, "A list names an element twice",                                  \
+      "An operation runs once for each element of the list, so an element may be named only "      \
+      "once.")                                                                                     \
     X(REPEATED_NAME, "repeated_name", 400, "A name is given twice in one list",                    \
       "Two operations of a list may not have the same name in `as`.")                              \
     /* refusals because of the request line and its headers */                                     \

@@ -1,134 +1,22 @@
 #include "api/write/decode_op.h"
 
+#include "api/write/decode_ids.h"
+
 #include "api/json/known_names.h"
 #include "api/json/material_value.h"
 #include "api/limits.h"
 
 #include <string.h>
 
-/* What the functions that decode one operation share. */
-typedef struct decoder {
-    const api_in *object;
-    const api_op_scope *scope;
-    api_arena *arena;
-    const he_op *op;
-    api_call *call;
-} decoder;
-
-/* Reads an id into `one`, or the ids that a reference stands for into `found`. */
-static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_t *one,
-                       api_found *found)
-{
-    const api_references *references = d->scope->references;
-    if (!api_in_is_string(in) || references == NULL) {
-        *found = (api_found){.ids = one, .count = 1};
-        return api_in_id(in, one);
-    }
-    const char *text;
-    if (!api_in_string(in, SIZE_MAX, &text)) {
-        return false;
-    }
-    if (text[0] != '$') {
-        return api_in_fail(
-            in, API_WRONG_TYPE,
-            "a string in place of an id must be a reference such as \"$name.result\"");
-    }
-    return references->find(references->context, in, text, kind, found);
-}
-
-static bool decode_element(const decoder *d, const he_param *param, const api_in *in, uint32_t *id)
-{
-    if ((param->flags & HE_NULLABLE) && api_in_is_null(in)) {
-        *id = HE_NONE;
-        return true;
-    }
-    uint32_t one;
-    api_found found;
-    if (!decode_ids(d, in, param->kind, &one, &found)) {
-        return false;
-    }
-    if (found.list) {
-        return api_in_fail(in, API_BAD_REFERENCE,
-                           "the reference names a list, but one id is expected: add \".0\" to name "
-                           "its first element");
-    }
-    *id = found.ids[0];
-    return true;
-}
-
-/* Reads a list of ids in two passes. The first one adds up the length of the result, because a
- * reference may stand for a list. */
-static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in *in, he_arg *arg)
-{
-    if (!api_in_array(in, min, SIZE_MAX)) {
-        return false;
-    }
-    size_t capacity = api_in_count(in), count = 0;
-    uint32_t *ids = api_arena_array(d->arena, capacity, sizeof *ids);
-    api_in child;
-    for (bool more = api_in_first(in, &child); more && ids != NULL; more = api_in_next(&child)) {
-        uint32_t one;
-        api_found found;
-        if (!decode_ids(d, &child, kind, &one, &found)) {
-            return false;
-        }
-        if (found.count > API_MAX_IDS - count) {
-            return api_in_fail(&child, HE_LIMIT, "the list refers to more than %d elements",
-                               (int)API_MAX_IDS);
-        }
-        if (found.count > capacity - count) {
-            size_t grown = he_mem_grown(capacity, count + found.count);
-            uint32_t *larger = api_arena_array(d->arena, grown, sizeof *ids);
-            if (larger != NULL) {
-                memcpy(larger, ids, count * sizeof *ids);
-            }
-            ids = larger;
-            capacity = grown;
-        }
-        if (ids != NULL && found.count > 0) {
-            memcpy(ids + count, found.ids, found.count * sizeof *ids);
-            count += found.count;
-        }
-    }
-    if (ids == NULL) {
-        return api_in_fail(in, HE_NO_MEMORY, "no memory for a list of ids");
-    }
-    if (count < min) {
-        return api_in_fail(in, HE_NO_SUCH_ELEMENT,
-                           "the list is empty, because all references in it stand for empty lists");
-    }
-    arg->ids = ids;
-    arg->count = count;
-    arg->list = true;
-    return true;
-}
-
-static bool decode_set(const decoder *d, he_kind kind, const api_in *in, he_arg *arg)
-{
-    static const uint32_t none[1] = {HE_NONE};
-    api_set set;
-    uint32_t *ids;
-    d->call->has_set = true;
-    arg->list = true;
-    arg->ids = none;
-    if (d->scope->mesh == NULL) {
-        return api_in_set(in, &set);
-    }
-    if (!api_find_set(in, d->scope->mesh, kind, d->arena, &ids, &arg->count)) {
-        return false;
-    }
-    arg->ids = ids;
-    return true;
-}
-
-static bool decode_points(const decoder *d, const he_param *param, const api_in *in, he_arg *arg)
+/* Reads a point or, if `may_be_list` is true, also a list of points. */
+static bool decode_points(const api_decoder *d, bool may_be_list, const api_in *in, he_arg *arg)
 {
     if (!api_in_array(in, 1, SIZE_MAX)) {
         return false;
     }
     api_in first;
     api_in_first(in, &first);
-    bool list = param->type == HE_PARAM_POINTS && api_in_is_array(&first);
+    bool list = may_be_list && api_in_is_array(&first);
     size_t count = list ? api_in_count(in) : 1, i = 0;
     he_vec3 *points = api_arena_array(d->arena, count, sizeof *points);
     if (points == NULL) {
@@ -154,7 +42,7 @@ static bool decode_points(const decoder *d, const he_param *param, const api_in 
 
 /* Reads a list of points [x, y]. Its length is not checked, because the operation itself refuses a
  * polygon with too few corners. */
-static bool decode_polygon(const decoder *d, const api_in *in, he_arg *arg)
+static bool decode_polygon(const api_decoder *d, const api_in *in, he_arg *arg)
 {
     if (!api_in_array(in, 0, SIZE_MAX)) {
         return false;
@@ -201,7 +89,7 @@ static bool decode_matrix(const he_param *param, const api_in *in, he_arg *arg)
     return true;
 }
 
-static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
+static bool decode_mesh(const api_decoder *d, const api_in *in, he_arg *arg)
 {
     const api_meshes *meshes = d->scope->meshes;
     const char *id = NULL;
@@ -213,33 +101,145 @@ static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
     return meshes == NULL || meshes->find(meshes->context, in, id, revision, &arg->mesh);
 }
 
-static bool decode_number(const he_param *param, const api_in *in, he_arg *arg)
+static bool decode_number(const he_param *param, const api_in *in, double *out)
 {
     uint64_t whole = 0;
     if (param->flags & HE_WHOLE) {
         bool read = api_in_u64(in, (uint64_t)param->min, (uint64_t)param->max, &whole);
-        arg->number = (double)whole;
+        *out = (double)whole;
         return read;
     }
     if (param->flags & HE_RANGE) {
         return api_in_number_within(in, param->min, param->max, (param->flags & HE_EXCLUSIVE) != 0,
-                                    &arg->number);
+                                    out);
     }
-    return api_in_number(in, &arg->number);
+    return api_in_number(in, out);
 }
 
-static bool decode_value(const decoder *d, const he_param *param, const api_in *in, bool plural,
-                         he_arg *arg)
+/* --- columns --- */
+
+static bool decode_flag_or_choice(const he_param *param, const api_in *in, double *out)
+{
+    bool flag = false;
+    int choice = 0;
+    const bool read = param->type == HE_PARAM_FLAG ? api_in_bool(in, &flag)
+                                                   : api_in_choice(in, param->choices, &choice);
+    *out = param->type == HE_PARAM_FLAG ? (double)flag : (double)choice;
+    return read;
+}
+
+/* Reads a column of numbers, flags or choices. */
+static bool decode_numbers(const api_decoder *d, const he_param *param, const api_in *in,
+                           he_arg *arg)
+{
+    if (!api_in_array(in, 1, SIZE_MAX)) {
+        return false;
+    }
+    const size_t count = api_in_count(in);
+    double *numbers = api_arena_array(d->arena, count, sizeof *numbers);
+    if (numbers == NULL) {
+        return api_in_fail(in, HE_NO_MEMORY, "no memory for %zu values", count);
+    }
+    api_in child;
+    size_t i = 0;
+    for (bool more = api_in_first(in, &child); more; more = api_in_next(&child), i++) {
+        if (param->type == HE_PARAM_NUMBER ? !decode_number(param, &child, &numbers[i])
+                                           : !decode_flag_or_choice(param, &child, &numbers[i])) {
+            return false;
+        }
+    }
+    arg->numbers = numbers;
+    arg->count = count;
+    arg->list = true;
+    return true;
+}
+
+/* Reads a list of points: a column, or the list for each of whose points an operation runs. */
+static bool decode_point_list(const api_decoder *d, const api_in *in, he_arg *arg)
+{
+    api_in first;
+    if (!api_in_array(in, 1, SIZE_MAX)) {
+        return false;
+    }
+    api_in_first(in, &first);
+    return api_in_array(&first, 3, 3) && decode_points(d, true, in, arg);
+}
+
+/* Returns true if a value is a column: an array that is not one point. */
+static bool is_column(const api_decoder *d, const he_param *param, const api_in *in)
+{
+    api_in first;
+    if (!d->runs_each || !he_op_is_column(param) || !api_in_is_array(in)) {
+        return false;
+    }
+    return param->type != HE_PARAM_POINT || (api_in_first(in, &first) && api_in_is_array(&first));
+}
+
+static bool decode_column(const api_decoder *d, const he_param *param, const api_in *in,
+                          he_arg *arg)
 {
     switch (param->type) {
     case HE_PARAM_ELEMENT:
-        return decode_element(d, param, in, &arg->id);
+        return api_decode_ids(d, param, 1, in, arg);
+    case HE_PARAM_POINT:
+        return decode_point_list(d, in, arg);
+    case HE_PARAM_NUMBER:
+    case HE_PARAM_FLAG:
+    case HE_PARAM_CHOICE:
+        return decode_numbers(d, param, in, arg);
+    case HE_PARAM_ELEMENTS:
+    case HE_PARAM_POINTS:
+    case HE_PARAM_MATRIX:
+    case HE_PARAM_POLYGON:
+    case HE_PARAM_CYCLE:
+    case HE_PARAM_TEXT:
+    case HE_PARAM_COLOR:
+    case HE_PARAM_MESH:
+        break;
+    }
+    return api_in_fail(in, API_INTERNAL, "the table of operations has a column without a type");
+}
+
+/* Reads the list for each of whose items an operation runs. */
+static bool decode_each(const api_decoder *d, const he_param *param, const api_in *in, he_arg *arg)
+{
+    if (param->type == HE_PARAM_POINT) {
+        return decode_point_list(d, in, arg);
+    }
+    if (param->type == HE_PARAM_CYCLE) {
+        return api_decode_cycles(d, param, in, arg);
+    }
+    if (api_in_is_object(in)) {
+        return api_decode_set(d, param->kind, in, arg);
+    }
+    return api_decode_ids(d, param, 1, in, arg) && api_check_repeated(d, in, arg);
+}
+
+/* How a member gives its parameter. */
+typedef enum given_as {
+    AS_ONE,      /* under `name` */
+    AS_TOGETHER, /* under `plural` */
+    AS_EACH      /* under `each` */
+} given_as;
+
+static bool decode_value(const api_decoder *d, const he_param *param, const api_in *in, given_as as,
+                         he_arg *arg)
+{
+    if (as == AS_EACH) {
+        return decode_each(d, param, in, arg);
+    }
+    if (is_column(d, param, in)) {
+        return decode_column(d, param, in, arg);
+    }
+    switch (param->type) {
+    case HE_PARAM_ELEMENT:
+        return api_decode_id(d, param, in, &arg->id);
     case HE_PARAM_ELEMENTS: {
-        if (plural && api_in_is_object(in)) {
-            return decode_set(d, param->kind, in, arg);
+        if (as == AS_TOGETHER && api_in_is_object(in)) {
+            return api_decode_set(d, param->kind, in, arg);
         }
-        if (plural) {
-            return decode_list(d, param->kind, 1, in, arg);
+        if (as == AS_TOGETHER) {
+            return api_decode_ids(d, param, 1, in, arg);
         }
         uint32_t *one = api_arena_array(d->arena, 1, sizeof *one);
         if (one == NULL) {
@@ -247,13 +247,13 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
         }
         arg->ids = one;
         arg->count = 1;
-        return decode_element(d, param, in, one);
+        return api_decode_id(d, param, in, one);
     }
     case HE_PARAM_NUMBER:
-        return decode_number(param, in, arg);
+        return decode_number(param, in, &arg->number);
     case HE_PARAM_POINT:
     case HE_PARAM_POINTS:
-        return decode_points(d, param, in, arg);
+        return decode_points(d, param->type == HE_PARAM_POINTS, in, arg);
     case HE_PARAM_FLAG:
         return api_in_bool(in, &arg->flag);
     case HE_PARAM_CHOICE:
@@ -265,7 +265,7 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_CYCLE:
         /* No minimum length is given, because the operation itself refuses a list with too few
          * corners. */
-        return decode_list(d, param->kind, 0, in, arg);
+        return api_decode_ids(d, param, 0, in, arg);
     case HE_PARAM_TEXT:
         return api_in_string(in, SIZE_MAX, &arg->text);
     case HE_PARAM_COLOR:
@@ -276,21 +276,29 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     return api_in_fail(in, API_INTERNAL, "the table of operations has a parameter without a type");
 }
 
-/* Returns the index of the parameter that the member `name` gives, or -1. `*plural` says whether
- * the member has the parameter's plural name. */
-static int find_param(const he_op *op, const char *name, bool *plural)
+/* Returns true if the member `in` gives a list for each of whose items the operation runs. */
+static bool is_each(const he_param *param, const api_in *in)
 {
+    return param->each != NULL && strcmp(param->each, api_in_name(in)) == 0 &&
+           (strcmp(param->each, param->name) != 0 || api_in_is_array(in) || api_in_is_object(in));
+}
+
+/* Returns the index of the parameter that a member gives, or -1. */
+static int find_param(const he_op *op, const api_in *in, given_as *as)
+{
+    const char *name = api_in_name(in);
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
-        *plural = param->plural != NULL && strcmp(param->plural, name) == 0;
-        if (*plural || strcmp(param->name, name) == 0) {
+        const bool together = param->plural != NULL && strcmp(param->plural, name) == 0;
+        *as = together ? AS_TOGETHER : is_each(param, in) ? AS_EACH : AS_ONE;
+        if (*as != AS_ONE || strcmp(param->name, name) == 0) {
             return (int)i;
         }
     }
     return -1;
 }
 
-static bool decode_as(const decoder *d, const api_in *in)
+static bool decode_as(const api_decoder *d, const api_in *in)
 {
     const char *as;
     if (!api_in_string(in, API_MAX_AS, &as)) {
@@ -322,21 +330,21 @@ static bool is_listed(const char *const *names, const char *name)
     return false;
 }
 
-static bool refuse_parameter(const decoder *d, const api_in *in)
+static bool refuse_parameter(const api_decoder *d, const api_in *in)
 {
     api_known_names known = {.wanted = api_in_name(in)};
     for (size_t i = 0; i < he_op_params(d->op); i++) {
         const he_param *param = &d->op->params[i];
         api_known_names_add(&known, param->name);
-        if (param->plural != NULL) {
-            api_known_names_add(&known, param->plural);
+        if (param->plural != NULL || param->each != NULL) {
+            api_known_names_add(&known, param->plural != NULL ? param->plural : param->each);
         }
     }
     return api_in_fail(in, API_UNKNOWN_MEMBER, "there is no parameter \"%.60s\" of %s%s",
                        api_in_name(in), d->op->name, api_known_names_text(&known));
 }
 
-static bool decode_member(const decoder *d, const api_in *in)
+static bool decode_member(const api_decoder *d, const api_in *in)
 {
     const char *name = api_in_name(in);
     if (strcmp(name, "op") == 0 || is_listed(d->scope->also, name)) {
@@ -345,33 +353,36 @@ static bool decode_member(const decoder *d, const api_in *in)
     if (d->scope->references != NULL && strcmp(name, "as") == 0) {
         return decode_as(d, in);
     }
-    bool plural;
-    int i = find_param(d->op, name, &plural);
+    given_as as;
+    int i = find_param(d->op, in, &as);
     if (i < 0) {
         return refuse_parameter(d, in);
     }
     he_arg *arg = &d->call->args[i];
     if (arg->given) {
         return api_in_fail(in, API_CONFLICTING_MEMBERS, "give either \"%s\" or \"%s\", not both",
-                           d->op->params[i].name, d->op->params[i].plural);
+                           d->op->params[i].name,
+                           d->op->params[i].plural != NULL ? d->op->params[i].plural
+                                                           : d->op->params[i].each);
     }
     arg->given = true;
-    return decode_value(d, &d->op->params[i], in, plural, arg);
+    return decode_value(d, &d->op->params[i], in, as, arg);
 }
 
 /* Finds the member that gives a parameter. Returns the whole object if there is none. */
-static api_in member_of(const decoder *d, const he_param *param)
+static api_in member_of(const api_decoder *d, const he_param *param)
 {
     api_in at;
     if (api_in_find(d->object, param->name, &at) ||
-        (param->plural != NULL && api_in_find(d->object, param->plural, &at))) {
+        (param->plural != NULL && api_in_find(d->object, param->plural, &at)) ||
+        (param->each != NULL && api_in_find(d->object, param->each, &at))) {
         return at;
     }
     return *d->object;
 }
 
 /* Checks that no parameter is given that the value of the operation's selector does not allow. */
-static bool check_selected(const decoder *d)
+static bool check_selected(const api_decoder *d)
 {
     const he_param *selector = he_op_selector(d->op);
     const he_arg *args = d->call->args;
@@ -401,7 +412,7 @@ static bool check_selected(const decoder *d)
 
 /* Refuses an operation without a required parameter. The message also names the alternatives of
  * its group. */
-static bool fail_missing(const decoder *d, size_t i)
+static bool fail_missing(const api_decoder *d, size_t i)
 {
     const he_param *param = &d->op->params[i];
     char names[160] = "";
@@ -418,7 +429,7 @@ static bool fail_missing(const decoder *d, size_t i)
 
 /* Checks that all required parameters are given, and that at most one parameter of each group of
  * alternatives is given. */
-static bool check_given(const decoder *d)
+static bool check_given(const api_decoder *d)
 {
     const he_arg *args = d->call->args;
     for (size_t i = 0; i < he_op_params(d->op); i++) {
@@ -449,13 +460,10 @@ static bool check_given(const decoder *d)
 }
 
 /* Checks that a list of points is as long as the operation's first list of elements. */
-static bool check_points(const decoder *d)
+static bool check_points(const api_decoder *d)
 {
     size_t elements = 0;
     bool has_elements = false;
-    if (d->call->has_set && d->scope->mesh == NULL) {
-        return true;
-    }
     for (size_t i = 0; i < he_op_params(d->op) && !has_elements; i++) {
         if (d->op->params[i].type == HE_PARAM_ELEMENTS && d->call->args[i].given) {
             elements = d->call->args[i].count;
@@ -472,6 +480,32 @@ static bool check_points(const decoder *d)
         }
     }
     return true;
+}
+
+/* Checks that each column is as long as the list for each of whose items the operation runs. */
+static bool check_columns(const api_decoder *d)
+{
+    const he_param *each = he_op_each(d->op, d->call->args);
+    const size_t runs = he_op_runs(d->op, d->call->args);
+    for (size_t i = 0; each != NULL && i < he_op_params(d->op); i++) {
+        const he_param *param = &d->op->params[i];
+        const he_arg *arg = &d->call->args[i];
+        if (param != each && arg->given && arg->list && arg->count != runs) {
+            const api_in at = member_of(d, param);
+            return api_in_fail(&at, HE_BAD_VALUE,
+                               "\"%s\" has %zu values, but \"%s\" has %zu: give one value, or one "
+                               "for each",
+                               param->name, arg->count, each->each, runs);
+        }
+    }
+    return true;
+}
+
+/* Checks the lengths of lists, if they are known already. */
+static bool check_lengths(const api_decoder *d)
+{
+    const bool known = d->scope->mesh != NULL || (!d->call->has_set && !d->call->has_unknown);
+    return !known || (check_points(d) && check_columns(d));
 }
 
 static bool refuse_operation(const api_in *at, const char *name)
@@ -495,16 +529,21 @@ bool api_decode_op(const api_in *object, const api_op_scope *scope, api_arena *a
     }
     out->op = he_op_find(text, strlen(text));
     out->as = NULL;
-    out->has_set = false;
+    out->has_set = out->has_unknown = false;
     if (out->op == NULL) {
         return refuse_operation(&name, text);
     }
     he_op_defaults(out->op, out->args);
-    decoder d = {object, scope, arena, out->op, out};
+    api_decoder d = {object, scope, arena, out->op, out, false};
+    for (bool more = api_in_first(object, &member); more; more = api_in_next(&member)) {
+        for (size_t i = 0; i < he_op_params(out->op); i++) {
+            d.runs_each = d.runs_each || is_each(&out->op->params[i], &member);
+        }
+    }
     for (bool more = api_in_first(object, &member); more; more = api_in_next(&member)) {
         if (!decode_member(&d, &member)) {
             return false;
         }
     }
-    return check_selected(&d) && check_given(&d) && check_points(&d);
+    return check_selected(&d) && check_given(&d) && check_lengths(&d);
 }

@@ -9,7 +9,9 @@
  * Instead of an id there may be a reference "$name.result" or "$name.result.N": the result, or the
  * N-th item of a list result, of an earlier operation that has "as":"name". In a list of ids, a
  * reference to a list inserts all its items. Instead of a list of elements there may be a set,
- * {"selected":true}: see element_set.h. result_names.h resolves references. Each operation is
+ * {"selected":true}: see element_set.h. A parameter with `each` in the table may be given as a
+ * list, and the others then as columns (he_arg); ids in such a list are refused with API_REPEATED
+ * if they occur twice. result_names.h resolves references. Each operation is
  * decoded twice: once before the first operation of the list runs, when references are only
  * checked, and again just before it runs itself. */
 #ifndef HE_API_WRITE_DECODE_OP_H
@@ -23,7 +25,8 @@
 typedef struct api_found {
     const uint32_t *ids;
     size_t count;
-    bool list; /* true if the reference stands for a list, not a single id */
+    bool list;  /* true if the reference stands for a list, not a single id */
+    bool known; /* true if the operation that the reference names has run already */
 } api_found;
 
 /* A function that resolves references, with its context. */
@@ -64,6 +67,8 @@ typedef struct api_call {
     he_arg args[HE_OP_PARAMS];
     const char *as; /* the name given with "as", borrowed from the document; NULL: none */
     bool has_set;   /* true if a list of elements was given as a set */
+    /* True if there is a reference to results that are not known yet. */
+    bool has_unknown;
 } api_call;
 
 /* Decodes one operation. Lists are in the arena, which must outlive `out`. */

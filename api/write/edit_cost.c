@@ -32,9 +32,10 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
         if (!arg->given) {
             continue;
         }
-        if (param->type == HE_PARAM_ELEMENT) {
+        if (param->type == HE_PARAM_ELEMENT && !arg->list) {
             status = gather(cost, param, arg->id, err);
-        } else if (param->type == HE_PARAM_ELEMENTS || param->type == HE_PARAM_CYCLE) {
+        } else if (param->type == HE_PARAM_ELEMENT || param->type == HE_PARAM_ELEMENTS ||
+                   param->type == HE_PARAM_CYCLE) {
             for (size_t j = 0; j < arg->count && status == HE_OK; j++) {
                 status = gather(cost, param, arg->ids[j], err);
             }
@@ -286,13 +287,16 @@ uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t
         if (!arg->given || (param->flags & HE_WALKS) == 0) {
             continue;
         }
-        if (param->type == HE_PARAM_ELEMENT) {
+        if (param->type == HE_PARAM_ELEMENT && !arg->list) {
             count += walk_about(mesh, param, arg->id, most, hubs);
             continue;
         }
         for (size_t j = 0; j < arg->count && count <= most; j++) {
             count += walk_about(mesh, param, arg->ids[j], most, hubs);
         }
+    }
+    if (he_op_each(call->op, call->args) != NULL) {
+        return count;
     }
     /* An operation visits each half-edge only a few times, even if the half-edge is near many of
      * the elements that the operation names. */

@@ -23,6 +23,7 @@ typedef struct edits {
     api_in expected;
     bool has_expected;
     bool dry_run;
+    size_t runs;              /* how often operations run: once, or once for each item of a list */
     size_t whole;             /* number of operations on the whole mesh */
     uint64_t passes;          /* how many passes over the mesh the `whole` operations take */
     double growth;            /* the factor by which all operations together enlarge the mesh */
@@ -46,6 +47,9 @@ typedef struct edits {
     uint64_t look;    /* work charged for each report of progress that is not free */
     bool unlimited;   /* true if this thread may do any amount of work */
     he_progress told; /* the original x->progress, to which tell_and_charge forwards */
+    /* The delta that records the changes, while an operation runs once for each item of a list;
+     * else NULL. */
+    const he_delta *growing;
     api_hubs hubs;
     api_result_names names;
     api_arena scratch; /* arguments of the current operation */
@@ -122,6 +126,7 @@ static bool note(edits *e, const api_in *in, const api_call *call)
         e->whole++;
         e->passes++;
     }
+    e->runs += he_op_runs(call->op, call->args);
     e->growth *= he_op_growth(call->op, NULL, call->args);
     note_name(e, call->op->name);
     return api_edit_cost_add(&e->cost, call, &err) == HE_OK ||
@@ -216,6 +221,15 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
 /* The number of reports of progress that the charge for any operation includes. */
 enum { PHASES = 24 };
 
+/* Returns false if the list exceeds what it may do on this thread, or without claiming the mesh
+ * (store/write.h). */
+static bool is_affordable(edits *e, const he_delta *delta)
+{
+    e->exceeded = e->exceeded || e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
+    e->crowded = e->crowded || delta->count > e->most_rows;
+    return !e->exceeded && !e->crowded;
+}
+
 /* Charges the cost of one operation. Returns false if the list exceeds what it may do on this
  * thread, or without claiming the mesh (store/write.h). */
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
@@ -237,9 +251,7 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     e->work += work;
     e->paid = PHASES + 2 * (grown + listed) / HE_PROGRESS_STRIDE;
     e->look = (uint64_t)HE_PROGRESS_STRIDE * he_op_pace(call->op, call->args);
-    e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
-    e->crowded = delta->count > e->most_rows;
-    return !e->exceeded && !e->crowded;
+    return is_affordable(e, delta);
 }
 
 typedef struct attribute_count {
@@ -279,6 +291,23 @@ static bool within_attributes(attribute_count before, const he_mesh *mesh, const
     return true;
 }
 
+/* Gives a refusal the JSON pointer of the operation, or of the item of the list for which it was
+ * refused. */
+static void point_at(const edits *e, const api_in *in, const api_call *call, size_t i)
+{
+    const he_param *each = he_op_each(call->op, call->args);
+    api_in list;
+    if (each != NULL && api_in_find(in, each->each, &list)) {
+        /* A reference may have put several ids into the list; then its items are others. */
+        const bool is_item =
+            api_in_is_array(&list) && api_in_count(&list) == he_op_runs(call->op, call->args);
+        const api_in item = api_in_item(&list, i);
+        api_in_point(is_item ? &item : &list);
+    } else if (e->is_list) {
+        api_in_point(in);
+    }
+}
+
 /* Runs one operation and writes its results. A refusal gets the JSON pointer of the operation. */
 static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta,
                    const api_in *in)
@@ -292,11 +321,12 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     }
     attribute_count before = count_attributes(mesh);
     e->at = he_op_number(call.op);
-    if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
+    e->growing = he_op_each(call.op, call.args) != NULL ? delta : NULL;
+    const he_status status = he_op_run(call.op, mesh, call.args, &results, &err);
+    e->growing = NULL;
+    if (status != HE_OK) {
         api_fail_core(x, &err);
-        if (e->is_list) {
-            api_in_point(in);
-        }
+        point_at(e, in, &call, results.runs);
         return false;
     }
     bool good = within_attributes(before, mesh, in);
@@ -417,6 +447,9 @@ static bool tell_and_charge(void *context, const char *phase, double done)
         e->work += e->look;
         e->exceeded = e->exceeded || e->work > e->most_work;
     }
+    if (e->growing != NULL && !is_affordable(e, e->growing)) {
+        return false;
+    }
     return !e->exceeded && (e->told.tell == NULL || e->told.tell(e->told.context, phase, done));
 }
 
@@ -437,7 +470,7 @@ static void unlimit_work(api_exchange *x, const edits *e)
 {
     x->progress.tell = e->told.tell;
     x->progress.context = e->told.context;
-    x->progress.cancelled = x->progress.cancelled && !e->exceeded;
+    x->progress.cancelled = x->progress.cancelled && !e->exceeded && !e->crowded;
 }
 
 /* Resets the state of a list that was rolled back, so that it can start again. */
@@ -602,12 +635,12 @@ bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     (void)out;
     double grown = e->growth * (double)(e->elements_beside + api_elements_of(mesh));
     uint64_t elements = grown < MANY ? (uint64_t)grown : (uint64_t)MANY;
-    e->costly = e->count > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
+    e->costly = e->runs > API_COSTLY_EDITS || e->passes * elements > API_WORKER_EDITS ||
                 api_named_meshes_reach_back(&e->named) ||
                 (elements > API_COSTLY_ELEMENTS &&
                  (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
     e->seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
-    e->claims = e->count > API_CLAIM_EDITS ||
+    e->claims = e->runs > API_CLAIM_EDITS ||
                 (e->whole > 0 && (elements > API_CLAIM_ELEMENTS || e->seconds > API_PATIENCE));
     return true;
 }

@@ -56,14 +56,20 @@ typedef struct value {
     int64_t index; /* index of the item; -1: the whole result */
 } value;
 
+static bool is_list(const api_result_name *name, size_t row)
+{
+    return name->each || name->op->results[row].type == HE_RESULT_ELEMENTS;
+}
+
 /* Finds the ids of a result or item. `text` is the reference, for the message of a refusal. */
 static bool find_value(const api_in *at, const char *text, const value *wanted, api_found *out)
 {
     const api_result_name *name = wanted->name;
     const size_t row = wanted->row;
     const int64_t index = wanted->index;
-    bool list = name->op->results[row].type == HE_RESULT_ELEMENTS;
-    *out = (api_found){.ids = &unbound, .count = 1, .list = list && index < 0};
+    const bool list = is_list(name, row);
+    *out =
+        (api_found){.ids = &unbound, .count = 1, .list = list && index < 0, .known = name->bound};
     if (!name->bound) {
         return true;
     }
@@ -116,7 +122,7 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
             return api_in_fail(at, API_BAD_REFERENCE, "\"%.100s\" is not %s %s", text,
                                kind == HE_EDGE ? "an" : "a", he_kind_name(kind));
         }
-        if (second != NULL && (index < 0 || r->type != HE_RESULT_ELEMENTS)) {
+        if (second != NULL && (index < 0 || !is_list(name, row))) {
             break;
         }
         return find_value(at, text, &(value){name, row, index}, out);
@@ -192,7 +198,8 @@ bool api_result_names_add(api_result_names *names, const api_in *at, const api_c
     }
     assert(names->names != NULL && names->table != NULL);
     size_t slot = find_slot(names, call->as, length);
-    names->names[names->count] = (api_result_name){.name = name, .op = call->op};
+    names->names[names->count] = (api_result_name){
+        .name = name, .op = call->op, .each = he_op_each(call->op, call->args) != NULL};
     names->table[slot] = (uint32_t)++names->count;
     return true;
 }

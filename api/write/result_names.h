@@ -24,6 +24,7 @@ typedef struct api_result_name {
      * next operation is read. */
     const char *name;
     const he_op *op;
+    bool each; /* true if the operation runs once for each item of a list: its results are lists */
     bool bound;
     he_results results; /* the results of the operation, if `bound` */
 } api_result_name;

@@ -116,6 +116,7 @@ const he_op he_border_rows[] = {
         .doc = "Merge two boundary edges. This is the inverse of edge_cut.",
         .params =
             {[EDGE_WELD_A] = {.name = "a",
+                              .each = "a",
                               .type = HE_PARAM_ELEMENT,
                               .kind = HE_EDGE,
                               .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,

@@ -125,6 +125,7 @@ const he_op he_fill_rows[] = {
         .name = "hole_fill",
         .doc = "Fill a hole.",
         .params = {[HOLE_FILL_HALFEDGE] = {.name = "halfedge",
+                                           .each = "halfedges",
                                            .type = HE_PARAM_ELEMENT,
                                            .kind = HE_HALFEDGE,
                                            .flags = HE_REQUIRED,

@@ -66,6 +66,7 @@ const he_op he_loop_rows[] = {
         .doc = "Join two holes by a strip of faces, which are quads if both holes have the same "
                "number of edges, otherwise triangles.",
         .params = {[LOOP_BRIDGE_A] = {.name = "a",
+                                      .each = "a",
                                       .type = HE_PARAM_ELEMENT,
                                       .kind = HE_HALFEDGE,
                                       .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
@@ -93,6 +94,7 @@ const he_op he_loop_rows[] = {
         .doc = "Sew together two loops with the same number of edges. Each loop is the outline of "
                "a hole, or of a face, which is removed.",
         .params = {[LOOP_JOIN_A] = {.name = "a",
+                                    .each = "a",
                                     .type = HE_PARAM_ELEMENT,
                                     .kind = HE_HALFEDGE,
                                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
@@ -119,6 +121,7 @@ const he_op he_loop_rows[] = {
         .doc = "Cut the mesh around three edges and cap both sides of the cut with triangles. This "
                "is the inverse of loop_join.",
         .params = {[LOOP_SPLIT_A] = {.name = "a",
+                                     .each = "a",
                                      .type = HE_PARAM_ELEMENT,
                                      .kind = HE_EDGE,
                                      .flags = HE_REQUIRED | HE_WALKS,

@@ -83,6 +83,48 @@ bool he_op_needs(const he_op *op, const he_arg *args, size_t i)
     return (op->params[i].flags & HE_REQUIRED) != 0 || is_selected(op, args, op->params[i].needed);
 }
 
+const he_param *he_op_each(const he_op *op, const he_arg args[HE_OP_PARAMS])
+{
+    for (size_t i = 0; i < HE_OP_PARAMS && op->params[i].name != NULL; i++) {
+        const he_param *param = &op->params[i];
+        if (param->each != NULL && args[i].list &&
+            (param->type != HE_PARAM_CYCLE || args[i].ends != NULL)) {
+            return param;
+        }
+    }
+    return NULL;
+}
+
+size_t he_op_runs(const he_op *op, const he_arg args[HE_OP_PARAMS])
+{
+    const he_param *each = he_op_each(op, args);
+    const he_arg *arg = each == NULL ? NULL : &args[each - op->params];
+    return arg == NULL ? 1 : arg->ends != NULL ? arg->rows : arg->count;
+}
+
+bool he_op_is_column(const he_param *param)
+{
+    switch (param->type) {
+    case HE_PARAM_ELEMENT:
+    case HE_PARAM_POINT:
+    case HE_PARAM_NUMBER:
+    case HE_PARAM_FLAG:
+        return true;
+    case HE_PARAM_CHOICE:
+        return (param->flags & HE_SELECTS) == 0;
+    case HE_PARAM_ELEMENTS:
+    case HE_PARAM_POINTS:
+    case HE_PARAM_MATRIX:
+    case HE_PARAM_POLYGON:
+    case HE_PARAM_CYCLE:
+    case HE_PARAM_TEXT:
+    case HE_PARAM_COLOR:
+    case HE_PARAM_MESH:
+        break;
+    }
+    return false;
+}
+
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS])
 {
     bool whole = op->size == HE_OP_WHOLE;
@@ -156,6 +198,9 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
  * of requests. */
 static bool is_sound(const he_param *param, const he_arg *arg)
 {
+    if (arg->list && he_op_is_column(param)) {
+        return arg->ids != NULL || arg->points != NULL || arg->numbers != NULL;
+    }
     switch (param->type) {
     case HE_PARAM_ELEMENT:
         return arg->id != HE_NONE || (param->flags & HE_NULLABLE);
@@ -225,8 +270,9 @@ static bool are_sound(const he_op *op, const he_arg *args)
 static bool has_empty_list(const he_op *op, const he_arg *args)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
-        if (op->params[i].type == HE_PARAM_ELEMENTS && args[i].given && args[i].count == 0 &&
-            !(op->params[i].flags & HE_MAY_BE_EMPTY)) {
+        const he_param *param = &op->params[i];
+        if (param->type == HE_PARAM_ELEMENTS && args[i].given && args[i].count == 0 &&
+            !(param->flags & HE_MAY_BE_EMPTY)) {
             return true;
         }
     }
@@ -237,6 +283,8 @@ void he_results_clear(he_results *results)
 {
     for (size_t i = 0; i < HE_OP_RESULTS; i++) {
         he_ids_clear(&results->list[i]);
+        he_ids_clear(&results->ends[i]);
+        he_mem_free(results->numbers[i]);
     }
     memset(results, 0, sizeof *results);
 }
@@ -255,10 +303,13 @@ he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARA
     if (has_empty_list(op, args)) {
         return HE_OK;
     }
-    he_status status = op->run(mesh, args, out, err);
+    he_status status = he_op_each(op, args) != NULL ? he_run_each(op, mesh, args, out, err)
+                                                    : op->run(mesh, args, out, err);
     assert(he_op_declares(op, status));
     if (status != HE_OK) {
+        size_t runs = out->runs;
         he_results_clear(out);
+        out->runs = runs;
     }
     return status;
 }

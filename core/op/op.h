@@ -70,6 +70,11 @@ typedef struct he_param {
     /* The name of the member of a request that gives a list; NULL unless `type` is
      * HE_PARAM_ELEMENTS. */
     const char *plural;
+    /* The name of the member of a request that gives a list for this HE_PARAM_ELEMENT,
+     * HE_PARAM_POINT or HE_PARAM_CYCLE; NULL if there is none. It may be equal to `name`. The
+     * operation then runs once for each item of the list, in order, and its other parameters may be
+     * columns (he_arg). An operation that takes such lists has no HE_PARAM_ELEMENTS. */
+    const char *each;
     he_param_type type;
     he_kind kind; /* kind of the elements */
     unsigned flags;
@@ -89,14 +94,26 @@ typedef struct he_param {
 } he_param;
 
 /* A decoded argument of an operation, at the index of its parameter. Lists are borrowed for the
- * call. */
+ * call.
+ *
+ * If the argument of a parameter with `each` is a list, the operation runs once for each item, and
+ * the argument of another parameter is either one value for all runs or a column: a list with one
+ * value for each run. A column of elements is in `ids`, a column of points in `points`, a column of
+ * numbers, flags (0 or 1) or choices in `numbers`. The selector of an operation is no column. */
 typedef struct he_arg {
     bool given;
     uint32_t id;         /* value of an HE_PARAM_ELEMENT; HE_NONE for null */
     const uint32_t *ids; /* values of an HE_PARAM_ELEMENTS or HE_PARAM_CYCLE */
-    size_t count;        /* number of ids, points or corners */
-    bool list;           /* true if an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list */
+    size_t count;        /* number of ids, points, corners or, in a column, values */
+    /* true if an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list; true for a column and
+     * for the list that decides how often the operation runs */
+    bool list;
     double number;
+    const double *numbers; /* the values of a column of numbers, flags or choices */
+    /* If an HE_PARAM_CYCLE was given as a list of `rows` lists: where each of them ends in `ids`.
+     * Else NULL. */
+    const uint32_t *ends;
+    size_t rows;
     /* Values of an HE_PARAM_POINT or HE_PARAM_POINTS; values of an HE_PARAM_POLYGON, with z = 0. */
     const he_vec3 *points;
     bool flag;
@@ -132,13 +149,22 @@ enum { HE_OP_PARAMS = 24, HE_OP_RESULTS = 12, HE_OP_REFUSALS = 16 };
 
 /* The results of an operation: result i of the operation's row is in entry i of these arrays.
  * he_op_run clears the arrays and fills them; the caller clears them when they are no longer
- * needed. */
+ * needed. {0} is empty.
+ *
+ * If the operation ran once for each item of a list, `each` is true, and every result is a column
+ * with `runs` values: the ids of an HE_RESULT_ELEMENT are list[i], in order, HE_NONE for null; the
+ * lists of an HE_RESULT_ELEMENTS follow each other in list[i], and ends[i] says where each of them
+ * ends; the values of an HE_RESULT_NUMBER are numbers[i], NaN for a result that a run left out. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
     /* Value of an HE_RESULT_ELEMENT, or the index of an HE_RESULT_CHOICE. */
     uint32_t id[HE_OP_RESULTS];
     he_ids list[HE_OP_RESULTS];
     double number[HE_OP_RESULTS];
+    bool each;
+    size_t runs;
+    he_ids ends[HE_OP_RESULTS];
+    double *numbers[HE_OP_RESULTS];
 } he_results;
 
 /* Says what the time of an operation depends on: the number of elements that it touches
@@ -190,6 +216,14 @@ const he_param *he_op_selector(const he_op *op);
  * its alternatives must be given, with the value that the selector has in `args`. */
 bool he_op_takes(const he_op *op, const he_arg *args, size_t i);
 bool he_op_needs(const he_op *op, const he_arg *args, size_t i);
+/* Returns the parameter that was given as a list for each of whose items the operation runs, or
+ * NULL if it runs once. */
+const he_param *he_op_each(const he_op *op, const he_arg args[HE_OP_PARAMS]);
+/* Returns how often the operation runs: 1 if he_op_each returns NULL. */
+size_t he_op_runs(const he_op *op, const he_arg args[HE_OP_PARAMS]);
+/* Returns true if a parameter may be given as a column if the operation runs once for each item of
+ * a list. */
+bool he_op_is_column(const he_param *param);
 /* Returns true if the operation, with these arguments, takes time linear in the whole mesh. */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
 /* Returns the approximate factor by which the operation makes the mesh grow; 1 if the mesh keeps
@@ -213,7 +247,12 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
  * that were given. It must have checked ranges, groups, the selector and finiteness; this is
  * asserted. If the operation is refused, the mesh does not change. If a list of elements without
  * the flag HE_MAY_BE_EMPTY is empty, the mesh does not change either, and the results are null, 0
- * and empty lists. */
+ * and empty lists.
+ *
+ * If he_op_each returns a parameter, the operation runs once for each item of its list, in order,
+ * and the runs stand or fall together: a refusal of one of them undoes those before it, and
+ * out->runs is then the index of the item at which it was refused. No item may occur twice in a
+ * list of elements, and all columns must be as long as the list; this is not checked. */
 HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                                  he_results *out, he_error *err);
 void he_results_clear(he_results *results);

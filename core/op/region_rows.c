@@ -147,6 +147,7 @@ const he_op he_region_rows[] = {
         .name = "face_collapse",
         .doc = "Collapse a face to one vertex at the mean of its corners.",
         .params = {[FACE_COLLAPSE_FACE] = {.name = "face",
+                                           .each = "faces",
                                            .type = HE_PARAM_ELEMENT,
                                            .kind = HE_FACE,
                                            .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,

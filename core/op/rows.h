@@ -42,6 +42,12 @@ size_t he_table_number(const he_op *op);
  * the operation and of the parameter (the plural if it has one), or of the operation, OUT and the
  * result. .ci/lint-slots checks these names. */
 
+/* Runs an operation once for each item of the list that was given for its parameter `each`
+ * (he_op_each). `out` is empty. Returns what the operation returns, or HE_NO_MEMORY; on failure the
+ * mesh is as it was, `out` may have results, and out->runs is the index of the item at fault. */
+HE_NODISCARD he_status he_run_each(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
+                                   he_results *out, he_error *err);
+
 /* Sets the result in a slot to the id of an element (or HE_NONE), or to the index of a choice. */
 void he_results_set(he_results *out, size_t slot, uint32_t id);
 void he_results_set_number(he_results *out, size_t slot, double number);

@@ -124,6 +124,7 @@ const he_op he_vertex_rows[] = {
         .name = "vertex_add",
         .doc = "Add an isolated vertex.",
         .params = {[VERTEX_ADD_POSITION] = {.name = "position",
+                                            .each = "positions",
                                             .type = HE_PARAM_POINT,
                                             .flags = HE_REQUIRED,
                                             .doc = "Where the vertex is placed."}},
@@ -162,6 +163,7 @@ const he_op he_vertex_rows[] = {
         .name = "vertex_delete",
         .doc = "Delete a vertex and the faces around it.",
         .params = {[VERTEX_DELETE_VERTEX] = {.name = "vertex",
+                                             .each = "vertices",
                                              .type = HE_PARAM_ELEMENT,
                                              .kind = HE_VERTEX,
                                              .flags = HE_REQUIRED | HE_REACHES,
@@ -180,6 +182,7 @@ const he_op he_vertex_rows[] = {
         .doc = "Split a vertex into an edge with a triangle on each side. This is the inverse of "
                "edge_collapse.",
         .params = {[VERTEX_SPLIT_VERTEX] = {.name = "vertex",
+                                            .each = "vertices",
                                             .type = HE_PARAM_ELEMENT,
                                             .kind = HE_VERTEX,
                                             .flags = HE_REQUIRED | HE_WALKS,
@@ -223,6 +226,7 @@ const he_op he_vertex_rows[] = {
         .doc = "Remove a vertex and merge the faces around it into one. This is the inverse of "
                "face_poke.",
         .params = {[VERTEX_DISSOLVE_VERTEX] = {.name = "vertex",
+                                               .each = "vertices",
                                                .type = HE_PARAM_ELEMENT,
                                                .kind = HE_VERTEX,
                                                .flags = HE_REQUIRED | HE_REACHES,
@@ -240,6 +244,7 @@ const he_op he_vertex_rows[] = {
                "the inverse.",
         .params = {[VERTEX_SPLIT_CORNERS_A] =
                        {.name = "a",
+                        .each = "a",
                         .type = HE_PARAM_ELEMENT,
                         .kind = HE_HALFEDGE,
                         .flags = HE_REQUIRED | HE_WALKS,
@@ -270,6 +275,7 @@ const he_op he_vertex_rows[] = {
         .params =
             {[VERTEX_BEVEL_VERTEX] =
                  {.name = "vertex",
+                  .each = "vertices",
                   .type = HE_PARAM_ELEMENT,
                   .kind = HE_VERTEX,
                   .flags =

@@ -274,7 +274,7 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
         parse_value(m, &op->params[i], text, &args[i], store.ids[i], store.points[i], &other);
         at += value;
     }
-    he_results own = {{0}, {0}, {{0}}, {0}};
+    he_results own = {.each = false};
     he_status status = he_op_run(op, m, args, results != NULL ? results : &own, err);
     he_results_clear(&own);
     he_mesh_free(other);

@@ -180,7 +180,7 @@ static void names_that_do_not_exist_are_answered_with_those_that_do(void **state
         {"{\"op\":\"edge_split\",\"edg\":0}",
          "there is no parameter \"edg\" of edge_split; did you mean \"edge\"?"},
         {"{\"op\":\"edge_flip\",\"what\":0}",
-         "there is no parameter \"what\" of edge_flip; there is edge"},
+         "there is no parameter \"what\" of edge_flip; there are edge, edges"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         parsed p;

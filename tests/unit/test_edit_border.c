@@ -187,7 +187,7 @@ static void deleting_the_walls_undoes_edge_extrude(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         for (unsigned by_edge = 0; by_edge < 2; by_edge++) {
             he_mesh *m = script_mesh(cases[i].mesh, NULL);
-            he_results results = {{0}, {0}, {{0}}, {0}};
+            he_results results = {.each = false};
             script_prepare(m, cases[i].prepare);
             he_mesh *before = copy_of(m);
             assert_int_equal(script_run(m, cases[i].extrude, &results, NULL), HE_OK);
@@ -224,7 +224,7 @@ static void extruded_edges_that_meet_share_a_new_corner(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123", cube);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "edge_extrude edges=1-2,0-1 by=0,0,3", &results, NULL), HE_OK);
     assert_counts(m, 7, 9, 3);
     /* New vertices are numbered in the order of the vertices from which they were extruded, new
@@ -250,7 +250,7 @@ static void a_cube_edge_bevels_to_a_quadrilateral(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "edge_bevel edge=0-1 width=0.25", &results, NULL), HE_OK);
     assert_counts(m, 10, 15, 7);
     assert_face(m, 6, "89ab");

@@ -212,7 +212,7 @@ static bool step(he_mesh *m, const he_op *op)
 {
     he_arg args[HE_OP_PARAMS];
     storage stores[HE_OP_PARAMS];
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     he_error err = {.status = HE_OK};
     he_mesh *before = copy_of(m);
     he_delta *delta = he_delta_new();

@@ -75,7 +75,7 @@ static void an_extruded_face_is_on_top_and_keeps_its_id(void **state)
     (void)state;
     he_mesh *m = script_mesh("0123,214", flat);
     he_edge shared = edge_between(m, 1, 2);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "face_extrude face=0 distance=2", &results, NULL), HE_OK);
     assert_counts(m, 9, 14, 6);
     assert_face(m, 0, "5678");
@@ -377,7 +377,7 @@ static void a_collapsed_face_leaves_its_first_corner_at_the_mean(void **state)
     he_mesh *m = grid(4);
     he_halfedge stored = he_face_halfedge(m, (he_face){5});
     uint32_t first = he_origin(m, stored).i;
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "face_collapse face=5", &results, NULL), HE_OK);
     assert_counts(m, 22, 36, 15);
     assert_int_equal(results.id[0], first);

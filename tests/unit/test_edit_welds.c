@@ -51,7 +51,7 @@ static void collapsing_the_new_edge_undoes_a_split_at_the_boundary(void **state)
 static void split_and_collapse(const he_mesh *before, uint32_t a, uint32_t b)
 {
     he_mesh *m = copy_of(before);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     char text[64];
     snprintf(text, sizeof text, "vertex_split_corners a=#%u b=#%u", a, b);
     he_status status = script_run(m, text, &results, NULL);
@@ -102,7 +102,7 @@ static void welds_undo_the_separation_of_bowties(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(STRANGE, NULL), *before = copy_of(m);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "vertex_separate vertex=0", &results, NULL), HE_OK);
     assert_counts(m, 9, 9, 3);
     assert_int_equal(results.list[0].count, 2);
@@ -166,7 +166,7 @@ static void a_cube_vertex_bevels_to_a_triangle_of_limited_width(void **state)
                                    {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     he_mesh *m = script_mesh("0321,4567,0154,1265,2376,3047", cube);
     he_edge kept = edge_between(m, 0, 1);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "vertex_bevel vertex=0 width=0.25", &results, NULL), HE_OK);
     assert_counts(m, 10, 15, 7);
     assert_int_equal(results.list[0].count, 2);
@@ -197,7 +197,7 @@ static void a_weld_does_not_merge_along_a_chain(void **state)
     (void)state;
     static const he_vec3 line[] = {{0, 0, 0}, {0.6, 0, 0}, {1.2, 0, 0}, {1.5, 0, 0}, {9, 0, 0}};
     he_mesh *m = script_mesh("+++++", line);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "weld tolerance=0.75", &results, NULL), HE_OK);
     assert_counts(m, 3, 0, 0);
     assert_int_equal(results.list[0].count, 2);

@@ -452,7 +452,7 @@ static void run_recorded(const scenario *s, bool columns)
     assert_valid(m);
     he_delta *delta = he_delta_new();
     he_error err = {.status = HE_OK};
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_non_null(delta);
     he_mesh_record(m, delta);
     he_status status = script_run(m, s->operation, &results, &err);
@@ -636,7 +636,7 @@ static void results_are_reported_and_a_refusal_leaves_them_empty(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012,023", NULL);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "edge_split edge=0-2", &results, NULL), HE_OK);
     assert_true(results.present[0] && results.present[1] && results.present[2]);
     assert_int_equal(results.id[0], 4);

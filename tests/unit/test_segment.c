@@ -57,7 +57,7 @@ static uint32_t marked_in(const he_mesh *m)
 /* Segments a mesh, and checks the numbers of patches: from 1, in the order of lowest face ids. */
 static he_segmented segment(he_mesh *m, const char *operation)
 {
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, operation, &results, NULL), HE_OK);
     const he_segmented done = {(uint32_t)results.number[0], (uint32_t)results.number[1],
                                results.number[2]};
@@ -135,7 +135,7 @@ static void marks_are_kept_replaced_or_ignored_as_asked(void **state)
     char text[48];
     snprintf(text, sizeof text, "mark feature edge=#%u", diagonal);
     script_prepare(m, text);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     assert_int_equal(script_run(m, "segment angle=0.5 features=ignore", &results, NULL), HE_OK);
     assert_true(results.number[0] == 6 && results.number[1] == 0);
     assert_int_equal(marked_in(m), 1);
@@ -261,7 +261,7 @@ static void patches_do_not_depend_on_size_or_place(void **state)
         for (uint32_t f = 0; f < he_mesh_faces(m); f++) {
             assert_int_equal(patch_of(m, f), patch_of(moved, f));
         }
-        he_results results = {{0}, {0}, {{0}}, {0}};
+        he_results results = {.each = false};
         assert_int_equal(script_run(moved, "segment planes=7 features=ignore", &results, NULL),
                          HE_OK);
         assert_true(results.number[0] == 7 && results.number[2] < 0.4);

@@ -291,7 +291,7 @@ static void results_count_the_elements_that_join_and_leave(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,7654,1045,2156,3267,0374", NULL);
-    he_results results = {{0}, {0}, {{0}}, {0}};
+    he_results results = {.each = false};
     script_prepare(m, "mark selected faces=0,1");
     static const struct {
         const char *operation;

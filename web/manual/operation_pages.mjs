@@ -28,7 +28,8 @@ export function familyOf(name) {
 function pickedBy(body, params) {
     const marks = noMarks();
     const arrows = [];
-    for (const { name, plural: list, type } of params) {
+    for (const { name, plural, each, type } of params) {
+        const list = plural ?? each;
         const ids = [body[name] ?? (list && body[list]) ?? []].flat().filter(Number.isInteger);
         if (type === 'halfedge') {
             arrows.push(...ids.map((id) => ({ id, name: `${name} (h${id})`, kind: 'picked' })));
@@ -83,7 +84,8 @@ const PARAMETER_TYPES = {
     color: '3 numbers', color_alpha: '3 or 4 numbers',
 };
 
-function parameterType({ type, plural: list, choices, min, max, exclusive, nullable, set }) {
+function parameterType({ type, plural, each, choices, min, max, exclusive, nullable, set }) {
+    const list = plural ?? each;
     const base = choices !== undefined ? choices.join(', ') : PARAMETER_TYPES[type] ?? (['vertex', 'edge', 'face', 'halfedge'].includes(type) ? `id of a ${type === 'halfedge' ? 'half-edge' : type}` : type);
     const range = min === undefined ? '' : exclusive
         ? ` above ${min}${max < 1e300 ? `, below ${max}` : ''}`
@@ -98,16 +100,27 @@ function alternativesOf({ group, required }, params) {
     return names.length < 2 ? '' : [` Give ${required ? 'exactly' : 'at most'} one of `, names.map((name, i) => [i > 0 ? ', ' : '', code(name)]), '.'];
 }
 
+// Returns the name of the list that may be given instead of one value, if it has a name of its own.
+function listNames({ name, plural, each }) {
+    const list = plural ?? each ?? name;
+    return list === name ? '' : [', ', code(list)];
+}
+
+// Says what it means to give a list.
+function listText({ plural, each }) {
+    return each === undefined || plural !== undefined ? '' : [' The operation runs once for each item of a list in ', code(each), ', in order.'];
+}
+
 function parametersTable(params, link) {
     if (params.length === 0) {
         return h('p', {}, 'It has no parameters.');
     }
     return table(['Parameter', 'Value', 'Default', 'Meaning'], params.map((param) => [
-        [code(param.name), param.plural ? [', ', code(param.plural)] : '',
+        [code(param.name), listNames(param),
             param.required || param.required_with ? h('span', { class: 'must' }, param.group ? ' or another' : ' required') : ''],
         parameterType(param),
         param.default === undefined ? '' : String(param.default),
-        [inline(param.doc, link), param.with ? ` Only with ${param.with.join(', ')}.` : '', alternativesOf(param, params)],
+        [inline(param.doc, link), param.with ? ` Only with ${param.with.join(', ')}.` : '', alternativesOf(param, params), listText(param)],
     ]), 'Parameters');
 }
 

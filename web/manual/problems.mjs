@@ -125,6 +125,7 @@ export const PROBLEMS = {
     unknown_operation: refused('kite', { op: 'split_edge', edge: 2 }, 'Use a name of [the list of operations](/docs/operations). The object comes first: edge_split.'),
     conflicting_members: refused('kite', { op: 'face_delete', face: 0, faces: [1] }, 'Keep the one that you mean.'),
     bad_reference: refused('kite', { ops: [{ op: 'face_poke', face: 0 }, { op: 'vertex_move', vertex: '$peak.vertex', by: [0, 0, 1] }] }, 'Give the earlier operation the member `"as":"peak"`, and check the name of the result on its page.'),
+    repeated: refused('kite', { op: 'edge_split', edges: [2, 4, 2] }, 'Name each element once. To split an edge into many parts, split the parts that the first split made.'),
     repeated_name: refused('kite', { ops: [{ op: 'face_poke', face: 0, as: 'a' }, { op: 'face_poke', face: 1, as: 'a' }] }, 'Give each operation of the list another name.'),
 
     // --- the request line and its headers ---

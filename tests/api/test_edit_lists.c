@@ -1,0 +1,336 @@
+/* Operations that run once for each item of a list: one revision and one undo step, results as
+ * columns, refusals that point to the item, and the same effect as the operations one by one. */
+#include "tests/api/request.h"
+
+#include "api/json/text.h"
+#include "api/limits.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static const char EDITS[] = "/v1/meshes/m/edits";
+
+static api_bench *begin(void)
+{
+    api_bench *b = bench_new();
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"cube\"}")));
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=n", "{\"shape\":\"cube\"}")));
+    return b;
+}
+
+/* Returns a copy of a mesh, including the number of ids that it has issued. */
+static he_mesh *copy_of(api_bench *b, const char *id)
+{
+    st_mesh *mesh = NULL;
+    he_mesh *copy = NULL;
+    assert_int_equal(st_find(bench_store(b), id, &mesh), ST_OK);
+    assert_int_equal(he_mesh_copy(st_read_begin(mesh, NULL), &copy, NULL), HE_OK);
+    st_read_end(mesh);
+    st_release(mesh);
+    return copy;
+}
+
+static void expect_equal(api_bench *b, const he_mesh *mesh, const char *id)
+{
+    he_mesh *now = copy_of(b, id);
+    assert_true(he_mesh_equal(mesh, now));
+    he_mesh_free(now);
+}
+
+static const cJSON *results_of(const bench_reply *r)
+{
+    return cJSON_GetObjectItem(r->json, "results");
+}
+
+static int number_of(const bench_reply *r, const char *member)
+{
+    return cJSON_GetObjectItem(r->json, member)->valueint;
+}
+
+/* A list, and the same operations in a list of operations. */
+static const struct {
+    const char *list, *singles;
+} pairs[] = {
+    {"{\"op\":\"edge_split\",\"edges\":[0,5],\"t\":[0.5,0.25]}",
+     "{\"op\":\"edge_split\",\"edge\":0,\"t\":0.5},{\"op\":\"edge_split\",\"edge\":5,\"t\":0.25}"},
+    {"{\"op\":\"edge_split\",\"edges\":[3,1],\"t\":0.25}",
+     "{\"op\":\"edge_split\",\"edge\":3,\"t\":0.25},{\"op\":\"edge_split\",\"edge\":1,\"t\":0.25}"},
+    {"{\"op\":\"edge_bisect\",\"edges\":[7]}", "{\"op\":\"edge_bisect\",\"edge\":7}"},
+    {"{\"op\":\"vertex_add\",\"positions\":[[0,0,3],[0,1,3],[1,1,3]]}",
+     "{\"op\":\"vertex_add\",\"position\":[0,0,3]},{\"op\":\"vertex_add\",\"position\":[0,1,3]},"
+     "{\"op\":\"vertex_add\",\"position\":[1,1,3]}"},
+    {"{\"op\":\"face_poke\",\"faces\":[2,0],\"position\":[[0,0,1],[0,0,2]]}",
+     "{\"op\":\"face_poke\",\"face\":2,\"position\":[0,0,1]},"
+     "{\"op\":\"face_poke\",\"face\":0,\"position\":[0,0,2]}"},
+    {"{\"op\":\"face_poke\",\"faces\":[2,0],\"position\":[0,0,1]}",
+     "{\"op\":\"face_poke\",\"face\":2,\"position\":[0,0,1]},"
+     "{\"op\":\"face_poke\",\"face\":0,\"position\":[0,0,1]}"},
+    {"{\"op\":\"vertex_delete\",\"vertices\":[0,6],\"keep_isolated\":[true,false]}",
+     "{\"op\":\"vertex_delete\",\"vertex\":0,\"keep_isolated\":true},"
+     "{\"op\":\"vertex_delete\",\"vertex\":6,\"keep_isolated\":false}"},
+};
+
+static void a_list_equals_its_operations_one_by_one(void **state)
+{
+    (void)state;
+    char singles[1000];
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        api_bench *b = begin();
+        he_mesh *before = copy_of(b, "m");
+        snprintf(singles, sizeof singles, "{\"ops\":[%s]}", pairs[i].singles);
+        bench_reply list = bench_expect(200, bench_post(b, EDITS, pairs[i].list));
+        bench_reply ones = bench_expect(200, bench_post(b, "/v1/meshes/n/edits", singles));
+        he_mesh *after = copy_of(b, "m");
+        expect_equal(b, after, "n");
+        assert_int_equal(number_of(&list, "revision"), 2);
+        /* Each column holds the results of the single operations. */
+        const cJSON *columns = cJSON_GetObjectItem(results_of(&list)->child, "each"), *column;
+        assert_non_null(columns);
+        cJSON_ArrayForEach(column, columns)
+        {
+            assert_int_equal(cJSON_GetArraySize(column), cJSON_GetArraySize(results_of(&ones)));
+            for (int k = 0; k < cJSON_GetArraySize(column); k++) {
+                const cJSON *one = cJSON_GetArrayItem(results_of(&ones), k);
+                assert_true(cJSON_Compare(cJSON_GetArrayItem(column, k),
+                                          cJSON_GetObjectItem(one, column->string), true));
+            }
+        }
+        /* Both edits created, deleted and modified equal elements. */
+        static const char *const sets[] = {"created", "deleted", "modified", "parents", "merged"};
+        for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
+            assert_true(cJSON_Compare(cJSON_GetObjectItem(list.json, sets[k]),
+                                      cJSON_GetObjectItem(ones.json, sets[k]), true));
+        }
+        bench_done(list);
+        bench_done(ones);
+        bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+        he_mesh *undone = copy_of(b, "m");
+        assert_true(he_mesh_equal_live(before, undone));
+        bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/redo", NULL)));
+        expect_equal(b, after, "m");
+        he_mesh_free(before);
+        he_mesh_free(after);
+        he_mesh_free(undone);
+        bench_free(b);
+    }
+}
+
+static void a_refused_list_changes_nothing_and_points_to_its_item(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *body;
+        int status;
+        const char *code, *pointer;
+    } cases[] = {
+        {"{\"op\":\"edge_split\",\"edges\":[0,1,2,99]}", 422, "no_such_element", "/edges/3"},
+        {"{\"ops\":[{\"op\":\"edge_split\",\"edges\":[3,5]},"
+         "{\"op\":\"edge_split\",\"edges\":[0,1,99,2]}]}",
+         422, "no_such_element", "/ops/1/edges/2"},
+        {"{\"ops\":[{\"op\":\"vertex_delete\",\"vertices\":[0,1]},"
+         "{\"op\":\"vertex_delete\",\"vertices\":[2,1]}]}",
+         422, "deleted_element", "/ops/1/vertices/1"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,1,2,1]}", 400, "repeated", "/edges/3"},
+        {"{\"ops\":[{\"op\":\"face_poke\",\"faces\":[4,4]}]}", 400, "repeated", "/ops/0/faces/1"},
+        {"{\"ops\":[{\"op\":\"face_poke\",\"face\":0,\"as\":\"a\"},"
+         "{\"op\":\"face_poke\",\"faces\":[1,\"$a.faces.0\",6]}]}",
+         400, "repeated", "/ops/1/faces/2"},
+        {"{\"ops\":[{\"op\":\"face_poke\",\"face\":0,\"as\":\"a\"},"
+         "{\"op\":\"face_poke\",\"faces\":[7,\"$a.faces\"]}]}",
+         400, "repeated", "/ops/1/faces"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,1],\"t\":[0.5]}", 400, "bad_value", "/t"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,1],\"t\":[0.5,0.5,0.5]}", 400, "bad_value", "/t"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,1],\"t\":[0.5,1]}", 400, "bad_value", "/t/1"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,1],\"t\":[0.5,\"1\"]}", 400, "wrong_type", "/t/1"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,1],\"t\":[]}", 400, "bad_value", "/t"},
+        {"{\"op\":\"edge_split\",\"edges\":[]}", 400, "bad_value", "/edges"},
+        {"{\"op\":\"edge_split\",\"edges\":7}", 400, "wrong_type", "/edges"},
+        {"{\"op\":\"edge_split\",\"edges\":[0,null]}", 400, "wrong_type", "/edges/1"},
+        {"{\"op\":\"edge_split\",\"edge\":0,\"t\":[0.5]}", 400, "wrong_type", "/t"},
+        {"{\"op\":\"edge_split\",\"edge\":0,\"edges\":[1]}", 400, "conflicting_members", "/edges"},
+        {"{\"op\":\"edge_collapse\",\"halfedges\":[0],\"edges\":[5]}", 400, "conflicting_members",
+         "/edges"},
+        {"{\"op\":\"edge_collapse\",\"halfedges\":[0],\"edge\":5}", 400, "conflicting_members",
+         "/edge"},
+        {"{\"op\":\"edge_split\",\"t\":[0.5]}", 400, "wrong_type", "/t"},
+        {"{\"op\":\"edge_split\"}", 400, "missing_member", ""},
+        {"{\"op\":\"edge_weld\",\"a\":[0,1],\"b\":[2]}", 400, "bad_value", "/b"},
+        {"{\"op\":\"vertex_add\",\"positions\":[]}", 400, "bad_value", "/positions"},
+        {"{\"op\":\"vertex_add\",\"positions\":[[0,0,0],[0,0]]}", 400, "bad_value", "/positions/1"},
+        {"{\"op\":\"vertex_add\",\"positions\":[0,0,0]}", 400, "wrong_type", "/positions/0"},
+        {"{\"op\":\"face_add\",\"faces\":[[0,1,2],7]}", 400, "wrong_type", "/faces/1"},
+        {"{\"op\":\"face_add\",\"faces\":[[0,1,2],[]]}", 422, "interior_vertex", "/faces/0"},
+        {"{\"op\":\"vertex_delete\",\"vertices\":[0],\"keep_isolated\":[1]}", 400, "wrong_type",
+         "/keep_isolated/0"},
+        {"{\"op\":\"face_poke\",\"faces\":{\"chosen\":true}}", 422, "no_such_attribute", "/faces"},
+    };
+    api_bench *b = begin();
+    he_mesh *before = copy_of(b, "m");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bench_reply r = bench_post(b, EDITS, cases[i].body);
+        if (r.status != cases[i].status || strcmp(bench_text(&r, "code"), cases[i].code) != 0 ||
+            (cases[i].pointer[0] != '\0' &&
+             strcmp(bench_text(&r, "pointer"), cases[i].pointer) != 0)) {
+            fail_msg("%s: %s", cases[i].body, r.body);
+        }
+        bench_done(r);
+        expect_equal(b, before, "m");
+    }
+    he_mesh_free(before);
+    bench_free(b);
+}
+
+static void the_lengths_of_a_column_and_its_list_are_named(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = bench_expect(
+        400, bench_post(b, EDITS, "{\"op\":\"edge_split\",\"edges\":[0,1,2],\"t\":[0.5,0.5]}"));
+    assert_string_equal(bench_text(&r, "detail"), "\"t\" has 2 values, but \"edges\" has 3: give "
+                                                  "one value, or one for each");
+    bench_done(r);
+    bench_free(b);
+}
+
+static void results_of_a_list_can_be_referred_to(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = bench_expect(
+        200, bench_post(b, EDITS,
+                        "{\"ops\":[{\"op\":\"vertex_add\",\"positions\":[[0,0,3],[0,1,3],[1,1,3]],"
+                        "\"as\":\"v\"},{\"op\":\"face_add\",\"faces\":[[\"$v.vertex\"]],"
+                        "\"as\":\"f\"},{\"op\":\"face_poke\",\"face\":\"$f.face.0\",\"as\":\"p\"},"
+                        "{\"op\":\"face_join\",\"edges\":[\"$p.edges.0\"]},"
+                        "{\"op\":\"edge_bisect\",\"edges\":[\"$f.edges\"]}]}"));
+    assert_int_equal(cJSON_GetArraySize(results_of(&r)), 5);
+    bench_done(r);
+    r = bench_expect(
+        422, bench_post(b, EDITS,
+                        "{\"ops\":[{\"op\":\"vertex_add\",\"positions\":[[0,0,3]],\"as\":\"v\"},"
+                        "{\"op\":\"vertex_delete\",\"vertex\":\"$v.vertex.1\"}]}"));
+    assert_string_equal(bench_text(&r, "pointer"), "/ops/1/vertex");
+    bench_done(r);
+    r = bench_expect(
+        400, bench_post(b, EDITS,
+                        "{\"ops\":[{\"op\":\"vertex_add\",\"positions\":[[0,0,3]],\"as\":\"v\"},"
+                        "{\"op\":\"vertex_delete\",\"vertex\":\"$v.vertex\"}]}"));
+    assert_string_equal(bench_text(&r, "code"), "bad_reference");
+    bench_done(r);
+    bench_free(b);
+}
+
+static void a_set_may_be_the_list(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_done(bench_expect(
+        200,
+        bench_post(b, EDITS, "{\"op\":\"select\",\"by\":\"region\",\"faces\":[1],\"angle\":0.1}")));
+    bench_done(bench_expect(
+        200, bench_post(b, EDITS, "{\"op\":\"face_poke\",\"faces\":{\"selected\":true}}")));
+    /* An empty set makes no runs and no revision. */
+    bench_done(bench_expect(200, bench_post(b, EDITS,
+                                            "{\"op\":\"face_poke\",\"faces\":{\"selected\":true},"
+                                            "\"dry_run\":true}")));
+    bench_free(b);
+}
+
+/* Writes a list of `count` splits of the edges of a torus, the last of which is `last`. */
+static void write_splits(api_text *body, const char *before, size_t count, uint32_t last)
+{
+    api_text_empty(body);
+    api_text_add_format(body, "{%s\"op\":\"edge_split\",\"edges\":[", before);
+    for (size_t i = 0; i < count; i++) {
+        api_text_add_format(body, "%s%zu", i > 0 ? "," : "", i + 1 == count ? (size_t)last : i);
+    }
+    api_text_add_string(body, "],\"t\":[");
+    for (size_t i = 0; i < count; i++) {
+        api_text_add_format(body, "%s0.%zu", i > 0 ? "," : "", i % 9 + 1);
+    }
+    api_text_add(body, "]}", sizeof "]}");
+    assert_false(body->failed);
+}
+
+static void begin_torus(api_bench *b)
+{
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m",
+                                            "{\"shape\":\"torus\",\"major_segments\":100,"
+                                            "\"minor_segments\":100}")));
+}
+
+/* 20,000 splits exceed what may be done while the mesh is locked, so the edit is started again on a
+ * copy. */
+static void a_long_list_is_one_revision_and_one_step(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    api_text body = {0};
+    begin_torus(b);
+    he_mesh *before = copy_of(b, "m");
+    write_splits(&body, "\"dry_run\":true,", 20000, 19999);
+    bench_reply dry = bench_expect(200, bench_post(b, EDITS, body.bytes));
+    expect_equal(b, before, "m");
+    cJSON_DeleteItemFromObject(dry.json, "dry_run");
+    write_splits(&body, "", 20000, 19999);
+    bench_reply r = bench_expect(200, bench_post(b, EDITS, body.bytes));
+    assert_true(cJSON_Compare(dry.json, r.json, true));
+    const cJSON *each = cJSON_GetObjectItem(results_of(&r)->child, "each");
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(each, "vertex")), 20000);
+    assert_int_equal(number_of(&r, "revision"), 2);
+    bench_done(dry);
+    bench_done(r);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+    he_mesh *undone = copy_of(b, "m");
+    assert_true(he_mesh_equal_live(before, undone));
+    he_mesh_free(undone);
+    he_mesh_free(before);
+    api_text_clear(&body);
+    bench_free(b);
+}
+
+static void the_last_of_a_long_list_undoes_all_before_it(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    api_text body = {0};
+    begin_torus(b);
+    he_mesh *before = copy_of(b, "m");
+    static const size_t counts[] = {100, 3000, 20000};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+        char pointer[40];
+        write_splits(&body, "", counts[i], 4000000);
+        bench_reply r = bench_expect(422, bench_post(b, EDITS, body.bytes));
+        snprintf(pointer, sizeof pointer, "/edges/%zu", counts[i] - 1);
+        assert_string_equal(bench_text(&r, "pointer"), pointer);
+        bench_done(r);
+        write_splits(&body, "", counts[i], 7);
+        r = bench_expect(400, bench_post(b, EDITS, body.bytes));
+        assert_string_equal(bench_text(&r, "code"), "repeated");
+        assert_string_equal(bench_text(&r, "pointer"), pointer);
+        bench_done(r);
+        expect_equal(b, before, "m");
+    }
+    he_mesh_free(before);
+    api_text_clear(&body);
+    bench_free(b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_list_equals_its_operations_one_by_one),
+        cmocka_unit_test(a_refused_list_changes_nothing_and_points_to_its_item),
+        cmocka_unit_test(the_lengths_of_a_column_and_its_list_are_named),
+        cmocka_unit_test(results_of_a_list_can_be_referred_to),
+        cmocka_unit_test(a_set_may_be_the_list),
+        cmocka_unit_test(a_long_list_is_one_revision_and_one_step),
+        cmocka_unit_test(the_last_of_a_long_list_undoes_all_before_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
