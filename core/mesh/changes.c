@@ -2,6 +2,7 @@
  * of delta.h. */
 #include "mesh/delta.h"
 
+#include "mesh/change_marks.h"
 #include "mesh/column.h"
 #include "mesh/walk.h"
 
@@ -81,50 +82,34 @@ static he_status sort_records(word_record **records, size_t count, he_progress *
     return status;
 }
 
-static bool contains(const he_ids *sorted, uint32_t id)
+static he_status note_face(he_change_marks *out, uint32_t face, he_error *err)
 {
-    size_t low = 0, high = sorted->count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (sorted->ids[middle] < id) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low < sorted->count && sorted->ids[low] == id;
+    return face == HE_NONE || face == HE_DEAD
+               ? HE_OK
+               : he_change_marks_add(out, HE_MODIFIED, HE_FACE, face, err);
 }
 
-static he_status note_face(he_changes *out, uint32_t face, he_error *err)
-{
-    return face == HE_NONE || face == HE_DEAD ? HE_OK
-                                              : he_ids_add(&out->modified[HE_FACE], face, err);
-}
-
-static he_status note_row(he_changes *out, he_kind kind, uint32_t row, uint32_t before,
+static he_status note_row(he_change_marks *out, he_kind kind, uint32_t row, uint32_t before,
                           uint32_t after, he_error *err)
 {
-    if (before == HE_DEAD) {
-        return he_ids_add(&out->created[kind], row, err);
-    }
-    if (after == HE_DEAD) {
-        return he_ids_add(&out->deleted[kind], row, err);
-    }
-    return he_ids_add(&out->modified[kind], row, err);
+    const he_change_set set = before == HE_DEAD  ? HE_CREATED
+                              : after == HE_DEAD ? HE_DELETED
+                                                 : HE_MODIFIED;
+    return he_change_marks_add(out, set, kind, row, err);
 }
 
-static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_column *column,
+static he_status note_attribute(const he_mesh *mesh, he_change_marks *out, const he_column *column,
                                 uint32_t row, he_error *err)
 {
     if (column->domain == HE_HALFEDGE) {
-        out->others |= mesh->c.face[row] == HE_NONE;
+        out->lists->others |= mesh->c.face[row] == HE_NONE;
         return note_face(out, mesh->c.face[row], err);
     }
     if (column->domain == HE_MESH_KIND) {
-        out->others = true;
+        out->lists->others = true;
         return HE_OK;
     }
-    return he_ids_add(&out->modified[column->domain], row, err);
+    return he_change_marks_add(out, HE_MODIFIED, column->domain, row, err);
 }
 
 /* The net change of one 32-bit word in one of the mesh's arrays over all edits that are
@@ -137,7 +122,7 @@ typedef struct word_change {
  * the attribute column of the word; NULL if the word is a link or part of a position. Elements that
  * were created or deleted are also added to the list of modified elements; keep_modified removes
  * them from that list at the end. */
-static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
+static he_status note_word(const he_mesh *mesh, he_change_marks *out, const he_column *attribute,
                            const word_change *change, he_error *err)
 {
     const uint32_t row = change->row, before = change->before, after = change->after;
@@ -147,15 +132,15 @@ static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column
         if ((row & 1u) == 0 && (before == HE_DEAD || after == HE_DEAD)) {
             status = note_row(out, HE_EDGE, row >> 1, before, after, err);
         }
-        out->others |= mesh->c.face[row] == HE_NONE;
+        out->lists->others |= mesh->c.face[row] == HE_NONE;
         return status != HE_OK ? status : note_face(out, mesh->c.face[row], err);
     case HE_COL_PREV:
         return HE_OK;
     case HE_COL_ORIGIN:
-        status = he_ids_add(&out->modified[HE_EDGE], row >> 1, err);
+        status = he_change_marks_add(out, HE_MODIFIED, HE_EDGE, row >> 1, err);
         return status != HE_OK ? status : note_face(out, mesh->c.face[row], err);
     case HE_COL_FACE:
-        status = he_ids_add(&out->modified[HE_EDGE], row >> 1, err);
+        status = he_change_marks_add(out, HE_MODIFIED, HE_EDGE, row >> 1, err);
         if (status == HE_OK) {
             status = note_face(out, before, err);
         }
@@ -165,7 +150,7 @@ static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column
     case HE_COL_FACE_HALFEDGE:
         return note_row(out, HE_FACE, row, before, after, err);
     case HE_COL_POSITION:
-        return he_ids_add(&out->modified[HE_VERTEX], row, err);
+        return he_change_marks_add(out, HE_MODIFIED, HE_VERTEX, row, err);
     case HE_COL_PARENT:
     case HE_COL_MERGED:
     case HE_COL_COLUMN_ADDED:
@@ -222,10 +207,11 @@ static bool same_labels(const he_column *a, const he_column *b, size_t row)
 }
 
 /* The changes of 32-bit words that all edits made, sorted by key. Changes with equal keys are in
- * the order in which they took effect. */
+ * the order in which they took effect. If the marks have bits, links and positions are not among
+ * them (note_at_once). */
 typedef struct words {
     word_record *records;
-    size_t count;
+    size_t count, capacity;
     /* what the edits did to each entry of the mesh's array of attribute columns */
     attribute_slot *slots;
     size_t slot_count;
@@ -309,20 +295,33 @@ static he_status note_positions(words *w, const he_change_part *part, const he_r
     return HE_OK;
 }
 
-/* Adds the vertices whose positions differ from those before all edits, which wrote all positions
- * at once, to the list of modified vertices. */
-static he_status note_moved(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
+/* Returns true if the position of a vertex differs from that before all edits, in a word that
+ * note_at_once has not compared already. */
+static bool has_moved(const he_mesh *mesh, const words *w, const he_change_marks *marks, uint32_t v)
 {
-    const unsigned char *before = (const unsigned char *)w->from;
-    const unsigned char *now = (const unsigned char *)mesh->c.position;
+    uint32_t before[HE_POSITION_WORDS], now[HE_POSITION_WORDS];
+    memcpy(before, &w->from[v], sizeof before);
+    memcpy(now, &mesh->c.position[v], sizeof now);
+    bool moved = false;
+    for (uint32_t word = 0; word < HE_POSITION_WORDS && !moved; word++) {
+        moved = before[word] != now[word] &&
+                !(marks->has_bits && he_change_marks_met_position(marks, v, word));
+    }
+    return moved;
+}
+
+/* Adds the vertices whose positions differ from those before all edits, which wrote all positions
+ * at once, to the modified vertices. */
+static he_status note_moved(const he_mesh *mesh, const words *w, he_change_marks *out,
+                            he_error *err)
+{
     he_status status = HE_OK;
     for (uint32_t v = 0; v < w->moved && status == HE_OK; v++) {
         if (v % HE_PROGRESS_STRIDE == 0) {
             status = he_progress_step(mesh->progress, 1, 2, err);
         }
-        const size_t at = v * sizeof *w->from;
-        if (status == HE_OK && memcmp(before + at, now + at, sizeof *w->from) != 0) {
-            status = he_ids_add(&out->modified[HE_VERTEX], v, err);
+        if (status == HE_OK && has_moved(mesh, w, out, v)) {
+            status = he_change_marks_add(out, HE_MODIFIED, HE_VERTEX, v, err);
         }
     }
     return status;
@@ -335,28 +334,104 @@ static void words_clear(words *w)
     he_mem_free(w->own_from);
 }
 
-static he_status gather_part(const he_change_part *part, words *w, he_changes *found,
-                             he_progress *progress, he_error *err)
+/* Returns the present value of the word of a record that is a link or part of a position. */
+static uint32_t word_now(const he_mesh *mesh, const he_record *r)
 {
+    switch ((he_col)r->column) {
+    case HE_COL_NEXT:
+        return mesh->c.next[r->row];
+    case HE_COL_PREV:
+        return mesh->c.prev[r->row];
+    case HE_COL_ORIGIN:
+        return mesh->c.origin[r->row];
+    case HE_COL_FACE:
+        return mesh->c.face[r->row];
+    case HE_COL_VERTEX_HALFEDGE:
+        return mesh->c.vertex_halfedge[r->row];
+    case HE_COL_FACE_HALFEDGE:
+        return mesh->c.face_halfedge[r->row];
+    case HE_COL_POSITION: {
+        uint32_t parts[HE_POSITION_WORDS];
+        memcpy(parts, &mesh->c.position[r->row], sizeof parts);
+        return parts[r->word];
+    }
+    case HE_COL_PARENT:
+    case HE_COL_MERGED:
+    case HE_COL_COLUMN_ADDED:
+    case HE_COL_COLUMN_DROPPED:
+    case HE_COL_MATERIAL:
+    case HE_COL_POSITIONS:
+    case HE_COL_REPLACED:
+    case HE_COL_ATTRIBUTE:
+        break;
+    }
+    return 0;
+}
+
+/* Returns the number of entries of the array of a link or position. */
+static uint32_t rows_of(const he_mesh *mesh, uint32_t column)
+{
+    return he_mesh_issued(mesh, column <= HE_COL_FACE            ? HE_HALFEDGE
+                                : column == HE_COL_FACE_HALFEDGE ? HE_FACE
+                                                                 : HE_VERTEX);
+}
+
+/* Evaluates a record of a link or position. The first record of a word has its value before all
+ * edits, and the mesh has its value now; so further records of the word say nothing more. A row
+ * that the mesh does not have is from a time before all its data were replaced. */
+static he_status note_at_once(const he_mesh *mesh, const he_change_part *part, const he_record *r,
+                              he_change_marks *out, he_error *err)
+{
+    if (r->column == HE_COL_PREV || r->row >= rows_of(mesh, r->column) ||
+        !he_change_marks_meet(out, r)) {
+        return HE_OK;
+    }
+    const uint32_t before = part->undone ? r->after : r->before, after = word_now(mesh, r);
+    const word_change change = {r->column, r->row, before, after};
+    return before == after ? HE_OK : note_word(mesh, out, NULL, &change, err);
+}
+
+/* Appends a record to the list of those that are sorted. */
+static he_status add_word(const he_change_part *part, const he_record *r, words *w, he_error *err)
+{
+    if (w->count == w->capacity) {
+        const size_t grown = he_mem_grown(w->capacity, w->count + 1);
+        word_record *records = he_mem_array(w->records, grown, sizeof *records);
+        if (records == NULL) {
+            return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", grown);
+        }
+        w->records = records;
+        w->capacity = grown;
+    }
+    w->records[w->count++] = (word_record){key_of(r), part->undone ? r->after : r->before,
+                                           part->undone ? r->before : r->after};
+    return HE_OK;
+}
+
+static he_status gather_part(const he_mesh *mesh, const he_change_part *part, words *w,
+                             he_change_marks *out, he_error *err)
+{
+    he_changes *found = out->lists;
     he_status status = HE_OK;
     for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
         if (i % HE_PROGRESS_STRIDE == 0) {
-            status = he_progress_step(progress, 0, 1, err);
+            status = he_progress_step(mesh->progress, 0, 1, err);
             if (status != HE_OK) {
                 break;
             }
         }
         const he_record *r =
             &part->delta->records[part->undone ? part->to - 1 - (i - part->from) : i];
-        if (r->column >= HE_COL_ATTRIBUTE && is_written_later(w, r->column - HE_COL_ATTRIBUTE)) {
-            continue;
-        }
         if (r->column == HE_COL_POSITION && r->row < w->moved) {
             continue;
         }
-        if (is_word(r)) {
-            w->records[w->count++] = (word_record){key_of(r), part->undone ? r->after : r->before,
-                                                   part->undone ? r->before : r->after};
+        if (r->column <= HE_COL_POSITION && out->has_bits) {
+            status = note_at_once(mesh, part, r, out, err);
+        } else if (r->column >= HE_COL_ATTRIBUTE &&
+                   is_written_later(w, r->column - HE_COL_ATTRIBUTE)) {
+            continue;
+        } else if (is_word(r)) {
+            status = add_word(part, r, w, err);
         } else if (r->column == HE_COL_REPLACED) {
             found->replaced = true;
             found->renumbered |= r->row != 0;
@@ -372,22 +447,30 @@ static he_status gather_part(const he_change_part *part, words *w, he_changes *f
     return status;
 }
 
-static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t part_count,
-                        words *w, he_changes *found, he_error *err)
+/* Returns the number of all records of the parts. */
+static size_t count_records(const he_change_part *parts, size_t part_count)
 {
     size_t total = 0;
     for (size_t i = 0; i < part_count; i++) {
         total += parts[i].to - parts[i].from;
     }
+    return total;
+}
+
+static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t part_count,
+                        words *w, he_change_marks *out, he_error *err)
+{
+    const size_t total = out->has_bits ? 0 : count_records(parts, part_count);
     w->slot_count = mesh->c.column_count;
     w->slots = he_mem_zero(w->slot_count + 1, sizeof *w->slots);
-    w->records = he_mem_array(NULL, total, sizeof *w->records);
-    if (w->records == NULL || w->slots == NULL) {
+    w->records = total == 0 ? NULL : he_mem_array(NULL, total, sizeof *w->records);
+    w->capacity = w->records == NULL ? 0 : total;
+    if (w->slots == NULL || w->capacity < total) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to list %zu changes", total);
     }
     he_status status = HE_OK;
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
-        status = gather_part(&parts[i], w, found, mesh->progress, err);
+        status = gather_part(mesh, &parts[i], w, out, err);
     }
     return status == HE_OK ? sort_records(&w->records, w->count, mesh->progress, err) : status;
 }
@@ -410,7 +493,7 @@ static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32
 /* Compares the attribute columns `before` and `after`, and adds the elements whose labels differ to
  * the list of modified elements. If one of the columns does not exist (NULL), the elements count as
  * having the default label of the column that exists. */
-static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_column *before,
+static he_status note_labels(const he_mesh *mesh, he_change_marks *out, const he_column *before,
                              const he_column *after, he_error *err)
 {
     const he_column *any = after != NULL ? after : before;
@@ -439,7 +522,8 @@ static bool was_there(const words *w, const he_column *column)
     return found;
 }
 
-static he_status note_slots(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
+static he_status note_slots(const he_mesh *mesh, const words *w, he_change_marks *out,
+                            he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = 0; i < w->slot_count && status == HE_OK; i++) {
@@ -459,7 +543,7 @@ static he_status note_slots(const he_mesh *mesh, const words *w, he_changes *out
     return status;
 }
 
-static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, he_error *err)
+static he_status note_all(const he_mesh *mesh, const words *w, he_change_marks *out, he_error *err)
 {
     const word_record *records = w->records;
     size_t count = w->count;
@@ -484,24 +568,10 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
     return status;
 }
 
-/* Removes the elements that did not exist before the changes, or do not exist after them, from the
- * list of modified elements. */
-static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
+static he_status note_lineage(const he_change_part *part, const he_change_marks *marks,
+                              he_progress *progress, he_error *err)
 {
-    he_ids *list = &out->modified[kind];
-    size_t kept = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        uint32_t id = list->ids[i];
-        if (he_mesh_is_live(mesh, kind, id) && !contains(&out->created[kind], id)) {
-            list->ids[kept++] = id;
-        }
-    }
-    list->count = kept;
-}
-
-static he_status note_lineage(const he_change_part *part, he_changes *out, he_progress *progress,
-                              he_error *err)
-{
+    he_changes *out = marks->lists;
     he_status status = HE_OK;
     for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
         if (i % HE_PROGRESS_STRIDE == 0) {
@@ -513,9 +583,10 @@ static he_status note_lineage(const he_change_part *part, he_changes *out, he_pr
         const he_record *r = &part->delta->records[i];
         he_kind kind = (he_kind)r->word;
         he_ids *pairs = NULL;
-        if (r->column == HE_COL_PARENT && contains(&out->created[kind], r->row)) {
+        if (r->column == HE_COL_PARENT && he_change_marks_has(marks, HE_CREATED, kind, r->row)) {
             pairs = &out->parents[kind];
-        } else if (r->column == HE_COL_MERGED && contains(&out->deleted[kind], r->row)) {
+        } else if (r->column == HE_COL_MERGED &&
+                   he_change_marks_has(marks, HE_DELETED, kind, r->row)) {
             pairs = &out->merged[kind];
         }
         if (pairs != NULL) {
@@ -529,8 +600,6 @@ static he_status note_lineage(const he_change_part *part, he_changes *out, he_pr
     return status;
 }
 
-static const he_kind published[] = {HE_VERTEX, HE_EDGE, HE_FACE};
-
 he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
                           bool undone, he_changes *out, he_error *err)
 {
@@ -541,50 +610,46 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
                          he_changes *out, he_error *err)
 {
     he_changes found = {0};
+    he_change_marks marks = {.lists = &found};
     words w = {.records = NULL};
     he_status status = he_progress_phase(mesh->progress, "listing changes", 1, err);
     if (status == HE_OK) {
-        status = gather(mesh, parts, part_count, &w, &found, err);
+        status = he_change_marks_init(&marks, mesh, count_records(parts, part_count), &found, err);
+    }
+    if (status == HE_OK) {
+        status = gather(mesh, parts, part_count, &w, &marks, err);
     }
     if (status != HE_OK || found.replaced) {
         goto out;
     }
-    status = note_moved(mesh, &w, &found, err);
+    status = note_moved(mesh, &w, &marks, err);
     if (status == HE_OK) {
-        status = note_all(mesh, &w, &found, err);
+        status = note_all(mesh, &w, &marks, err);
     }
     if (status == HE_OK) {
-        status = note_slots(mesh, &w, &found, err);
+        status = note_slots(mesh, &w, &marks, err);
     }
-    for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
-        he_kind kind = published[i];
-        status = he_progress_step(mesh->progress, 1, 1, err);
-        if (status == HE_OK) {
-            status = he_ids_sort(&found.created[kind], err);
-        }
-        if (status == HE_OK) {
-            status = he_ids_sort(&found.deleted[kind], err);
-        }
-        if (status == HE_OK) {
-            status = he_ids_sort(&found.modified[kind], err);
-        }
-        if (status == HE_OK) {
-            keep_modified(mesh, &found, kind);
-        }
+    if (status == HE_OK) {
+        status = he_change_marks_finish(&marks, mesh, err);
     }
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
         if (!parts[i].undone) {
-            status = note_lineage(&parts[i], &found, mesh->progress, err);
+            status = note_lineage(&parts[i], &marks, mesh->progress, err);
         }
     }
 out:
+    he_change_marks_clear(&marks);
     words_clear(&w);
-    if (status != HE_OK) {
+    if (status != HE_OK || found.replaced) {
+        const he_changes flags = {
+            .replaced = found.replaced, .renumbered = found.renumbered, .others = found.others};
         he_changes_clear(&found);
-        return status;
+        found = flags;
     }
-    *out = found;
-    return HE_OK;
+    if (status == HE_OK) {
+        *out = found;
+    }
+    return status;
 }
 
 void he_changes_clear(he_changes *changes)
