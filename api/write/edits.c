@@ -331,7 +331,9 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     }
     bool good = within_attributes(before, mesh, in);
     if (good) {
-        api_write_results(&e->out, call.op, &results);
+        if (!x->prefer.minimal) {
+            api_write_results(&e->out, call.op, &results);
+        }
         api_result_names_bind(&e->names, &call, &results);
     }
     he_results_clear(&results);
@@ -377,6 +379,9 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
 static bool write_answer(api_exchange *x, edits *e)
 {
     api_out *out = &x->out;
+    if (x->prefer.minimal) {
+        return true;
+    }
     api_out_object_begin(out);
     api_out_key(out, "revision");
     e->revision_at = api_out_later(out);
@@ -396,13 +401,23 @@ static bool write_answer(api_exchange *x, edits *e)
 /* Answers the request. A dry run is answered with the revision that the edit would have made. */
 static void answer(api_exchange *x, const edits *e)
 {
-    api_out_fill(&x->text, e->revision_at, x->info.revision + (e->dry_run && e->effect ? 1 : 0));
+    if (!x->prefer.minimal) {
+        api_out_fill(&x->text, e->revision_at,
+                     x->info.revision + (e->dry_run && e->effect ? 1 : 0));
+    }
     if (!e->dry_run) {
         api_answer_etag(x, "edits");
     }
     if (!api_answer_minimal(x)) {
         api_answer_json(x, 200);
     }
+}
+
+/* Returns true if nobody reads the net changes of an edit: the answer does not have them, the edit
+ * is too large for an event, and no column, material or content was exchanged. */
+static bool has_no_reader(const api_exchange *x, const he_delta *delta)
+{
+    return x->prefer.minimal && delta->count > API_MAX_EVENT_ROWS && delta->object_count == 0;
 }
 
 /* Runs the operations on x->write.content. Returns true if the result is to be committed. */
@@ -424,12 +439,15 @@ static bool edit(api_exchange *x, edits *e)
      * already. */
     e->paid = UINT64_MAX;
     he_progress_span(&x->progress, CHANGES_SHARE);
-    if (st_write_changes(&x->write, &err) != HE_OK) {
+    e->effect = issued(mesh) != ids;
+    if (e->effect && has_no_reader(x, delta)) {
+        st_write_unread(&x->write);
+    } else if (st_write_changes(&x->write, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     /* An edit that changes nothing makes no revision, unless it has used up ids, which its answer
      * may name. */
-    e->effect = !he_changes_none(&x->write.changes) || issued(mesh) != ids;
+    e->effect = e->effect || !he_changes_none(&x->write.changes);
     return write_answer(x, e) && e->effect && !e->dry_run;
 }
 
@@ -459,7 +477,7 @@ static void limit_work(api_exchange *x, edits *e)
     e->most_work = e->unlimited                 ? UINT64_MAX
                    : x->phase == API_PHASE_BODY ? API_WORKER_EDITS
                                                 : API_POOL_EDITS;
-    e->most_rows = x->write.claimed ? SIZE_MAX : API_LOCKED_ROWS;
+    e->most_rows = x->write.claimed || !st_write_keeps(&x->write) ? SIZE_MAX : API_LOCKED_ROWS;
     e->paid = PHASES;
     e->told = x->progress;
     x->progress.tell = tell_and_charge;
@@ -640,7 +658,7 @@ bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
                 (elements > API_COSTLY_ELEMENTS &&
                  (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
     e->seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
-    e->claims = e->runs > API_CLAIM_EDITS ||
+    e->claims = e->count > API_CLAIM_EDITS || e->runs > API_CLAIM_RUNS ||
                 (e->whole > 0 && (elements > API_CLAIM_ELEMENTS || e->seconds > API_PATIENCE));
     return true;
 }

@@ -24,11 +24,12 @@ static double revise(st_mesh *mesh)
 }
 
 /* Counts the elements that a change has created, deleted and modified. If the change replaced all
- * data of the mesh, the numbers are unknown. */
-static st_tally tally_of(const he_changes *changes)
+ * data of the mesh, or nobody reads its changes, the numbers are unknown. */
+static st_tally tally_of(const st_write *w)
 {
+    const he_changes *changes = &w->changes;
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
-    st_tally tally = {.known = !changes->replaced};
+    st_tally tally = {.known = w->found && !changes->replaced};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         tally.created[i] = (uint32_t)changes->created[kinds[i]].count;
         tally.deleted[i] = (uint32_t)changes->deleted[kinds[i]].count;
@@ -42,7 +43,7 @@ static st_tally tally_of(const he_changes *changes)
 static void commit_edit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
-    const st_tally tally = tally_of(&w->changes);
+    const st_tally tally = tally_of(w);
     const bool barrier = w->changes.renumbered;
     st_step *step = barrier ? NULL : st_log_hold_reserved(&mesh->log);
     double now = revise(mesh);
@@ -61,7 +62,7 @@ static void commit_edit(st_write *w, const char *ops)
     if (!barrier) {
         change.action = ST_EDIT;
         change.delta = st_step_delta(step);
-        change.changes = &w->changes;
+        change.changes = w->found ? &w->changes : NULL;
     }
     st_mesh_publish(
         mesh,
@@ -243,7 +244,7 @@ static st_status get_ready(st_write *w)
 st_status st_write_commit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
-    assert(w->found || w->kind >= ST_WRITE_REPLACE);
+    assert(w->found || w->unread || w->kind >= ST_WRITE_REPLACE);
     st_status status = get_ready(w);
     if (status != ST_OK) {
         return status;

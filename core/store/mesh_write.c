@@ -113,7 +113,7 @@ void st_write_discard_copy(st_write *w)
     w->content = NULL;
     he_delta_empty(w->delta);
     he_changes_clear(&w->changes);
-    w->found = false;
+    w->found = w->unread = false;
 }
 
 void st_write_from(st_write *w, const st_shown *shown, size_t count)
@@ -131,9 +131,20 @@ he_status st_write_changes(st_write *w, he_error *err)
     return status;
 }
 
+void st_write_unread(st_write *w)
+{
+    assert(w->kind == ST_WRITE_EDIT && !w->found && w->delta->object_count == 0);
+    w->unread = true;
+}
+
+bool st_write_keeps(const st_write *w)
+{
+    return w->mesh->journal->keeps;
+}
+
 bool st_write_undoable(const st_write *w)
 {
-    assert(w->found);
+    assert(w->found || w->unread);
     return !w->changes.renumbered && st_log_fits(&w->mesh->log);
 }
 

@@ -49,8 +49,9 @@ typedef struct st_write {
 
     /* --- the members below are private to core/store --- */
     st_write_kind kind;
-    /* `claimed` is true if the write is a claim, `found` if `changes` is filled in */
-    bool claimed, found;
+    /* `claimed` is true if the write is a claim, `found` if `changes` is filled in, `unread` if
+     * nobody reads `changes` */
+    bool claimed, found, unread;
     st_cause cause;
     he_savepoint mark; /* position in `delta` at which the changes of this write begin */
     const char *name;  /* `name` is the new name, if the write is a rename */
@@ -97,9 +98,15 @@ void st_write_discard_copy(st_write *write);
 void st_write_from(st_write *write, const st_shown *shown, size_t count);
 /* Computes the net changes of the edit that the write has recorded. */
 HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
+/* May be called instead of st_write_changes if the caller reads no changes and the edit has changed
+ * the mesh without adding, dropping or replacing columns, materials or contents. The history then
+ * does not say how many elements changed, and listeners that need the changes find them. */
+void st_write_unread(st_write *write);
+/* Returns true if the store keeps changes on a disk, so that a commit encodes them. */
+bool st_write_keeps(const st_write *write);
 /* Returns true if the edit could be undone if it were committed; must be called after
- * st_write_changes. Returns false if the edit is larger than the undo budget or renumbers elements;
- * the commit of such an edit clears the history. */
+ * st_write_changes or st_write_unread. Returns false if the edit is larger than the undo budget or
+ * renumbers elements; the commit of such an edit clears the history. */
 bool st_write_undoable(const st_write *write);
 /* Undoes or redoes `steps` steps, at least one, and computes the net changes of all of them. Each
  * step becomes a revision of its own.
