@@ -82,7 +82,7 @@ SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C) $(ORACLE_C), \
                 $(wildcard tests/*.c $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
 OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
-BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c tests/bench/checks.c $(SIDE_C) $(OURS_C)
+BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c tests/bench/checks.c tests/bench/lists.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # The sources that all fuzz targets are linked with, besides the libraries; libFuzzer has a main
@@ -491,13 +491,13 @@ bench-reshape: $(SIDES) | $(INSTALLED) ## remeshing, smoothing, filling, deformi
 bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangulation: our figures alone
 	@for program in $(SPACE); do $$program; done
 
-bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd; steps a second of dragging 50,176 vertices; a million positions both ways
+bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(addprefix $(BUILD)/tests/bench/,checks lists) | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd; lists of edits; steps a second of dragging 50,176 vertices; a million positions both ways
 	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks
-	@sh tests/bench/http_store.sh $(HEDGED) build/durable
+	@sh tests/bench/http_store.sh $(HEDGED) build/durable $(BUILD)/tests/bench/lists
 	@sh tests/bench/drag.sh $(HEDGED)
 	@sh tests/bench/arrays.sh $(HEDGED)
 
-$(addprefix $(BUILD)/tests/bench/,store checks): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
+$(addprefix $(BUILD)/tests/bench/,store checks lists): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)

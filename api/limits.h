@@ -182,8 +182,8 @@ enum {
      * with a claim: the lock must not be held while a megabyte or more of its changes is encoded
      * for the journal. */
     API_CLAIM_EDITS = 4096,
-    /* The same for an operation that runs once for each item of a list, which takes less time than
-     * as many operations. */
+    /* An operation that runs more often than this, once for each item of a list, claims the mesh,
+     * too. The runs take less time than as many operations. */
     API_CLAIM_RUNS = 1 << 17,
     API_LOCKED_ROWS = 1 << 17,
     /* Jobs per page of the list of jobs if the request does not say how many. */

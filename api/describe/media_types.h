@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 static const char *const json[] = {"application/json", NULL};
+static const char *const packed_too[] = {"application/json", "application/vnd.hedge.edits", NULL};
 static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
 static const char *const lines_or_octets_too[] = {"application/json", "application/x-ndjson",
                                                   "application/octet-stream", NULL};
@@ -32,6 +33,7 @@ static const char *const event_stream[] = {"text/event-stream", NULL};
 static const char *const job_results[] = {"application/json",
                                           "application/x-ndjson",
                                           "application/octet-stream",
+                                          "application/vnd.hedge.edits",
                                           "model/obj",
                                           "model/mtl",
                                           "model/x-off",

@@ -411,14 +411,18 @@ static const api_route routes[] = {
      .role = API_ROLE_WRITE,
      .flags = API_WRITES | API_LONG | API_IDEMPOTENCY_KEY | API_REHEARSED,
      .body_kind = API_BODY_EDITS,
-     .consumes = json,
-     .produces = json,
+     .consumes = packed_too,
+     .produces = packed_too,
      .statuses = {200, 202, 204, 409, 412, 413, 415, 422},
      .request = "edit",
      .response = "edited",
      .summary = "Edit a mesh",
-     .doc = "The body is one operation, or a list of operations that is applied completely or not "
-            "at all. It makes one revision and one undo step."},
+     .doc =
+         "The body is one operation, or a list of operations that is applied completely or not "
+         "at all. It makes one revision and one undo step. As application/vnd.hedge.edits, long "
+         "lists "
+         "of ids, numbers and points are arrays of octets beside the JSON, in the request and in "
+         "the answer; the page about lists of edits describes the bytes."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/edits",
      .name = "list_edits",

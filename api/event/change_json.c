@@ -11,34 +11,19 @@ static void write_map(api_out *out, const he_ids *map)
     api_out_array_end(out);
 }
 
-/* Writes lists that follow each other in `ids` as a list of lists; ends[i] is where list i ends. */
-static void write_lists(api_out *out, const he_ids *ids, const he_ids *ends)
-{
-    api_out_array_begin(out);
-    for (size_t i = 0, from = 0; i < ends->count; i++) {
-        api_out_ids(out, ids->ids + from, ends->ids[i] - from);
-        from = ends->ids[i];
-    }
-    api_out_array_end(out);
-}
-
 /* Writes the column of a result of an operation that ran once for each item of a list. */
 static void write_column(api_out *out, const he_result_row *row, const he_results *results,
                          size_t k)
 {
     switch (row->type) {
     case HE_RESULT_ELEMENTS:
-        write_lists(out, &results->list[k], &results->ends[k]);
+        api_out_id_lists(out, results->list[k].ids, results->ends[k].ids, results->ends[k].count);
         return;
     case HE_RESULT_ELEMENT:
         api_out_ids(out, results->list[k].ids, results->list[k].count);
         return;
     case HE_RESULT_NUMBER:
-        api_out_array_begin(out);
-        for (size_t i = 0; i < results->runs; i++) {
-            api_out_number(out, results->numbers[k][i]);
-        }
-        api_out_array_end(out);
+        api_out_numbers(out, results->numbers[k], results->runs);
         return;
     case HE_RESULT_CHOICE:
     case HE_RESULT_MAP:

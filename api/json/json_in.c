@@ -70,18 +70,63 @@ static bool check_objects(const api_in *in)
     return true;
 }
 
-/* Parses one value of a text that json_scan.h has accepted; `*end` is set to where the value
- * ends. */
-static bool parse(api_bytes text, const api_in *at, api_document *out, api_in *root,
+/* Returns true if a value is an object like {"array":0}. */
+static bool is_reference(const cJSON *value)
+{
+    const cJSON *member = value->child;
+    return cJSON_IsObject(value) && member != NULL && member->next == NULL &&
+           strcmp(member->string, "array") == 0;
+}
+
+/* Makes the node of an object like {"array":0} point to the array. cJSON never makes raw nodes of a
+ * text, and does not free what a node with cJSON_IsReference points to. */
+static bool place_array(const api_in *in, cJSON *node, const api_arrays *arrays)
+{
+    uint64_t number = 0;
+    api_in member;
+    if (!api_in_first(in, &member) || !api_in_u64(&member, 0, UINT32_MAX, &number)) {
+        return false;
+    }
+    if (number >= arrays->count) {
+        return api_in_fail(&member, HE_BAD_VALUE, "there is no array %llu: the body has %zu",
+                           (unsigned long long)number, arrays->count);
+    }
+    cJSON_Delete(node->child);
+    node->child = NULL;
+    node->type = cJSON_Raw | cJSON_IsReference | (node->type & cJSON_StringIsConst);
+    node->valuestring = (char *)&arrays->arrays[number];
+    return true;
+}
+
+/* Lets all objects like {"array":0} point to their arrays. `node` is the node of the value at `in`.
+ * The recursion is bounded as that of check_objects. */
+static bool place_arrays(const api_in *in, cJSON *node, const api_arrays *arrays)
+{
+    if (is_reference(node)) {
+        return place_array(in, node, arrays);
+    }
+    size_t i = 0;
+    for (cJSON *child = node->child; child != NULL; child = child->next, i++) {
+        const api_in at = {.value = child, .parent = in, .index = i, .problem = in->problem};
+        if (child->child != NULL && !place_arrays(&at, child, arrays)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Parses one value of a text that json_scan.h has accepted; `*end` is set to where the value ends.
+ * The caller sets all members of the cursor `root` but `value`. */
+static bool parse(api_bytes text, const api_arrays *arrays, api_document *out, api_in *root,
                   const char **end)
 {
-    api_in in = *at;
+    api_in in = *root;
     in.value = out->root = cJSON_ParseWithLengthOpts(text.at, text.length, end, false);
     if (out->root == NULL) {
         /* The scan has accepted the text, so parsing fails only when memory is out. */
-        return api_problem_set(at->problem, HE_NO_MEMORY, "no memory to read the body");
+        return api_problem_set(in.problem, HE_NO_MEMORY, "no memory to read the body");
     }
-    if (!check_objects(&in)) {
+    if (!check_objects(&in) || (arrays != NULL && !place_arrays(&in, out->root, arrays))) {
         api_document_clear(out);
         return false;
     }
@@ -93,7 +138,16 @@ bool api_document_parse_scanned(api_bytes text, api_document *out, api_in *root,
                                 api_problem *problem)
 {
     const char *end;
-    return parse(text, &(api_in){.problem = problem}, out, root, &end);
+    *root = (api_in){.problem = problem};
+    return parse(text, NULL, out, root, &end);
+}
+
+static bool parse_beside(api_bytes text, const api_items *items, api_document *out, api_in *root,
+                         api_problem *problem)
+{
+    const char *end;
+    *root = (api_in){.problem = problem};
+    return parse(text, items == NULL ? NULL : items->arrays, out, root, &end);
 }
 
 bool api_document_parse(api_bytes text, const api_in_options *options, api_document *out,
@@ -104,7 +158,7 @@ bool api_document_parse(api_bytes text, const api_in_options *options, api_docum
         return false;
     }
     if (items == NULL || items->at == NULL) {
-        return api_document_parse_scanned(text, out, root, problem);
+        return parse_beside(text, items, out, root, problem);
     }
     size_t before = (size_t)(items->at - text.at);
     size_t after = (size_t)(text.at + text.length - items->end);
@@ -114,7 +168,7 @@ bool api_document_parse(api_bytes text, const api_in_options *options, api_docum
     }
     memcpy(rest, text.at, before);
     memcpy(rest + before, items->end, after);
-    bool good = api_document_parse_scanned((api_bytes){rest, before + after}, out, root, problem);
+    bool good = parse_beside((api_bytes){rest, before + after}, items, out, root, problem);
     he_mem_free(rest);
     return good;
 }
@@ -123,8 +177,8 @@ bool api_item_read(const api_items *items, size_t i, const api_in *list, api_ite
 {
     const char *from = i == 0 ? items->at : item->next + strspn(item->next, " \t\r\n,");
     api_item_clear(item);
-    return parse((api_bytes){from, (size_t)(items->end - from)},
-                 &(api_in){.parent = list, .index = i, .problem = list->problem}, &item->document,
+    item->in = (api_in){.parent = list, .index = i, .problem = list->problem};
+    return parse((api_bytes){from, (size_t)(items->end - from)}, items->arrays, &item->document,
                  &item->in, &item->next);
 }
 
@@ -221,8 +275,15 @@ bool api_in_is_string(const api_in *in)
 }
 bool api_in_is_array(const api_in *in)
 {
-    return cJSON_IsArray(in->value);
+    return cJSON_IsArray(in->value) || cJSON_IsRaw(in->value);
 }
+
+const api_numbers *api_in_numbers(const api_in *in)
+{
+    return cJSON_IsRaw(in->value) ? (const api_numbers *)(const void *)in->value->valuestring
+                                  : NULL;
+}
+
 bool api_in_is_object(const api_in *in)
 {
     return cJSON_IsObject(in->value);
@@ -238,7 +299,7 @@ static const char *type_name(const api_in *in)
            : cJSON_IsBool(in->value)   ? "a boolean"
            : cJSON_IsNumber(in->value) ? "a number"
            : cJSON_IsString(in->value) ? "a string"
-           : cJSON_IsArray(in->value)  ? "an array"
+           : api_in_is_array(in)       ? "an array"
                                        : "an object";
 }
 
@@ -302,6 +363,11 @@ bool api_in_array(const api_in *in, size_t min, size_t max)
     if (!api_in_is_array(in)) {
         return wrong_type(in, "an array");
     }
+    if (api_in_numbers(in) != NULL) {
+        return api_in_fail(in, API_WRONG_TYPE,
+                           "an array beside the JSON cannot be given here; its items must be of "
+                           "the type that the member takes");
+    }
     size_t count = api_in_count(in);
     if (count < min || (count > max && min == max)) {
         return api_in_fail(in, HE_BAD_VALUE, "the array has %zu values, but needs %s%zu", count,
@@ -317,6 +383,9 @@ bool api_in_array(const api_in *in, size_t min, size_t max)
 size_t api_in_count(const api_in *in)
 {
     size_t count = 0;
+    if (api_in_numbers(in) != NULL) {
+        return api_in_numbers(in)->count;
+    }
     for (const cJSON *value = in->value->child; value != NULL; value = value->next) {
         count++;
     }
@@ -385,12 +454,9 @@ static number_text show(double value)
     return shown;
 }
 
-bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out)
+bool api_in_check_within(const api_in *in, double value, const double range[2], bool exclusive)
 {
-    double value = 0;
-    if (!api_in_number(in, &value)) {
-        return false;
-    }
+    const double min = range[0], max = range[1];
     if (max >= DBL_MAX && (exclusive ? !(value > min) : !(value >= min))) {
         return api_in_fail(in, HE_BAD_VALUE, "the number must be %s %s, not %s",
                            exclusive ? "above" : "at least", show(min).text, show(value).text);
@@ -400,7 +466,29 @@ bool api_in_number_within(const api_in *in, double min, double max, bool exclusi
                            exclusive ? "strictly between" : "between", show(min).text,
                            show(max).text);
     }
+    return true;
+}
+
+bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out)
+{
+    double value = 0;
+    if (!api_in_number(in, &value) ||
+        !api_in_check_within(in, value, (const double[]){min, max}, exclusive)) {
+        return false;
+    }
     *out = value;
+    return true;
+}
+
+bool api_in_check_whole(const api_in *in, double value, uint64_t min, uint64_t max)
+{
+    if (value != floor(value)) {
+        return api_in_fail(in, HE_BAD_VALUE, "%s is not a whole number", show(value).text);
+    }
+    if (value < (double)min || value > (double)max) {
+        return api_in_fail(in, HE_BAD_VALUE, "%s is not between %llu and %llu", show(value).text,
+                           (unsigned long long)min, (unsigned long long)max);
+    }
     return true;
 }
 
@@ -410,15 +498,8 @@ bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out)
     if (!api_in_is_number(in)) {
         return wrong_type(in, "a whole number");
     }
-    if (!api_in_number(in, &value)) {
+    if (!api_in_number(in, &value) || !api_in_check_whole(in, value, min, max)) {
         return false;
-    }
-    if (value != floor(value)) {
-        return api_in_fail(in, HE_BAD_VALUE, "%s is not a whole number", show(value).text);
-    }
-    if (value < (double)min || value > (double)max) {
-        return api_in_fail(in, HE_BAD_VALUE, "%s is not between %llu and %llu", show(value).text,
-                           (unsigned long long)min, (unsigned long long)max);
     }
     *out = (uint64_t)value;
     return true;

@@ -20,6 +20,7 @@
 #define HE_API_JSON_JSON_IN_H
 
 #include "api/json/arena.h"
+#include "api/json/packed.h"
 #include "api/json/problem.h"
 
 struct cJSON;
@@ -45,6 +46,8 @@ typedef struct api_items {
     /* Begin and end of the items' text; NULL if the document has no such array. */
     const char *at, *end;
     size_t count;
+    /* The arrays beside the document for which {"array":K} stands; NULL: it has none. */
+    const api_arrays *arrays;
 } api_items;
 
 /* Limits and options for parsing a text. */
@@ -97,6 +100,9 @@ bool api_in_object(const api_in *in); /* checks that the value is an object */
 bool api_in_find(const api_in *object, const char *name, api_in *out);
 /* Finds the member `name`, and refuses the object if it has no such member. */
 bool api_in_need(const api_in *object, const char *name, api_in *out);
+/* Returns the array beside the document for which the value stands; NULL if it is no such value.
+ * api_in_is_array and api_in_count treat it like an array, the other functions refuse it. */
+const api_numbers *api_in_numbers(const api_in *in);
 /* Checks that the value is an array of `min` to `max` values. */
 bool api_in_array(const api_in *in, size_t min, size_t max);
 /* Returns the number of values in an array or members in an object, in linear time. */
@@ -115,6 +121,9 @@ bool api_in_bool(const api_in *in, bool *out);
 bool api_in_number(const api_in *in, double *out); /* reads a finite number */
 /* Reads a number. Refuses a number outside [min, max] with bad_value; if `exclusive` is true, also
  * `min` and `max` themselves. */
+/* These functions check a number that was read already, and refuse the value at `in`. */
+bool api_in_check_within(const api_in *in, double value, const double range[2], bool exclusive);
+bool api_in_check_whole(const api_in *in, double value, uint64_t min, uint64_t max);
 bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out);
 /* Reads a whole number in [min, max]; max is at most 2^53. */
 bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out);

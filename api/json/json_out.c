@@ -1,5 +1,7 @@
 #include "api/json/json_out.h"
 
+#include "api/json/packed.h"
+
 #include "base/utf8.h"
 #include "format/text/number.h"
 
@@ -247,8 +249,22 @@ static bool goes_on(api_out *out)
     return !out->text->failed;
 }
 
+/* Writes a reference to an array that is added beside the JSON. */
+static void write_array(api_out *out, uint32_t type, uint32_t width, const void *numbers,
+                        size_t count)
+{
+    const size_t number = api_packed_add(out->arrays, type, width, numbers, count);
+    api_out_object_begin(out);
+    api_out_key_u64(out, "array", number);
+    api_out_object_end(out);
+}
+
 void api_out_ids(api_out *out, const uint32_t *ids, size_t count)
 {
+    if (out->arrays != NULL) {
+        write_array(out, API_PACKED_U32, 1, ids, count);
+        return;
+    }
     begin_value(out);
     api_text *text = out->text;
     api_text_add_char(text, '[');
@@ -281,9 +297,43 @@ void api_out_ids(api_out *out, const uint32_t *ids, size_t count)
 void api_out_pairs(api_out *out, const uint32_t *ids, size_t count)
 {
     assert(count % 2 == 0);
+    if (out->arrays != NULL) {
+        write_array(out, API_PACKED_U32, 2, ids, count / 2);
+        return;
+    }
     api_out_array_begin(out);
     for (size_t i = 0; i < count && goes_on(out); i += 2) {
         api_out_ids(out, ids + i, 2);
+    }
+    api_out_array_end(out);
+}
+
+void api_out_id_lists(api_out *out, const uint32_t *ids, const uint32_t *ends, size_t lists)
+{
+    if (out->arrays != NULL) {
+        api_out_object_begin(out);
+        api_out_key_ids(out, "ids", ids, lists == 0 ? 0 : ends[lists - 1]);
+        api_out_key_ids(out, "ends", ends, lists);
+        api_out_object_end(out);
+        return;
+    }
+    api_out_array_begin(out);
+    for (size_t i = 0, from = 0; i < lists && goes_on(out); i++) {
+        api_out_ids(out, ids + from, ends[i] - from);
+        from = ends[i];
+    }
+    api_out_array_end(out);
+}
+
+void api_out_numbers(api_out *out, const double *numbers, size_t count)
+{
+    if (out->arrays != NULL) {
+        write_array(out, API_PACKED_F64, 1, numbers, count);
+        return;
+    }
+    api_out_array_begin(out);
+    for (size_t i = 0; i < count; i++) {
+        api_out_number(out, numbers[i]);
     }
     api_out_array_end(out);
 }

@@ -33,6 +33,8 @@ typedef struct api_out {
     /* Long lists of ids are written in parts: how many parts were written since `progress` was
      * set. */
     unsigned parts;
+    /* If not NULL, lists of ids and of numbers become arrays beside the JSON (packed.h). */
+    struct api_arrays *arrays;
 } api_out;
 
 void api_out_init(api_out *out, api_text *text);
@@ -58,6 +60,10 @@ void api_out_id(api_out *out, uint32_t id);
 void api_out_ids(api_out *out, const uint32_t *ids, size_t count);
 /* Writes the ids a, b, a, b, ... as pairs [[a,b],...]; `count` is the number of ids. */
 void api_out_pairs(api_out *out, const uint32_t *ids, size_t count);
+/* Writes lists of ids that follow each other as a list of lists; ends[i] is where list i ends. */
+void api_out_id_lists(api_out *out, const uint32_t *ids, const uint32_t *ends, size_t lists);
+/* Writes a list of numbers; NaN and infinity become null, or stay in an array beside the JSON. */
+void api_out_numbers(api_out *out, const double *numbers, size_t count);
 void api_out_vec3(api_out *out, he_vec3 value);
 /* Writes seconds since 1970 UTC as "2026-01-31T12:00:00.000Z". */
 void api_out_time(api_out *out, double seconds);

@@ -119,8 +119,9 @@ struct api_exchange {
         *decompressor;
     api_document document;
     bool has_root;
-    api_in root;   /* cursor at the outermost value of a control document */
-    api_items ops; /* the operations of an edit list, whose text is in `body` */
+    api_in root;       /* cursor at the outermost value of a control document */
+    api_arrays arrays; /* arrays beside the JSON, if the body is of the type API_PACKED_EDITS */
+    api_items ops;     /* the operations of an edit list, whose text is in `body` */
 
     /* --- the mesh --- */
     /* The mesh that the path names; the exchange counts as one reference to it. NULL: the path

@@ -156,12 +156,14 @@ void api_idempotency_settle(api_exchange *x)
         return;
     }
     if (answer->status < 300) {
+        /* A stored body is sent again as JSON, so other bodies are not stored. */
+        const bool is_json = strcmp(header_of_answer(x, "Content-Type"), "application/json") == 0;
         st_kept kept = {.status = answer->status,
                         .changed = x->published != 0,
                         .incarnation = x->info.incarnation,
                         .position = x->info.position,
-                        .body = answer->bytes,
-                        .length = (size_t)answer->length};
+                        .body = is_json ? answer->bytes : NULL,
+                        .length = is_json ? (size_t)answer->length : 0};
         const char *etag = header_of_answer(x, "ETag");
         if (strlen(etag) < sizeof kept.etag) {
             memcpy(kept.etag, etag, strlen(etag) + 1);

@@ -172,6 +172,7 @@ static void free_work(api_exchange *x)
     }
     api_document_clear(&x->document);
     api_text_clear(&x->body);
+    api_arrays_clear(&x->arrays);
     st_snapshot_release(x->snapshot);
     x->snapshot = NULL;
     st_release(x->mesh);
@@ -537,6 +538,19 @@ static bool end_coding(api_exchange *x)
     return good;
 }
 
+/* Parses the document of a body, which has arrays beside its JSON if it is of the type
+ * API_PACKED_EDITS. */
+static bool parse_document(api_exchange *x, const api_in_options *options)
+{
+    api_bytes text = api_text_bytes(&x->body);
+    const bool packed = x->media_in != NULL && api_media_is(x->media_in, API_PACKED_EDITS);
+    if (packed) {
+        x->ops.arrays = &x->arrays;
+    }
+    return (!packed || api_packed_open(text, &x->arrays, &text, &x->problem)) &&
+           api_document_parse(text, options, &x->document, &x->root, &x->problem);
+}
+
 static bool parse_body(api_exchange *x)
 {
     api_body_kind kind = x->route->body_kind;
@@ -557,9 +571,8 @@ static bool parse_body(api_exchange *x)
         x->ops.name = "ops";
         options = (api_in_options){.values = API_MAX_EDITS_VALUES, .items = &x->ops};
     }
-    x->has_root =
-        api_document_parse(api_text_bytes(&x->body), &options, &x->document, &x->root, &x->problem);
-    if (x->ops.at == NULL) {
+    x->has_root = parse_document(x, &options);
+    if (x->ops.at == NULL && x->ops.arrays == NULL) {
         api_text_clear(&x->body);
     }
     return x->has_root;

@@ -92,9 +92,40 @@ static bool begin_list(const api_decoder *d, size_t capacity, const api_in *in, 
     return list->ids != NULL || api_in_fail(in, HE_NO_MEMORY, "no memory for a list of ids");
 }
 
+/* Takes a list of ids from an array beside the JSON. */
+static bool take_ids(const api_numbers *numbers, const he_param *param, size_t min,
+                     const api_in *in, he_arg *arg)
+{
+    if (numbers->type != API_PACKED_U32 || numbers->width != 1) {
+        return api_in_fail(in, API_WRONG_TYPE,
+                           "a list of ids is an array of type 1 with one number in an item");
+    }
+    if (numbers->count < min || numbers->count > API_MAX_IDS) {
+        return api_in_fail(in, numbers->count < min ? HE_BAD_VALUE : HE_LIMIT,
+                           "the array has %zu values, but needs %zu to %d", numbers->count, min,
+                           (int)API_MAX_IDS);
+    }
+    const bool may_be_null = (param->flags & HE_NULLABLE) != 0;
+    for (size_t i = 0; i < numbers->count; i++) {
+        const uint32_t id = numbers->at.u32[i];
+        if (id >= HE_DEAD && !(id == HE_NONE && may_be_null)) {
+            const api_in at = api_in_item(in, i);
+            return api_in_fail(&at, HE_BAD_VALUE, "%u is not an id", id);
+        }
+    }
+    arg->ids = numbers->at.u32;
+    arg->count = numbers->count;
+    arg->list = true;
+    return true;
+}
+
 bool api_decode_ids(const api_decoder *d, const he_param *param, size_t min, const api_in *in,
                     he_arg *arg)
 {
+    const api_numbers *numbers = api_in_numbers(in);
+    if (numbers != NULL) {
+        return take_ids(numbers, param, min, in, arg);
+    }
     he_ids list;
     if (!api_in_array(in, min, SIZE_MAX) || !begin_list(d, api_in_count(in), in, &list) ||
         !append_ids(d, param, in, &list)) {

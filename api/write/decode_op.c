@@ -6,11 +6,38 @@
 #include "api/json/material_value.h"
 #include "api/limits.h"
 
+#include <assert.h>
+#include <math.h>
 #include <string.h>
+
+/* Takes points from an array beside the JSON. */
+static bool take_points(const api_numbers *numbers, const api_in *in, he_arg *arg)
+{
+    static_assert(sizeof(he_vec3) == 3 * sizeof(double), "a point is three doubles");
+    if (numbers->type != API_PACKED_F64 || numbers->width != 3 || numbers->count == 0) {
+        return api_in_fail(in, API_WRONG_TYPE,
+                           "a list of points is an array of type 2 with three numbers in an item, "
+                           "and not empty");
+    }
+    for (size_t i = 0; i < 3 * numbers->count; i++) {
+        if (!isfinite(numbers->at.f64[i])) {
+            const api_in item = api_in_item(in, i / 3), at = api_in_item(&item, i % 3);
+            return api_in_fail(&at, HE_NOT_FINITE, "the number is not finite");
+        }
+    }
+    arg->points = numbers->at.bytes;
+    arg->count = numbers->count;
+    arg->list = true;
+    return true;
+}
 
 /* Reads a point or, if `may_be_list` is true, also a list of points. */
 static bool decode_points(const api_decoder *d, bool may_be_list, const api_in *in, he_arg *arg)
 {
+    const api_numbers *numbers = api_in_numbers(in);
+    if (numbers != NULL && may_be_list) {
+        return take_points(numbers, in, arg);
+    }
     if (!api_in_array(in, 1, SIZE_MAX)) {
         return false;
     }
@@ -128,10 +155,51 @@ static bool decode_flag_or_choice(const he_param *param, const api_in *in, doubl
     return read;
 }
 
+/* Checks that a number is what the parameter takes. */
+static bool check_number(const he_param *param, const api_in *in, double value)
+{
+    if (param->flags & HE_WHOLE) {
+        return api_in_check_whole(in, value, (uint64_t)param->min, (uint64_t)param->max);
+    }
+    const double range[2] = {param->min, param->max};
+    return (param->flags & HE_RANGE) == 0 ||
+           api_in_check_within(in, value, range, (param->flags & HE_EXCLUSIVE) != 0);
+}
+
+/* Takes a column of numbers from an array beside the JSON. */
+static bool take_numbers(const api_numbers *numbers, const he_param *param, const api_in *in,
+                         he_arg *arg)
+{
+    if (param->type != HE_PARAM_NUMBER || numbers->type != API_PACKED_F64 || numbers->width != 1 ||
+        numbers->count == 0) {
+        return api_in_fail(in, API_WRONG_TYPE, "%s",
+                           param->type == HE_PARAM_NUMBER
+                               ? "a list of numbers is an array of type 2 with one number in an "
+                                 "item, and not empty"
+                               : "flags and choices are given in the JSON");
+    }
+    for (size_t i = 0; i < numbers->count; i++) {
+        const api_in at = api_in_item(in, i);
+        if (!isfinite(numbers->at.f64[i])) {
+            return api_in_fail(&at, HE_NOT_FINITE, "the number is not finite");
+        }
+        if (!check_number(param, &at, numbers->at.f64[i])) {
+            return false;
+        }
+    }
+    arg->numbers = numbers->at.f64;
+    arg->count = numbers->count;
+    arg->list = true;
+    return true;
+}
+
 /* Reads a column of numbers, flags or choices. */
 static bool decode_numbers(const api_decoder *d, const he_param *param, const api_in *in,
                            he_arg *arg)
 {
+    if (api_in_numbers(in) != NULL) {
+        return take_numbers(api_in_numbers(in), param, in, arg);
+    }
     if (!api_in_array(in, 1, SIZE_MAX)) {
         return false;
     }
@@ -158,6 +226,9 @@ static bool decode_numbers(const api_decoder *d, const he_param *param, const ap
 static bool decode_point_list(const api_decoder *d, const api_in *in, he_arg *arg)
 {
     api_in first;
+    if (api_in_numbers(in) != NULL) {
+        return take_points(api_in_numbers(in), in, arg);
+    }
     if (!api_in_array(in, 1, SIZE_MAX)) {
         return false;
     }
@@ -172,7 +243,8 @@ static bool is_column(const api_decoder *d, const he_param *param, const api_in 
     if (!d->runs_each || !he_op_is_column(param) || !api_in_is_array(in)) {
         return false;
     }
-    return param->type != HE_PARAM_POINT || (api_in_first(in, &first) && api_in_is_array(&first));
+    return param->type != HE_PARAM_POINT || api_in_numbers(in) != NULL ||
+           (api_in_first(in, &first) && api_in_is_array(&first));
 }
 
 static bool decode_column(const api_decoder *d, const he_param *param, const api_in *in,

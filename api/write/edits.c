@@ -55,6 +55,8 @@ typedef struct edits {
     api_arena scratch; /* arguments of the current operation */
     api_text results;  /* the JSON array "results" of the answer */
     api_out out;       /* writes to `results` */
+    bool packed;       /* the answer has the type API_PACKED_EDITS */
+    api_arrays arrays; /* of a packed answer */
     char ops[ST_ENTRY_OPS];
     /* How often each operation ran, indexed by the number of the operation. */
     uint32_t ran[API_MOST_OPERATIONS];
@@ -82,6 +84,7 @@ static void free_edits(void *state)
     api_arena_clear(&e->scratch);
     api_item_clear(&e->op);
     api_text_clear(&e->results);
+    api_arrays_clear(&e->arrays);
     he_mem_free(e);
 }
 
@@ -374,6 +377,24 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
     return true;
 }
 
+static void begin_results(edits *e)
+{
+    api_text_empty(&e->results);
+    api_arrays_clear(&e->arrays);
+    api_out_init(&e->out, &e->results);
+    e->out.arrays = e->packed ? &e->arrays : NULL;
+}
+
+/* Puts the JSON of the answer and its arrays into one body. */
+static bool pack_answer(api_exchange *x, const edits *e)
+{
+    api_text body = {0};
+    api_packed_write(&e->arrays, &x->text, &body);
+    api_text_clear(&x->text);
+    x->text = body;
+    return !body.failed || api_fail_memory(x);
+}
+
 /* Writes the whole answer before the commit, so that no failure can follow the commit. Only the
  * revision is filled in after it. */
 static bool write_answer(api_exchange *x, edits *e)
@@ -383,8 +404,12 @@ static bool write_answer(api_exchange *x, edits *e)
         return true;
     }
     api_out_object_begin(out);
-    api_out_key(out, "revision");
-    e->revision_at = api_out_later(out);
+    if (e->packed) {
+        out->arrays = &e->arrays;
+    } else {
+        api_out_key(out, "revision");
+        e->revision_at = api_out_later(out);
+    }
     if (e->dry_run) {
         api_out_key_bool(out, "dry_run", true);
     }
@@ -395,20 +420,29 @@ static bool write_answer(api_exchange *x, edits *e)
         api_out_key_bool(out, "undoable", false);
     }
     api_out_object_end(out);
-    return !x->text.failed || api_fail_memory(x);
+    return (!x->text.failed || api_fail_memory(x)) && (!e->packed || pack_answer(x, e));
 }
 
 /* Answers the request. A dry run is answered with the revision that the edit would have made. */
 static void answer(api_exchange *x, const edits *e)
 {
     if (!x->prefer.minimal) {
-        api_out_fill(&x->text, e->revision_at,
-                     x->info.revision + (e->dry_run && e->effect ? 1 : 0));
+        const uint64_t revision = x->info.revision + (e->dry_run && e->effect ? 1 : 0);
+        if (e->packed) {
+            api_packed_fill(&x->text, revision);
+        } else {
+            api_out_fill(&x->text, e->revision_at, revision);
+        }
     }
     if (!e->dry_run) {
         api_answer_etag(x, "edits");
     }
-    if (!api_answer_minimal(x)) {
+    if (api_answer_minimal(x)) {
+        return;
+    }
+    if (e->packed) {
+        api_answer_text(x, 200, API_PACKED_EDITS);
+    } else {
         api_answer_json(x, 200);
     }
 }
@@ -500,8 +534,7 @@ static void start_over(edits *e)
     memset(e->ran, 0, sizeof e->ran);
     e->at = API_OPERATIONS;
     api_result_names_unbind(&e->names);
-    api_text_empty(&e->results);
-    api_out_init(&e->out, &e->results);
+    begin_results(e);
 }
 
 static void run(api_exchange *x);
@@ -695,7 +728,8 @@ bool api_edits_decode(api_exchange *x)
     e->at = API_OPERATIONS;
     api_result_names_init(&e->names, st_secret(x->store));
     api_named_meshes_init(&e->named, x);
-    api_out_init(&e->out, &e->results);
+    e->packed = strcmp(x->media_out, API_PACKED_EDITS) == 0;
+    begin_results(e);
     if (!read_request(x, e)) {
         return false;
     }

@@ -1,10 +1,11 @@
 #!/bin/sh
 # Measures the edits a second through the daemon with meshes in memory and on a disk, in turn: 1, 8
-# and 64 writers, on 64 meshes and on one.
+# and 64 writers, on 64 meshes and on one; and lists of 65,536 edge splits, beside the rate at which
+# the kernel runs equal lists (lists.c).
 #
-#   http_store.sh HEDGED FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk to be measured
+#   http_store.sh HEDGED FOLDER LISTS [ROUNDS [SECONDS]]      FOLDER on the disk to be measured
 set -eu
-hedged=$1 folder=$2 rounds=${3:-3} seconds=${4:-2}
+hedged=$1 folder=$2 lists=$3 rounds=${4:-3} seconds=${5:-2}
 . "$(dirname "$0")/daemon.sh"
 mkdir -p "$folder"
 disk=$(mktemp -d "$folder/http.XXXXXX")
@@ -40,6 +41,11 @@ for round in $(seq "$rounds"); do
                 measure "$meshes" "$writers" >>"$work/$kind-$meshes-$writers"
             done
         done
+        "$lists" "${base##*:}" "$daemon" |
+            while read -r name rate spent; do
+                echo "$rate" >>"$work/$kind-list-$name"
+                echo "$spent" >>"$work/$kind-time-$name"
+            done
         kill "$daemon" "$drain"
         wait "$daemon" 2>/dev/null || :
         rm "$work/log"
@@ -54,5 +60,20 @@ for meshes in 64 1; do
             -v disk="$(median "sqlite-$meshes-$writers")" 'BEGIN {
                 printf "%2d writers, %2d meshes   memory %8.0f   SQLite %8.0f   %.2f of memory\n",
                     writers, meshes, memory, disk, disk / memory }'
+    done
+done
+echo "edge splits a second in lists of 65,536, with return=minimal, beside the kernel"
+for kind in memory sqlite; do
+    for name in octets json; do
+        awk -v kind="$kind" -v name="$name" -v rate="$(median "$kind-list-$name")" \
+            -v time="$(median "$kind-time-$name")" -v kernel="$(median "$kind-list-kernel")" \
+            -v kernel_time="$(median "$kind-time-kernel")" 'BEGIN {
+                share = rate / kernel
+                spent = time / kernel_time
+                aim = kind == "memory" && name == "octets"
+                printf "%-6s %-6s %8.0f   kernel %8.0f   %.2f of it by rate, %.2f by time%s\n",
+                    kind, name, rate, kernel, share, spent,
+                    !aim ? "" : "   target 0.60 and 1000000   " \
+                        (share >= 0.6 && rate >= 1e6 ? "met" : "falls short") }'
     done
 done
