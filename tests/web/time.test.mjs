@@ -247,3 +247,50 @@ test('each revision says when it was made, and the present one is in sight after
     await note(page).getByText(/revision 2 of 7\. It is \u201cone face less\u201d, from yesterday \d\d:\d\d\./).waitFor();
     await checkAccessible(page, 'a moment with its time');
 });
+
+test('a name that is being written outlives the edits of others', async (t) => {
+    const { daemon, mesh, page } = await openEdited(t);
+    await row(page, 3).getByRole('button', { name: 'Name revision 3' }).click();
+    const field = page.getByRole('textbox', { name: 'Name of revision 3' });
+    await page.keyboard.type('before the dent');
+    await field.evaluate((one) => {
+        one.setSelectionRange(7, 10);
+        window.written = one;
+    });
+    const state = () =>
+        field.evaluate((one) => ({
+            isSame: one === window.written && one === document.activeElement,
+            text: one.value,
+            selection: [one.selectionStart, one.selectionEnd],
+        }));
+    const wanted = { isSame: true, text: 'before the dent', selection: [7, 10] };
+    await edit(daemon, mesh, { op: 'face_poke', face: 14 });
+    await row(page, 5).waitFor();
+    assert.deepEqual(await state(), wanted);
+    // The mark of the present state comes to the row with the field, and goes away from it.
+    await post(daemon, `/${mesh}/undo`, {});
+    await post(daemon, `/${mesh}/undo`, {});
+    await row(page, 3).filter({ hasText: 'now' }).waitFor();
+    assert.equal(await row(page, 3).getAttribute('aria-current'), 'step');
+    assert.deepEqual(await state(), wanted);
+    await post(daemon, `/${mesh}/redo`, {});
+    await row(page, 8).filter({ hasText: 'now' }).waitFor();
+    assert.equal(await page.locator('#history [aria-current]').count(), 1);
+    assert.deepEqual(await state(), wanted);
+    const order = await page
+        .locator('#history li')
+        .evaluateAll((all) => all.map((one) => Number(one.dataset.revision)));
+    assert.deepEqual(order, [...order].sort((a, b) => b - a));
+    // It is kept while its row is not among the newest, and is saved in the end.
+    for (let face = 0; face < 22; face++) {
+        await edit(daemon, mesh, { op: 'face_inset', faces: [5], distance: 0.001 });
+    }
+    await row(page, 30).waitFor();
+    assert.deepEqual(await state(), wanted);
+    await page.getByRole('button', { name: 'Show older' }).waitFor();
+    const renamed = page.waitForResponse((answer) => answer.request().method() === 'PATCH');
+    await field.press('Enter');
+    await renamed;
+    const { entries } = await get(daemon, `/${mesh}/edits?limit=40`);
+    assert.equal(entries.find(({ revision }) => revision === 3).name, 'before the dent');
+});

@@ -367,7 +367,7 @@ function update(what, change) {
         showFacts();
     }
     if (isChanged || what === 'history') {
-        history.show(session.shown.history);
+        history.show(session.shown.history, session.mesh);
     }
     if (isChanged) {
         comparing.forget();

@@ -45,6 +45,19 @@ function isNowhere(element) {
     return element === null || element === document.body || element.disabled === true;
 }
 
+// Calls `act()`, which makes the rows of a list anew. If an element in a row had the focus, the element
+// at its place in the new row gets it: the row with the same `keyOf(row)`, and the same first class.
+export function keepFocusIn(list, keyOf, act) {
+    const { activeElement: focused } = document;
+    const isInside = focused !== list && list.contains(focused);
+    const key = isInside ? keyOf(focused.closest('li')) : null;
+    act();
+    if (isInside && !focused.isConnected) {
+        const row = [...list.children].find((one) => keyOf(one) === key);
+        row?.querySelector(`.${focused.classList[0]}`)?.focus();
+    }
+}
+
 // Returns nodes that show a text, with the words between backticks as code.
 export function prose(text) {
     return text.split('`').map((part, i) => (i % 2 === 1 ? make('code', {}, part) : part));

@@ -1,7 +1,7 @@
 // list.js - the list of meshes, in an order that the user chooses, and only those whose names
 // contain what the user types.
 
-import { formatAbout, make } from '../kit/dom.js';
+import { formatAbout, keepFocusIn, make } from '../kit/dom.js';
 
 // A filter is applied when it has not changed for this many milliseconds.
 const DELAY = 200;
@@ -86,19 +86,8 @@ export class MeshList {
         return [...this.#list.querySelectorAll('.mesh-name')].map((name) => name.textContent);
     }
 
-    // Changes rows by calling `act()`. If a button in them has the focus, the button that takes its
-    // place gets the focus.
     #keepFocus(act) {
-        const { activeElement: focused } = document;
-        const { mesh } = focused?.closest('li')?.firstElementChild.dataset ?? {};
-        const isInside = this.#list.contains(focused);
-        act();
-        if (isInside && !focused.isConnected) {
-            const row = [...this.#list.children].find(
-                ({ firstElementChild: button }) => button.dataset.mesh === mesh,
-            );
-            row?.querySelector(`.${focused.classList[0]}`)?.focus();
-        }
+        keepFocusIn(this.#list, (row) => row.firstElementChild.dataset.mesh, act);
     }
 
     // Marks the open mesh.

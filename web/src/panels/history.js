@@ -20,6 +20,7 @@ export class History {
     #hasFocus = false; // a button of the list was pressed, so the list keeps the focus
     #beginning = null; // the revision before the first step that can be undone
     #isTopShown = false; // whether the row of the present state is in the list
+    #mesh = null;
 
     // `readPage(cursor)` reads the next page of the history; `onUndo(revision)` is called when the
     // user chooses the revision to go back to, `onReturn(entry)` if it is one with a name that was
@@ -43,17 +44,43 @@ export class History {
         }
     }
 
-    // Shows the first page of the history, as the server sent it.
-    show(history) {
+    // Shows the first page of the history of a mesh, as the server sent it. The row in which the user
+    // is writing a name stays where it is, so that the field keeps its text, selection and focus.
+    show(history, mesh) {
         const hadFocus = this.#hasFocus || this.#list.contains(document.activeElement);
         this.#hasFocus = false;
         this.#shown = history;
         this.#isTopShown = false;
-        this.#list.replaceChildren();
+        const kept = mesh === this.#mesh ? this.#named : null;
+        this.#mesh = mesh;
+        [...this.#list.children].filter((row) => row !== kept).forEach((row) => row.remove());
         this.#append(history);
         this.#bringPresentIntoSight();
-        if (hadFocus) {
+        if (hadFocus && !this.#list.contains(document.activeElement)) {
             this.#list.focus(); // the element that had the focus is gone
+        }
+    }
+
+    // The row in which the user is writing a name, or null.
+    get #named() {
+        return this.#list.querySelector('li:has(.moment-name)');
+    }
+
+    // Adds rows, newest first. The row in which the user is writing a name gets the words of the row of
+    // its revision, and is not moved, because an element that is moved loses the focus.
+    #place(rows) {
+        const named = this.#named;
+        const at = named === null ? -1 : Number(named.dataset.revision);
+        for (const row of rows) {
+            const revision = Number(row.dataset.revision);
+            if (named !== null && revision > at) {
+                named.before(row);
+            } else if (revision === at && row.querySelector('.moment') !== null) {
+                named.firstElementChild.replaceWith(row.firstElementChild);
+                named.ariaCurrent = row.ariaCurrent;
+            } else {
+                this.#list.append(row);
+            }
         }
     }
 
@@ -99,7 +126,7 @@ export class History {
         } else if (next === null && entries.length > 0 && !this.#isTopShown) {
             rows.push(this.#present(this.#shown.entries[0].state, [...words, make('span', {})]));
         }
-        this.#list.append(...rows);
+        this.#place(rows);
         this.#more.dataset.cursor = next ?? '';
         this.#more.hidden = next === null;
     }

@@ -51,6 +51,8 @@ export function momentButtons(
         });
         field.addEventListener('keydown', (event) => {
             if (event.key === 'Enter' && field.validity.valid) {
+                // The key would also press the button that gets the focus.
+                event.preventDefault();
                 save().catch(onError);
                 write.focus();
             } else if (event.key === 'Escape') {

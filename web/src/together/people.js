@@ -2,7 +2,7 @@
 // have selected, and the name that this page shows to them.
 
 import { PLURALS, SINGULARS } from '../geometry/kinds.js';
-import { formatNumberOf, make } from '../kit/dom.js';
+import { formatNumberOf, keepFocusIn, make } from '../kit/dom.js';
 import { recall, remember } from '../kit/storage.js';
 
 const STORED = 'hedge-name';
@@ -42,7 +42,9 @@ export class People {
             : others.length === 0
               ? 'Nobody else is at this mesh.'
               : `${formatNumberOf(others.length, 'other')} at this mesh.`;
-        list.replaceChildren(...others.map((one) => this.#row(one)));
+        keepFocusIn(list, (row) => row.dataset.client, () => {
+            list.replaceChildren(...others.map((one) => this.#row(one)));
+        });
     }
 
     #row(presence) {
