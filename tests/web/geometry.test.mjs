@@ -4,7 +4,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { angleBetween, describe, foldAngle } from '../../web/src/open/around.js';
+import { angleBetween } from '../../web/src/geometry/vectors.js';
+import { describe, foldAngle } from '../../web/src/open/around.js';
 import { arrowOf, middleOf, pointsOf } from '../../web/src/geometry/arrows.js';
 import {
     HEADER_BYTES,
@@ -204,13 +205,14 @@ test('where there is no plane there is no arrow', () => {
 
 test('angles are right at every size', () => {
     const near = (got, wanted) => assert.ok(Math.abs(got - wanted) < 1e-9, `${got}, not ${wanted}`);
-    near(angleBetween([1, 0, 0], [0, 1, 0]), 90);
-    near(angleBetween([1e300, 0, 0], [1e-300, 1e-300, 0]), 45);
-    near(angleBetween([1, 0, 0], [-1, 0, 0]), 180);
-    assert.ok(!Number.isNaN(angleBetween([0, 0, 0], [1, 0, 0])));
+    near(angleBetween([1, 0, 0], [0, 1, 0]), Math.PI / 2);
+    near(angleBetween([1e300, 0, 0], [1e-300, 1e-300, 0]), Math.PI / 4);
+    near(angleBetween([5e-324, 0, 0], [-2, 0, 0]), Math.PI);
+    assert.equal(angleBetween([0, 0, 0], [1, 0, 0]), null);
+    assert.equal(foldAngle([0, 0, 1], [0, 0, 0], [1, 0, 0]), null);
     // This is an edge of a cube between a face that looks to -x and one that looks to -y.
-    near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, -1]), 90);
-    near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, 1]), -90);
+    near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, -1]), Math.PI / 2);
+    near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, 1]), -Math.PI / 2);
 });
 
 test('an element that went away meanwhile is left out of what is around', async () => {

@@ -19,3 +19,15 @@ export function unit(a) {
     const size = length(a);
     return size > 0 ? a.map((value) => value / size) : null;
 }
+
+// Returns the angle between two vectors, 0 to pi; null if one of them has no direction. The arc tangent
+// is exact for small angles, too, where the arc cosine is not.
+export function angleBetween(a, b) {
+    // Both vectors are scaled so that their longest component is 1, because products could overflow.
+    const [u, v] = [a, b].map((one) => {
+        const longest = Math.max(...one.map(Math.abs));
+        return one.map((value) => value / longest);
+    });
+    const angle = Math.atan2(length(cross(u, v)), dot(u, v));
+    return Number.isNaN(angle) ? null : angle;
+}

@@ -11,14 +11,13 @@
 //   points   points to draw
 //   at       where the label stands
 
-import { add, subtract } from '../geometry/vectors.js';
+import { add, angleBetween, subtract } from '../geometry/vectors.js';
 import * as api from '../wire/api.js';
 import { formatNumberOf } from '../kit/dom.js';
 import { formatAngle, formatArea, formatLength } from '../kit/lengths.js';
 import { askAll } from '../open/crowd.js';
 import {
     angleAt,
-    angleBetween,
     circleThrough,
     distance,
     middle,

@@ -1,6 +1,6 @@
 // shapes.js - computes lengths, angles and circles from points [x, y, z]. Pure.
 
-import { add, cross, dot, subtract } from '../geometry/vectors.js';
+import { add, angleBetween, cross, dot, subtract } from '../geometry/vectors.js';
 
 export function distance(a, b) {
     return Math.hypot(...subtract(a, b));
@@ -8,15 +8,6 @@ export function distance(a, b) {
 
 export function middle(points) {
     return [0, 1, 2].map((i) => points.reduce((sum, p) => sum + p[i], 0) / points.length);
-}
-
-// Returns the angle between two vectors, 0 to pi; null if one of them has no direction. The arc tangent
-// is exact for small angles, too, where the arc cosine is not.
-export function angleBetween(a, b) {
-    if (Math.hypot(...a) === 0 || Math.hypot(...b) === 0) {
-        return null;
-    }
-    return Math.atan2(Math.hypot(...cross(a, b)), dot(a, b));
 }
 
 // Returns the angle at the point `at` between two other points; null if one of them is `at`.

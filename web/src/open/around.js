@@ -9,28 +9,22 @@
 //              is the face of the twin, `role` says what the half-edge is to a selected one:
 //              'self', 'next', 'prev', 'twin', or 'near' for all others
 
-import { cross, dot, length, subtract } from '../geometry/vectors.js';
+import { angleBetween, cross, dot, subtract } from '../geometry/vectors.js';
 import { formatMeasure } from '../kit/dom.js';
+import { formatAngle } from '../kit/lengths.js';
 
 // The largest number of arrows that are drawn for one selection.
 const MOST = 64;
 
-// Returns the angle between two vectors, in degrees.
-export function angleBetween(a, b) {
-    // Both vectors are scaled so that their longest component is 1, because products could
-    // overflow.
-    const scaled = [a, b].map((v) => v.map((value) => value / (Math.max(...v.map(Math.abs)) || 1)));
-    return (Math.atan2(length(cross(...scaled)), dot(...scaled)) * 180) / Math.PI;
-}
-
 // Returns the angle between the normals of the faces left and right of an edge: positive on a
-// ridge.
+// ridge, null if a face has no area.
 export function foldAngle(left, right, direction) {
     const angle = angleBetween(left, right);
-    return dot(cross(left, right), direction) < 0 ? -angle : angle;
+    return angle !== null && dot(cross(left, right), direction) < 0 ? -angle : angle;
 }
 
-const degrees = (value) => `${formatMeasure(value)}\u00b0`;
+// Returns an angle as a measure to show, in a list that is empty if there is none (null).
+const angles = (name, angle) => (angle === null ? [] : [{ name, value: formatAngle(angle) }]);
 
 // Returns whether `answer` is no error. A question to the server fails if the element that it asks
 // about was deleted meanwhile.
@@ -103,7 +97,7 @@ const readers = {
         if ([from, to, before].every(lives)) {
             const [behind] = await ask([{ get: { vertex: before.origin } }]);
             const sides = [to, behind].map((v) => subtract(v.position, from.position));
-            measures.push({ name: 'angle', value: degrees(angleBetween(...sides)) });
+            measures.push(...angles('angle', angleBetween(...sides)));
         }
         return {
             rings: [
@@ -129,7 +123,7 @@ const readers = {
             if ([left, right, from, to].every(lives)) {
                 const direction = subtract(to.position, from.position);
                 const fold = foldAngle(left.normal, right.normal, direction);
-                measures.push({ name: 'fold angle', value: degrees(fold) });
+                measures.push(...angles('fold angle', fold));
             }
         }
         return {
