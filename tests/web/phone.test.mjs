@@ -47,6 +47,36 @@ for (const viewport of PHONES) {
     });
 }
 
+for (const viewport of [...PHONES, { width: 1280, height: 800 }]) {
+    test(`the manual, the examples and the keys are in reach, ${viewport.width} wide`, async (t) => {
+        const { page } = await openMesh(t, CUBE, { viewport });
+        const button = page.getByRole('button', { name: 'Examples, manual and keys' });
+        if (viewport.width > 430) {
+            assert.ok(await button.isHidden());
+            for (const wanted of ['#examples', '.links a', '#help-button']) {
+                assert.ok((await seen(page, wanted)) !== null, wanted);
+            }
+            return;
+        }
+        const box = await seen(page, '#links-menu');
+        assert.ok(box !== null && box.left >= 0 && box.right <= viewport.width, JSON.stringify(box));
+        const bar = await page.locator('.bar').evaluate((one) => [one.scrollWidth, one.clientWidth]);
+        assert.ok(bar[0] <= bar[1], `the bar scrolls: ${bar}`);
+        assert.ok(await page.locator('#mesh-title').evaluate((one) => one.clientWidth >= 40));
+        await button.click();
+        const items = page.getByRole('menuitem');
+        assert.deepEqual(await items.allTextContents(), ['Examples', 'Manual', 'Keys']);
+        await checkAccessible(page, 'the menu of links');
+        await items.filter({ hasText: 'Keys' }).click();
+        await page.locator('#help').getByRole('button', { name: 'Close' }).click();
+        await button.focus();
+        await page.keyboard.press('Enter');
+        await page.keyboard.press('ArrowDown');
+        await page.keyboard.press('Enter');
+        await page.waitForURL(/\/docs$/);
+    });
+}
+
 test('what gets the focus is not covered by the view or the tools', async (t) => {
     const { page } = await openMesh(t, CUBE, { viewport: { width: 390, height: 844 } });
     await page.locator('#goto-id').focus();

@@ -20,6 +20,7 @@ import { Importing } from './meshes/importing.js';
 import { Inspector } from './panels/inspector.js';
 import { keyList, listenToKeys } from './stage/keys.js';
 import { Legend } from './stage/legend.js';
+import { offerLinks } from './stage/links_menu.js';
 import { Lens } from './lens/lens.js';
 import { Look } from './look/look.js';
 import { linkOf, stateOfLink } from './look/state.js';
@@ -679,6 +680,7 @@ listenToKeys(canvas, {
 });
 byId('keys').append(...keyList());
 byId('help-button').addEventListener('click', () => byId('help').showModal());
+offerLinks(byId('links-menu'));
 byId('help-close').addEventListener('click', () => byId('help').close());
 byId('screenshot').addEventListener('click', () => saveScreenshot().catch(fail));
 byId('share').addEventListener('click', () => copyLink().catch(tellLink));
