@@ -304,16 +304,17 @@ $(STAMPS)/modules: web/package.json web/package-lock.json | $(INSTALLED)
 
 # The manual is made from the daemon's tables and from its answers to the manual's requests. The file
 # with both changes only if one of them has changed, so that a new daemon does not always cost a new
-# page.
+# page. What was removed is made again, although its stamp is still there.
 MANUAL := build/manual.json
-$(STAMPS)/recorded: $(HEDGED) $(filter web/manual/% web/src/manual/%,$(PAGE_FILES)) | $(INSTALLED)
+removed = $(if $(wildcard $1),,ALWAYS)
+$(STAMPS)/recorded: $(call removed,$(MANUAL)) $(HEDGED) $(filter web/manual/% web/src/manual/%,$(PAGE_FILES)) | $(INSTALLED)
 	@mkdir -p $(@D)
 	node web/manual/record.mjs $(abspath $(HEDGED)) $(MANUAL)
 	@touch $@
 
 $(MANUAL): $(STAMPS)/recorded ;
 
-$(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules $(MANUAL)
+$(STAMPS)/page: $(call removed,$(PAGE)/index.html) $(PAGE_FILES) $(STAMPS)/modules $(MANUAL)
 	cd web && WEB_OUT=$(abspath $(PAGE)) MANUAL=$(abspath $(MANUAL)) npm run build
 	@touch $@
 
