@@ -37,10 +37,12 @@ modes() {
 installs() {
     make install DESTDIR="$root" PREFIX=/usr || return 1
     modes bin/hedged share/man/man8/hedged.8 lib/systemd/system/hedged.service \
-        share/hedge/web/index.html share/doc/hedge/LICENSE \
+        share/hedge/web/index.html share/hedge/web/docs.html share/hedge/web/docs/start.html \
+        share/doc/hedge/LICENSE \
         share/hedge/alerts.yaml >"$work/modes" || return 1
     printf '%s\n' '755 bin/hedged' '644 share/man/man8/hedged.8' \
         '644 lib/systemd/system/hedged.service' '644 share/hedge/web/index.html' \
+        '644 share/hedge/web/docs.html' '644 share/hedge/web/docs/start.html' \
         '644 share/doc/hedge/LICENSE' '644 share/hedge/alerts.yaml' |
         diff - "$work/modes"
 }
