@@ -71,6 +71,9 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     case API_PARAM_TEXT:
         api_out_key_string(out, "type", "string");
         break;
+    case API_PARAM_NAME:
+        api_out_key_string(out, "$ref", "#/components/schemas/shown_name");
+        break;
     case API_PARAM_FLAG:
         api_out_key_string(out, "type", "string");
         api_schema_choices(out, "enum", flags);

@@ -131,7 +131,7 @@ const api_parameter api_parameter_compress = {
     compressions,
     "Compress the buffers of a glb with EXT_meshopt_compression, without loss."};
 const api_parameter api_parameter_name = {
-    "name", API_PARAM_TEXT, 0, ST_MESH_NAME, NULL, "The name of the mesh, if the body is a file."};
+    "name", API_PARAM_NAME, 0, ST_MESH_NAME, NULL, "The name of the mesh, if the body is a file."};
 const api_parameter api_parameter_repair = {
     "repair",
     API_PARAM_CHOICES,

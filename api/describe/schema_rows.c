@@ -556,7 +556,7 @@ const api_member api_answer_members[] = {
 };
 
 const api_member api_request_members[] = {
-    {"document", "name", "text?", OPTIONAL, NULL},
+    {"document", "name", "#shown_name?", OPTIONAL, "At most 256 bytes of UTF-8."},
     {"document", "vertices", "*point", OPTIONAL, NULL},
     {"document", "faces", "**index", OPTIONAL,
      "For each face the indices of its vertices, counter-clockwise; the first vertex is 0."},
@@ -612,18 +612,17 @@ const api_member api_request_members[] = {
     {"attribute_patch", "expected_revision", "count", OPTIONAL, NULL},
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
-    {"mesh_patch", "name", "text?", OPTIONAL, "The new name; null removes the name."},
+    {"mesh_patch", "name", "#shown_name?", OPTIONAL,
+     "The new name, at most 256 bytes of UTF-8; null removes the name."},
 
-    {"moment_patch", "name", "text?", OPTIONAL,
-     "The new name of the revision, at most 200 bytes of UTF-8, without control characters; null "
-     "takes the name away."},
+    {"moment_patch", "name", "#shown_name?", OPTIONAL,
+     "The new name of the revision, at most 200 bytes of UTF-8; null takes the name away."},
 
     {"presence_put", "client", "#client_id", REQUIRED,
      "An id that the client chooses for itself, at random: 1 to 40 letters, digits, '.', '_' and "
      "'-'."},
-    {"presence_put", "name", "text?", OPTIONAL,
-     "The name to show, at most 64 bytes of UTF-8, without control characters. If the request has "
-     "a token, the token's name is "
+    {"presence_put", "name", "#shown_name?", OPTIONAL,
+     "The name to show, at most 64 bytes of UTF-8. If the request has a token, the token's name is "
      "shown instead."},
     {"presence_put", "selection", "#shown_selection?", OPTIONAL,
      "The selected elements of one kind; null: none."},
@@ -641,7 +640,7 @@ const api_member api_request_members[] = {
      "The path and query of the GET that the ticket is for, exactly as in its URL."},
 
     {"copy", "id", "text", OPTIONAL, NULL},
-    {"copy", "name", "text", OPTIONAL, NULL},
+    {"copy", "name", "#shown_name", OPTIONAL, "At most 256 bytes of UTF-8."},
 
     {"step", "expected_revision", "count", OPTIONAL, NULL},
     {"step", "steps", "count", OPTIONAL, "How many edits to undo or redo. Default: 1."},

@@ -31,6 +31,11 @@ static const struct {
     {"fraction", "{\"type\":\"number\",\"minimum\":0,\"maximum\":1}"},
     {"material_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":1023,\"description\":"
                       "\"At most 1023 bytes of UTF-8 without control characters.\"}"},
+    {"shown_name",
+     "{\"type\":\"string\",\"pattern\":\"^[^\\\\u0000-\\\\u001F\\\\u007F-\\\\u009F"
+     "\\\\u202A-\\\\u202E\\\\u2066-\\\\u2069]*$\",\"description\":\"A name that people see: "
+     "without control characters, and without characters that change the direction "
+     "of the text after them.\"}"},
     {"mesh_id", "{\"type\":\"string\",\"pattern\":\"^[A-Za-z0-9._-]{1,64}$\"}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},

@@ -329,7 +329,7 @@ static bool end_document(upload *u)
     const api_in *rest = api_document_in_rest(u->document);
     api_in member;
     if (api_in_find(rest, "name", &member) && !api_in_is_null(&member) &&
-        !api_in_string(&member, ST_MESH_NAME, &u->name)) {
+        !api_in_seen_name(&member, ST_MESH_NAME, &u->name)) {
         return false;
     }
     if (!api_in_find(rest, "shape", &member)) {

@@ -2,6 +2,7 @@
 
 #include "api/json/json_scan.h"
 #include "api/json/known_names.h"
+#include "api/json/seen_text.h"
 #include "api/limits.h"
 #include "format/text/number.h"
 
@@ -567,39 +568,18 @@ bool api_in_string(const api_in *in, size_t max, const char **out)
     return true;
 }
 
-/* Returns the code point that begins at `at` in a text of UTF-8, if it is one that a name must not
- * have; otherwise 0. */
-static unsigned unseen_at(const unsigned char *at)
-{
-    if (at[0] < 0x20 || at[0] == 0x7f) {
-        return at[0];
-    }
-    if (at[0] == 0xc2 && at[1] < 0xa0) {
-        return at[1];
-    }
-    if (at[0] == 0xe2 && (at[1] == 0x80 || at[1] == 0x81)) {
-        const unsigned code = 0x2000 | (at[1] & 0x3fU) << 6 | (at[2] & 0x3fU);
-        const bool turns = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-        return turns ? code : 0;
-    }
-    return 0;
-}
-
 bool api_in_seen_name(const api_in *in, size_t max, const char **out)
 {
     const char *text = "";
     if (!api_in_string(in, max, &text)) {
         return false;
     }
-    for (const char *at = text; *at != '\0'; at++) {
-        const unsigned code = unseen_at((const unsigned char *)at);
-        if (code != 0) {
-            return api_in_fail(
-                in, HE_BAD_VALUE,
-                "a name cannot have the character U+%04X, which controls how text is "
-                "shown",
-                code);
-        }
+    const unsigned code = api_unseen_character(text);
+    if (code != 0) {
+        return api_in_fail(in, HE_BAD_VALUE,
+                           "a name cannot have the character U+%04X, which controls how text is "
+                           "shown",
+                           code);
     }
     *out = text;
     return true;

@@ -134,9 +134,8 @@ bool api_in_ids(const api_in *in, size_t min, api_arena *arena, uint32_t **ids, 
 bool api_in_vec3(const api_in *in, he_vec3 *out);
 /* Reads a string of at most `max` bytes, which the document owns. */
 bool api_in_string(const api_in *in, size_t max, const char **out);
-/* Reads a name that people see: a string of at most `max` bytes without control characters (U+0000
- * to U+001F, U+007F to U+009F) and without characters that change the direction of the text after
- * them (U+202A to U+202E, U+2066 to U+2069). */
+/* Reads a name that people see: a string of at most `max` bytes without the characters that
+ * api_unseen_character() finds. */
 bool api_in_seen_name(const api_in *in, size_t max, const char **out);
 /* Reads a string that must be one of `choices`, which ends in NULL; `out` gets its index. */
 bool api_in_choice(const api_in *in, const char *const *choices, int *out);

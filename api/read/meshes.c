@@ -20,7 +20,7 @@ void api_mesh_patch(api_exchange *x)
     }
     if (api_in_find(&x->root, "name", &member)) {
         name = "";
-        if (!api_in_is_null(&member) && !api_in_string(&member, ST_MESH_NAME, &name)) {
+        if (!api_in_is_null(&member) && !api_in_seen_name(&member, ST_MESH_NAME, &name)) {
             return;
         }
     }
@@ -99,7 +99,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
         }
     }
     return !api_in_find(&x->root, "name", &member) ||
-           api_in_string(&member, ST_MESH_NAME, &r->name);
+           api_in_seen_name(&member, ST_MESH_NAME, &r->name);
 }
 
 /* The progress (0 to 1) that is reached after copying the mesh; then the summary is computed. */

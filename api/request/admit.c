@@ -1,6 +1,7 @@
 #include "api/request/admit.h"
 
 #include "api/json/known_names.h"
+#include "api/json/seen_text.h"
 #include "api/request/content_encoding.h"
 #include "api/request/gate.h"
 #include "api/request/rating.h"
@@ -16,7 +17,11 @@ static bool refuse_parameter(api_exchange *x, const api_parameter *parameter, co
     if (parameter->type == API_PARAM_U64) {
         snprintf(taken, sizeof taken, "a whole number from %.0f to %.0f", parameter->min,
                  parameter->max);
-    } else if (parameter->type == API_PARAM_TEXT) {
+    } else if (parameter->type == API_PARAM_NAME && api_unseen_character(value) != 0) {
+        return api_fail(x, API_BAD_PARAMETER,
+                        "\"%s\" cannot have the character U+%04X, which controls how text is shown",
+                        parameter->name, api_unseen_character(value));
+    } else if (parameter->type == API_PARAM_TEXT || parameter->type == API_PARAM_NAME) {
         snprintf(taken, sizeof taken, "at most %.0f bytes", parameter->max);
     } else if (parameter->type == API_PARAM_NUMBER) {
         char least[HE_NUMBER_TEXT], most[HE_NUMBER_TEXT];
@@ -45,6 +50,9 @@ static bool check_parameter(api_exchange *x, const api_parameter *parameter, con
     switch (parameter->type) {
     case API_PARAM_TEXT:
         good = strlen(value) <= (size_t)parameter->max;
+        break;
+    case API_PARAM_NAME:
+        good = strlen(value) <= (size_t)parameter->max && api_unseen_character(value) == 0;
         break;
     case API_PARAM_FLAG:
         good = strcmp(value, "true") == 0 || strcmp(value, "false") == 0;

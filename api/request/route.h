@@ -31,6 +31,9 @@ typedef enum api_param_type {
     /* Text of at most `max` bytes (`max`, `min` and `choices` are members of the parameter's
      * description). */
     API_PARAM_TEXT,
+    /* A name that people see: text of at most `max` bytes without the characters that
+     * api_unseen_character() finds. */
+    API_PARAM_NAME,
     API_PARAM_FLAG,   /* true or false */
     API_PARAM_U64,    /* a whole number within min and max */
     API_PARAM_NUMBER, /* a finite number within min and max */
