@@ -100,7 +100,7 @@ const comparing = new Comparing(
     },
     {
         compare: (other) => editing.watch('compare', (work) => api.compare(session.mesh, other, work)),
-        meshes: async () => (await api.listMeshes()).items,
+        meshes: api.meshesToChoose,
         color: (other) => colourByDeviation(other, { colouring, editing, session }),
         onPlace: (face) => flyTo('face', face).catch(fail),
         onError: fail,

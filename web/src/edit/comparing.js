@@ -3,6 +3,7 @@
 
 import { make } from '../kit/dom.js';
 import { formatSize, onUnit } from '../kit/units.js';
+import { seenName } from '../wire/names.js';
 
 export class Comparing {
     #elements;
@@ -63,7 +64,7 @@ export class Comparing {
         const { other } = this.#elements;
         const chosen = other.value;
         const items = (await this.#callbacks.meshes()).filter(({ id }) => id !== this.#mesh);
-        const options = items.map(({ id, name }) => make('option', { value: id }, name || id));
+        const options = items.map(({ id, name }) => make('option', { value: id }, seenName(name || id)));
         other.replaceChildren(make('option', { value: '' }, 'which mesh'), ...options);
         other.value = items.some(({ id }) => id === chosen) ? chosen : '';
     }

@@ -9,6 +9,7 @@ import { byId, enable } from '../kit/dom.js';
 import { begin, drag } from './gesture.js';
 import { PLURALS } from '../geometry/kinds.js';
 import { slip } from '../kit/numbers.js';
+import { nameInText } from '../wire/names.js';
 import { Lasso } from '../stage/lasso.js';
 import { isIn, markOf, readAll } from '../open/selection.js';
 import { Tools } from './tools.js';
@@ -124,7 +125,7 @@ export class Editing {
                 },
                 onArm: (wanted) => this.#showPicking(wanted),
                 onDraw: () => this.#drawLasso(),
-                meshes: async () => (await api.listMeshes()).items,
+                meshes: api.meshesToChoose,
                 onError,
             },
         );
@@ -366,7 +367,7 @@ export class Editing {
         const kind = operation.elements ?? (isSized ? PLURALS[KINDS[listed]] : 'faces');
         const name = value === undefined ? into : `${into}=${value}`;
         const words = selectionOf(result);
-        this.#toasts.tell(operation.op, `The set \u201c${name}\u201d of ${kind} has ${words}.`);
+        this.#toasts.tell(operation.op, `The set \u201c${nameInText(name)}\u201d of ${kind} has ${words}.`);
         const ids = await api.getSet(this.#session.mesh, kind, into, value);
         const one = Object.entries(PLURALS).find(([, plural]) => plural === kind)[0];
         await this.#session.selection.selectAll(one, ids);

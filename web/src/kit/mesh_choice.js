@@ -3,6 +3,7 @@
 
 import { Numeral } from './controls.js';
 import { make } from './dom.js';
+import { seenName } from '../wire/names.js';
 
 // The value of the option for a revision; no mesh has such an id.
 const REVISION = ':revision';
@@ -29,7 +30,7 @@ export class MeshChoice {
         this.#showField();
         meshes.then((items) => {
             this.#select.append(
-                ...items.map((item) => make('option', { value: item.id }, item.name || item.id)),
+                ...items.map((item) => make('option', { value: item.id }, seenName(item.name || item.id))),
             );
         });
     }

@@ -6,6 +6,7 @@ import { Ask, field } from '../kit/ask.js';
 import { Text } from '../kit/controls.js';
 import { Deletions } from './deletions.js';
 import { Menu } from '../kit/menu.js';
+import { nameInText, storableName } from '../wire/names.js';
 
 export class MeshActs {
     #menu = new Menu();
@@ -65,7 +66,7 @@ export class MeshActs {
         const title = titleOf(mesh);
         this.#work.start(`Duplicating ${title}`, false);
         try {
-            const { id } = await api.copy(mesh.id, copyNameOf(title, this.#list.names), this.#work);
+            const { id } = await api.copy(mesh.id, copyNameOf(storableName(mesh.name || mesh.id), this.#list.names), this.#work);
             await this.#onChange();
             await this.#onOpen(id);
             this.#toasts.tell('Duplicated', `You are looking at the copy of ${title}.`);
@@ -75,9 +76,9 @@ export class MeshActs {
     }
 }
 
-// Returns the words by which a mesh is called: its name, or its id if it has none.
-export function titleOf({ id, name }) {
-    return name || id;
+// Returns the words by which a sentence calls a mesh: its name, or its id if it has none.
+function titleOf({ id, name }) {
+    return nameInText(name || id);
 }
 
 // Returns a name for the copy of a mesh that is none of `names`: "cube copy", then "cube copy 2".

@@ -6,6 +6,7 @@ import { Ask, field } from '../kit/ask.js';
 import { Choice } from '../kit/controls.js';
 import { formatCount, make } from '../kit/dom.js';
 import { fileNameOf, formatBytes, save } from '../kit/download.js';
+import { nameInText } from '../wire/names.js';
 import { parametersOf } from '../wire/schema.js';
 
 // By format: its name, what it is for, and the values of the other parameters that it has.
@@ -132,7 +133,7 @@ class Exporting {
         what.hidden = revisions.length === 1;
         const { name } = content.summary;
         this.#ask = new Ask(
-            { title: `Export ${name || content.mesh}`, go: 'Download', onGo: () => this.#download() },
+            { title: `Export ${nameInText(name || content.mesh)}`, go: 'Download', onGo: () => this.#download() },
             field('format', 'Format', this.#format, this.#doc),
             this.#more,
             what,

@@ -5,6 +5,7 @@ import * as api from '../wire/api.js';
 import { DEFECTS, defectsIn, defectsOf, sizesOf } from './defects.js';
 import { exportNow, formatOf, labelOf, preferFormat } from './exporting.js';
 import { formatCount } from '../kit/dom.js';
+import { nameInText } from '../wire/names.js';
 import { offerRepairs } from './offer.js';
 
 // The largest number of findings that a message lists.
@@ -35,7 +36,7 @@ export class Importing {
 
     // Opens the mesh that was made from a file, and says what is wrong with it.
     async done(summary, batch) {
-        const { name } = batch.file;
+        const name = nameInText(batch.file.name);
         const more = await this.#open(summary, batch.file);
         const [check, tag] = await Promise.all([api.check(summary.id), api.getTag(summary.id)]).catch(
             () => [null, null],
@@ -63,7 +64,7 @@ export class Importing {
         const menders = found.flatMap(({ mender }) => mender ?? []);
         const chosen = [...new Set([...menders, ...(hasHoles ? fillsOf(batch.file) : [])])];
         const words = {
-            title: `Repair ${batch.file.name}`,
+            title: `Repair ${nameInText(batch.file.name)}`,
             lead: 'The file was imported. A check of the mesh has found:',
             go: 'Use repaired mesh',
         };
@@ -76,7 +77,7 @@ export class Importing {
             );
             const end = isGone ? '' : ' The mesh without repairs was changed meanwhile and stays, too.';
             await this.#onOpen(repaired);
-            this.#tellRepaired(`Repaired ${batch.file.name}`, `${sizesOf(repaired)}.${end}`, {
+            this.#tellRepaired(`Repaired ${nameInText(batch.file.name)}`, `${sizesOf(repaired)}.${end}`, {
                 repaired,
                 file: batch.file,
                 more,
@@ -91,7 +92,7 @@ export class Importing {
             this.#toasts.show(error);
             return;
         }
-        const { name } = batch.file;
+        const name = nameInText(batch.file.name);
         const words = {
             title: `Repair ${name}`,
             lead: 'The file was refused, because a half-edge mesh cannot hold this:',

@@ -1,6 +1,8 @@
 // list.js - the list of meshes, in an order that the user chooses, and only those whose names
 // contain what the user types.
 
+import { MOST_LISTED } from '../wire/api.js';
+import { nameInText, seenName } from '../wire/names.js';
 import { formatAbout, keepFocusIn, make } from '../kit/dom.js';
 
 // A filter is applied when it has not changed for this many milliseconds.
@@ -12,6 +14,11 @@ const MANY = 5;
 // With a filter, a page of the server may be empty although there are more; at most so many pages
 // are read for one of the list.
 const MOST_PAGES = 50;
+
+// Number of meshes in a page of the list. The next page is read when the list is scrolled to less than
+// NEAR pixels from its end.
+const PAGE = 200;
+const NEAR = 400;
 
 export class MeshList {
     #list;
@@ -25,11 +32,13 @@ export class MeshList {
     #current = null;
     #cursor = null;
     #reading = 0;
+    #appending = null; // the cursor of the page that is being added
+    #stop = null; // the row that the Tab key reaches
     #leaving = new Set(); // ids of meshes that are about to be deleted
 
     // `find` contains the fields `filter` and `order`, and `none` is the element that says that
-    // there is no such mesh. `readPage({sort, contains, cursor})` reads a page of the list, {items,
-    // next}; `onOpen(id)` is called when the user chooses a mesh, `onMore(button, {id, name})` when
+    // there is no such mesh. `readPage({sort, contains, cursor, limit})` reads a page of the list,
+    // {items, next}; `onOpen(id)` is called when the user chooses a mesh, `onMore(button, {id, name})` when
     // the user wants the menu of its actions.
     constructor({ list, more, find, none }, { readPage, onOpen, onMore, onError }) {
         this.#list = list;
@@ -41,7 +50,10 @@ export class MeshList {
         this.#onMore = onMore;
         this.#onError = onError;
         more.addEventListener('click', () => this.#append().catch(onError));
-        const again = () => this.refresh().catch(onError);
+        list.addEventListener('scroll', () => this.#isNearEnd && this.#append().catch(onError));
+        list.addEventListener('keydown', (event) => this.#onKey(event));
+        list.addEventListener('focusin', (event) => this.#setStop(event.target.closest('li')));
+        const again = () => this.#show(PAGE).catch(onError);
         let timer = 0;
         find.filter.addEventListener('input', () => {
             clearTimeout(timer);
@@ -56,26 +68,31 @@ export class MeshList {
     }
 
     // Reads on until there are meshes to show, or no more pages.
-    async #read(cursor) {
+    async #read(cursor, limit = PAGE) {
         const contains = this.filter;
         const sort = this.#find.order.value;
-        let page = await this.#readPage({ sort, contains, cursor });
+        let page = await this.#readPage({ sort, contains, cursor, limit });
         for (let i = 1; page.items.length === 0 && page.next !== null && i < MOST_PAGES; i++) {
-            page = await this.#readPage({ sort, contains, cursor: page.next });
+            page = await this.#readPage({ sort, contains, cursor: page.next, limit });
         }
         return page;
     }
 
-    // Reads the list of meshes again. Returns the ids of its first page.
-    async refresh() {
+    // Reads the list of meshes again, as many as it shows now. Returns their ids.
+    refresh() {
+        return this.#show(Math.min(Math.max(this.#list.children.length, PAGE), MOST_LISTED));
+    }
+
+    async #show(limit) {
         const reading = ++this.#reading;
-        const { items, next } = await this.#read(null);
+        const { items, next } = await this.#read(null, limit);
         if (reading === this.#reading) {
             this.#keepFocus(() => {
                 this.#list.replaceChildren(...items.map((item) => this.#row(item)));
             });
             this.#bringIntoSight();
             this.#setNext(next);
+            this.#setStop(this.#currentRow ?? this.#list.firstElementChild);
             this.#showFound(items.length);
         }
         return items.map(({ id }) => id);
@@ -84,6 +101,50 @@ export class MeshList {
     // The names of the meshes in the list.
     get names() {
         return [...this.#list.querySelectorAll('.mesh-name')].map((name) => name.textContent);
+    }
+
+    // The row of the open mesh, or null.
+    get #currentRow() {
+        return this.#list.querySelector('li:has([aria-current])');
+    }
+
+    // Whether the list has more meshes and is scrolled almost to the end of those that it shows. On a
+    // narrow page it is a line that is scrolled sidewards.
+    get #isNearEnd() {
+        const { scrollLeft, scrollTop, clientWidth, clientHeight, scrollWidth, scrollHeight } = this.#list;
+        const isNear =
+            scrollTop + clientHeight > scrollHeight - NEAR && scrollLeft + clientWidth > scrollWidth - NEAR;
+        return isNear && !this.#more.hidden;
+    }
+
+    // --- keys ---
+
+    // The list is one stop of the Tab key, so that many meshes are not in the way. From there, the
+    // arrow keys, Home and End move through it.
+    #onKey(event) {
+        const row = event.target.closest('li');
+        const { firstElementChild: first, lastElementChild: last } = this.#list;
+        const next = {
+            ArrowDown: row?.nextElementSibling,
+            ArrowRight: row?.nextElementSibling,
+            ArrowUp: row?.previousElementSibling,
+            ArrowLeft: row?.previousElementSibling,
+            Home: first,
+            End: last,
+        }[event.key];
+        if (next instanceof Element) {
+            event.preventDefault();
+            next.querySelector(`.${event.target.classList[0]}`).focus();
+        }
+    }
+
+    // Makes a row, if there is one, the only one whose buttons the Tab key reaches.
+    #setStop(row) {
+        if (row !== null) {
+            this.#stop?.querySelectorAll('button').forEach((button) => (button.tabIndex = -1));
+            row.querySelectorAll('button').forEach((button) => (button.tabIndex = 0));
+            this.#stop = row;
+        }
     }
 
     #keepFocus(act) {
@@ -97,11 +158,12 @@ export class MeshList {
             this.#mark(row.firstElementChild);
         }
         this.#bringIntoSight();
+        this.#setStop(this.#currentRow);
     }
 
     // Scrolls the list, but not the page, so that the row of the open mesh is seen.
     #bringIntoSight() {
-        const row = this.#list.querySelector('li:has([aria-current])');
+        const row = this.#currentRow;
         if (row !== null) {
             const [list, box] = [this.#list, row].map((one) => one.getBoundingClientRect());
             const over = (from, to, least, most) => Math.min(from - least, 0) || Math.max(to - most, 0);
@@ -136,18 +198,31 @@ export class MeshList {
     update(summary) {
         for (const row of this.#list.children) {
             if (row.firstElementChild.dataset.mesh === summary.id) {
-                this.#keepFocus(() => row.replaceWith(this.#row(summary)));
+                const made = this.#row(summary);
+                this.#keepFocus(() => row.replaceWith(made));
+                if (row === this.#stop) {
+                    this.#setStop(made);
+                }
                 return;
             }
         }
     }
 
+    // Adds the next page, unless it is being read already.
     async #append() {
-        const reading = this.#reading;
-        const { items, next } = await this.#read(this.#cursor);
-        if (reading === this.#reading) {
-            this.#list.append(...items.map((item) => this.#row(item)));
-            this.#setNext(next);
+        const [reading, cursor] = [this.#reading, this.#cursor];
+        if (cursor === this.#appending) {
+            return;
+        }
+        this.#appending = cursor;
+        try {
+            const { items, next } = await this.#read(cursor);
+            if (reading === this.#reading) {
+                this.#list.append(...items.map((item) => this.#row(item)));
+                this.#setNext(next);
+            }
+        } finally {
+            this.#appending = null;
         }
     }
 
@@ -166,8 +241,8 @@ export class MeshList {
     #row({ id, name, counts }) {
         const button = make(
             'button',
-            { type: 'button', className: 'mesh', onclick: () => this.#onOpen(id) },
-            make('span', { className: 'mesh-name', dir: 'auto' }, name || id),
+            { type: 'button', className: 'mesh', tabIndex: -1, onclick: () => this.#onOpen(id) },
+            make('span', { className: 'mesh-name', dir: 'auto' }, seenName(name || id)),
             make(
                 'span',
                 { className: 'mesh-counts' },
@@ -181,7 +256,8 @@ export class MeshList {
             {
                 type: 'button',
                 className: 'more edits',
-                'aria-label': `Actions for ${name || id}`,
+                tabIndex: -1,
+                'aria-label': `Actions for ${nameInText(name || id)}`,
                 'aria-haspopup': 'menu',
                 'aria-expanded': 'false',
                 onclick: () => this.#onMore(more, { id, name }),

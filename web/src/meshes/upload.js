@@ -3,6 +3,7 @@
 
 import { Problem } from '../wire/api.js';
 import { batchesOf } from '../wire/batches.js';
+import { nameInText } from '../wire/names.js';
 import { fileOf } from './paste.js';
 
 export class Uploads {
@@ -105,11 +106,11 @@ export class Uploads {
 
     async #upload(batch) {
         const { file } = batch;
-        this.#work.start(`Uploading ${file.name}`, true);
+        this.#work.start(`Uploading ${nameInText(file.name)}`, true);
         try {
             const onProgress = (part) => {
                 if (part === 1) {
-                    this.#work.start(`Reading ${file.name}`, true);
+                    this.#work.start(`Reading ${nameInText(file.name)}`, true);
                 }
                 this.#work.show({ progress: part });
             };

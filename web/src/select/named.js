@@ -3,6 +3,7 @@
 
 import * as api from '../wire/api.js';
 import { make } from '../kit/dom.js';
+import { nameInText, seenName } from '../wire/names.js';
 
 const DOMAINS = { vertices: 'vertex', edges: 'edge', faces: 'face' };
 
@@ -84,7 +85,7 @@ export class NamedSets {
                 title: 'Select; with Shift: add to the selection',
                 onclick: (event) => onTake(set, event.shiftKey).catch(onError),
             },
-            make('span', { dir: 'auto' }, name),
+            make('span', { dir: 'auto' }, seenName(name)),
             make('span', { className: 'small' }, domain),
         );
         const remove = make(
@@ -92,7 +93,7 @@ export class NamedSets {
             {
                 type: 'button',
                 className: 'quiet edits',
-                'aria-label': `Delete the set ${name} of ${domain}`,
+                'aria-label': `Delete the set ${nameInText(name)} of ${domain}`,
                 onclick: () => onDelete(set).catch(onError),
             },
             '\u00d7',

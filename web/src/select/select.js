@@ -7,6 +7,7 @@ import { allOf, noneOf, sizeOf } from '../geometry/sets.js';
 import { inside, polygonMask } from '../geometry/region.js';
 import { Lasso } from '../stage/lasso.js';
 import { formatSize, onUnit } from '../kit/units.js';
+import { nameInText } from '../wire/names.js';
 import { Crowd } from '../open/crowd.js';
 import { PLURALS, SINGULARS } from '../geometry/kinds.js';
 import { Brush, Stroke } from './paint.js';
@@ -323,7 +324,7 @@ export class Select {
         const answer = await this.#session.saveSet({ domain, name }, await selection.ids());
         if (answer !== null) {
             const what = formatNumberOf(count, selection.kind ?? 'element', domain);
-            this.#acts.onTell('Set saved', `\u201c${name}\u201d has ${what}.`);
+            this.#acts.onTell('Set saved', `\u201c${nameInText(name)}\u201d has ${what}.`);
         }
     }
 

@@ -2,6 +2,7 @@
 // with the connection.
 
 import { byId, enable } from '../kit/dom.js';
+import { nameInText, seenName } from '../wire/names.js';
 
 const SPLIT_TITLES = {
     edge_split: 'Split the edge and the faces beside it',
@@ -16,11 +17,11 @@ const CONNECTIONS = {
 
 export function showName({ mesh, summary }) {
     const name = summary.name || mesh;
-    byId('mesh-title').textContent = name;
-    document.title = `${name} \u2013 hedge`;
+    byId('mesh-title').textContent = seenName(name);
+    document.title = `${nameInText(name)} \u2013 hedge`;
     byId('canvas').setAttribute(
         'aria-label',
-        `3D view of ${name}. Drag to orbit, click to pick, press ? for keys.`,
+        `3D view of ${nameInText(name)}. Drag to orbit, click to pick, press ? for keys.`,
     );
 }
 

@@ -10,6 +10,7 @@ import { changedFaces, placementOf, shapeOfFaces } from '../geometry/changed.js'
 import { COLORS } from '../gl/colors.js';
 import { formatNumberOf } from '../kit/dom.js';
 import { wordsOfTime } from '../kit/when.js';
+import { nameInText } from '../wire/names.js';
 import { onTheme, theme } from '../look/theme.js';
 import { Wiper } from './wiper.js';
 
@@ -192,7 +193,7 @@ export class Time {
         if (entry === undefined) {
             return '';
         }
-        const name = entry.name === undefined ? '' : `\u201c${entry.name}\u201d, `;
+        const name = entry.name === undefined ? '' : `\u201c${nameInText(entry.name)}\u201d, `;
         return ` It is ${name}from ${wordsOfTime(new Date(entry.time), new Date())}.`;
     }
 }

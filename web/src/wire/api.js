@@ -4,6 +4,7 @@
 import { API_PLURALS } from '../geometry/kinds.js';
 import { EventReader } from './events.js';
 import { HEADER_BYTES, headerOf } from '../geometry/geometry.js';
+import { storableName } from './names.js';
 import { renewToken, token } from './token.js';
 
 // Number of edits in one page of a mesh's history.
@@ -189,12 +190,20 @@ function queryOf(values) {
         .join('&');
 }
 
-// Returns one page of the list of meshes: {items, next}; `next` is the cursor of the next page, or
-// null. `sort` is 'name', 'modified' (the newest first) or 'bytes' (the largest first); only meshes
+// The most meshes in one page of the list, as the server allows.
+export const MOST_LISTED = 10000;
+
+// Returns one page of the list of meshes, of at most `limit`: {items, next}; `next` is the cursor of
+// the next page, or null. `sort` is 'name', 'modified' (the newest first) or 'bytes' (the largest first); only meshes
 // whose names contain the text `contains` are listed, unless it is ''.
-export function listMeshes({ sort, contains = '', cursor = null } = {}) {
-    const values = { limit: 200, sort, contains: contains || undefined, cursor: cursor ?? undefined };
+export function listMeshes({ sort, contains = '', cursor = null, limit = 200 } = {}) {
+    const values = { limit, sort, contains: contains || undefined, cursor: cursor ?? undefined };
     return getJson(`v1/meshes?${queryOf(values)}`);
+}
+
+// Returns the meshes among which the user can choose one, in the order of their names.
+export async function meshesToChoose() {
+    return (await listMeshes({ sort: 'name', limit: MOST_LISTED })).items;
 }
 
 // Changes the name of a mesh; null removes it.
@@ -737,7 +746,7 @@ function formOf(files) {
 // reject the promise, so that upload() can ask the user for a token.
 function send({ file, beside }, onProgress, work, choices, bearer) {
     const dot = file.name.lastIndexOf('.');
-    const name = dot > 0 ? file.name.slice(0, dot) : file.name;
+    const name = storableName(dot > 0 ? file.name.slice(0, dot) : file.name);
     const type = MEDIA_TYPES[file.name.slice(dot + 1).toLowerCase()];
     return new Promise((resolve, reject) => {
         const sender = new XMLHttpRequest();
