@@ -71,7 +71,7 @@ static void names_of_meshes_are_text_that_can_be_seen(void **state)
 static void a_stored_mesh_keeps_a_name_that_would_be_refused(void **state)
 {
     (void)state;
-    static const char *const name = "old\x07\xe2\x80\xae";
+    static const char *const name = "old\x07\xe2\x80\xaegpj\xe2\x80\xac";
     kept_journal *journal = kept_journal_new();
     st_journal kept = kept_journal_open(journal);
     api_bench *b = bench_new_over(&kept);
