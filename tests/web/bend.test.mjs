@@ -199,7 +199,7 @@ async function beginDrag({ daemon, mesh, page }, by) {
     await waitForFrame(page, { selection: `vertex:${MIDDLE}` });
     await page.locator('#canvas').focus();
     await press(page, 'g');
-    await page.getByLabel('Bend what is around').check();
+    await page.getByLabel('Bend the surface around it').check();
     const box = await page.locator('#canvas').boundingBox();
     const [x, y] = [box.x + START[0], box.y + START[1]];
     await page.mouse.move(x, y);
@@ -321,7 +321,7 @@ test('the slider says how far the bending reaches, up to all', async (t) => {
     await page.mouse.up();
     const near = asked.at(-1);
     await press(page, 'g');
-    const slider = page.getByLabel('How far');
+    const slider = page.locator('#bend-radius');
     await slider.waitFor();
     await slider.focus();
     await page.keyboard.press('End');

@@ -412,7 +412,7 @@ test('vertices, corners and edges have colours, too, and what is missing is grey
     await colorBy(page, 'measure/vertices/normal', 4);
     const up = await at(face.vertices);
     assert.ok(Math.abs(up[0] - 128) <= 1 && Math.abs(up[1] - 128) <= 1 && up[2] === 255, `${up}`);
-    await page.getByLabel('What of the vector').selectOption('2');
+    await page.getByLabel('Part of the vector').selectOption('2');
     assert.equal(await page.getByLabel('Lowest value').inputValue(), '1');
     await checkAccessible(page, 'a part of a vector');
 });

@@ -209,7 +209,7 @@ test('what lies in one place is welded, and faces that intersect are found on re
     await check(page);
     await said(page, /^2 defects, 4 boundary loops, 4 components\.$/);
     assert.equal(await group(page, 'self_intersection').count(), 0);
-    await page.getByRole('checkbox', { name: 'Faces that intersect, too' }).check();
+    await page.getByRole('checkbox', { name: 'Also find faces that intersect' }).check();
     await said(page, /^3 defects/);
     assert.deepEqual(await texts(page, 'self_intersection'), ['Faces 2 and 3 meet.']);
     await findings(page, 'self_intersection').first().click();

@@ -293,7 +293,7 @@ test('the look is remembered, and a button goes back to the plain one', async (t
     // a section belongs to one mesh, so it is not remembered
     assert.deepEqual(await lookOf(page), { ...state, section: null });
     await openView(page);
-    await page.getByRole('button', { name: 'Back to the plain look' }).click();
+    await page.getByRole('button', { name: 'Reset the view settings' }).click();
     const plain = await draw(page);
     assert.equal(plain.countOf(isClay), 0);
     assert.ok(plain.countOf(isSurface) > 20000);

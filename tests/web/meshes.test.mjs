@@ -176,7 +176,7 @@ test('a deletion is undone from the toast or the menu, by keyboard too', async (
     await page.clock.runFor(60000);
     await act(page, rowMenu(page, 'cube'), 'Delete');
     await undo(page).waitFor();
-    await act(page, rowMenu(page, 'cube'), 'Keep after all');
+    await act(page, rowMenu(page, 'cube'), 'Do not delete');
     await undo(page).waitFor({ state: 'detached' });
     await page.clock.runFor(60000);
     assert.equal(deletes.length, 0);

@@ -1,9 +1,8 @@
-// words.js - explains words of the field where they stand: a word becomes a button that shows what it
-// means.
+// words.js - explains technical terms: each term in the panels is a button that shows its meaning.
 
 import { make } from './dom.js';
 
-// Pixels between a word and its explanation, and between that and the edge of the window.
+// The distance in pixels that an explanation keeps from its term and from the edge of the window.
 const GAP = 6;
 
 const WORDS = {
@@ -26,9 +25,9 @@ const WORDS = {
     centroid: 'The mean position of the surface of the face.',
 };
 
-let shown = null; // the explanation that is open
+let shown = null; // the box of the explanation that is open, or of the last one
 
-// Returns a node for a word: a button if the word is explained here, else its text.
+// Returns a node for a word: a button if WORDS explains it, else a text.
 export function explained(word) {
     const meaning = WORDS[word];
     if (meaning === undefined) {
@@ -51,7 +50,7 @@ function show(button, meaning) {
             box.remove();
         }
     });
-    // After the word, so that who reads on comes to it.
+    // The explanation follows the term in the document, so that a screen reader reads it next.
     button.after(box);
     box.showPopover();
     const { left, top, bottom } = button.getBoundingClientRect();

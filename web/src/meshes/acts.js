@@ -36,7 +36,7 @@ export class MeshActs {
             { label: 'Rename', run: run(() => this.#rename(mesh)) },
             { label: 'Duplicate', run: run(() => this.#duplicate(mesh)) },
             this.#deletions.isWaiting(mesh.id)
-                ? { label: 'Keep after all', run: run(async () => this.#deletions.undo(mesh.id)) }
+                ? { label: 'Do not delete', run: run(async () => this.#deletions.undo(mesh.id)) }
                 : {
                       label: 'Delete',
                       isGrave: true,

@@ -3,7 +3,7 @@
 
 import { make } from '../kit/dom.js';
 
-// Each row is [the keys as the list shows them, the key in the notation of listenToKeys(),
+// Each row is [the keys as the list shows them, with spaces between; the key in the notation of listenToKeys(),
 // description, name of the function in `acts`]. A row without a function only informs.
 const KEYS = [
     ['1', '1', 'Pick vertices', 'pickVertex'],
@@ -16,7 +16,7 @@ const KEYS = [
     ['F', 'f', 'Show the selection, or the whole mesh', 'frame'],
     ['+', '+', 'Zoom in', 'zoomIn'],
     ['-', '-', 'Zoom out', 'zoomOut'],
-    ['V', 'v', 'Open or close the panel of the view', 'view'],
+    ['V', 'v', 'Open or close the View panel (shading, section, theme, grid, units)', 'view'],
     ['Z', 'z', 'Draw the mesh solid, as X-ray, as wires or as points', 'nextWay'],
     ['B', 'b', 'Select by drawing a box', 'box'],
     ['L', 'l', 'Select by drawing a lasso', 'lasso'],
@@ -25,17 +25,17 @@ const KEYS = [
     ['Y', 'y', 'Invert the selection', 'invert'],
     [']', ']', 'Grow the selection', 'grow'],
     ['[', '[', 'Shrink the selection', 'shrink'],
-    ['K', 'k', 'Select what is connected with the selection', 'connected'],
-    ['O', 'o', 'Select the edge loop. With the mouse: Alt and click', 'loop'],
-    ['R', 'r', 'Select the edge ring. With the mouse: Ctrl, Alt and click', 'ring'],
+    ['K', 'k', 'Select everything connected to the selection', 'connected'],
+    ['O', 'o', 'Select the edge loop. With the mouse: Alt+click', 'loop'],
+    ['R', 'r', 'Select the edge ring. With the mouse: Ctrl+Alt+click', 'ring'],
     ['G', 'g', 'Move the selection by dragging', 'move'],
     ['E', 'e', 'Extrude faces or boundary edges by dragging', 'extrude'],
     ['I', 'i', 'Inset faces by dragging', 'inset'],
     ['W', 'w', 'Show handles that move, rotate and scale', 'gizmo'],
-    ['0-9', null, 'While a tool is selected: type the exact amount', null],
-    ['S', 's', 'Split an edge, a face, or the face between two vertices', 'split'],
-    ['X', 'x', 'Collapse an edge, delete a face or a vertex', 'remove'],
-    ['M', 'm', 'Measure: start or end', 'measure'],
+    ['0 to 9', null, 'While you move, extrude or inset: type the exact amount, then press Enter', null],
+    ['S', 's', 'Split the selected edge or face, or the face between two selected vertices', 'split'],
+    ['X', 'x', 'Delete the selected face or vertex, or collapse the selected edge', 'remove'],
+    ['M', 'm', 'Start or stop measuring', 'measure'],
     ['C', 'c', 'Check the mesh: list defects, holes and components', 'check'],
     ['Ctrl Z', 'ctrl+z', 'Undo', 'undo'],
     ['Ctrl Shift Z', 'ctrl+shift+z', 'Redo', 'redo'],
@@ -64,7 +64,7 @@ export function listenToKeys(canvas, acts) {
 
 export function keyList() {
     return KEYS.flatMap(([keys, , text]) => [
-        make('dt', {}, ...keys.split(' ').map((key) => make('kbd', {}, key))),
+        make('dt', {}, ...keys.split(' ').map((key) => (key === 'to' ? ' to ' : make('kbd', {}, key)))),
         make('dd', {}, text),
     ]);
 }
