@@ -34,19 +34,19 @@ export class Corners {
         this.#vertices = vertices.ids;
         this.#halfedges = halfedges.ids;
         this.#places = new Uint32Array(count === 0 ? 0 : faces[count - 1] + 1);
-        faces.forEach((face, i) => {
-            this.#places[face] = i + 1;
-        });
+        for (let i = 0; i < count; i++) {
+            this.#places[faces[i]] = i + 1;
+        }
         this.edges = edgesOf(halfedges.ids);
     }
 
     // The ids of all half-edges in ascending order: those of edge e are 2e and 2e + 1.
     get halfedges() {
         const all = new Uint32Array(2 * this.edges.length);
-        this.edges.forEach((edge, i) => {
-            all[2 * i] = 2 * edge;
-            all[2 * i + 1] = 2 * edge + 1;
-        });
+        for (let i = 0; i < this.edges.length; i++) {
+            all[2 * i] = 2 * this.edges[i];
+            all[2 * i + 1] = 2 * this.edges[i] + 1;
+        }
         return all;
     }
 
@@ -129,30 +129,40 @@ export class Corners {
 
 // Returns the edges of some half-edges in ascending order, each once.
 function edgesOf(halfedges) {
-    const most = halfedges.reduce((last, halfedge) => Math.max(last, halfedge >>> 1), -1);
-    const isThere = new Uint8Array(most + 1);
-    for (const halfedge of halfedges) {
-        isThere[halfedge >>> 1] = 1;
+    let most = -1;
+    for (let i = 0; i < halfedges.length; i++) {
+        most = Math.max(most, halfedges[i] >>> 1);
     }
-    const edges = new Uint32Array(isThere.reduce((sum, one) => sum + one, 0));
-    let at = 0;
-    isThere.forEach((one, edge) => {
-        if (one === 1) {
-            edges[at++] = edge;
+    const isThere = new Uint8Array(most + 1);
+    for (let i = 0; i < halfedges.length; i++) {
+        isThere[halfedges[i] >>> 1] = 1;
+    }
+    return markedIn(isThere);
+}
+
+// Returns the indices of the entries that are 1, in ascending order. Loops over all elements of a large
+// mesh, here and above, call no function for each one: that would take several times as long.
+function markedIn(isThere) {
+    let count = 0;
+    for (let id = 0; id < isThere.length; id++) {
+        count += isThere[id];
+    }
+    const ids = new Uint32Array(count);
+    for (let id = 0, at = 0; at < count; id++) {
+        if (isThere[id] === 1) {
+            ids[at++] = id;
         }
-    });
-    return edges;
+    }
+    return ids;
 }
 
 // Returns the ids of all vertices of the arrays in ascending order.
 export function verticesOf({ vertices, vertexCount }) {
-    const ids = [];
+    const isThere = new Uint8Array(vertexCount);
     for (let id = 0; id < vertexCount; id++) {
-        if (vertices[4 * id + 3] !== 0) {
-            ids.push(id);
-        }
+        isThere[id] = vertices[4 * id + 3] !== 0 ? 1 : 0;
     }
-    return Uint32Array.from(ids);
+    return markedIn(isThere);
 }
 
 // Returns the ids of all faces of the arrays in ascending order.
@@ -168,11 +178,5 @@ export function facesOf({ triangles, triangleCount }) {
             isThere[faceOf(triangles, i)] = 1;
         }
     }
-    const ids = [];
-    for (let face = 0; face <= most; face++) {
-        if (isThere[face] === 1) {
-            ids.push(face);
-        }
-    }
-    return Uint32Array.from(ids);
+    return markedIn(isThere);
 }
