@@ -4,11 +4,10 @@
 
 import { slip } from '../kit/numbers.js';
 import { Chooser } from './chooser.js';
-import { Flag, SELECTION } from '../kit/controls.js';
-import { enable, formatCount, make, prose } from '../kit/dom.js';
+import { SELECTION } from '../kit/controls.js';
+import { enable, make, prose } from '../kit/dom.js';
 import {
     KINDS,
-    controlFor,
     isAbout,
     isList,
     isOpen,
@@ -20,50 +19,8 @@ import {
     roomFor,
     wantOf,
 } from './fields.js';
-
-// By kind of element: the function that returns the ids of the elements of this kind to which a
-// selected element of another kind refers.
-const LINKS = {
-    vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
-    edge: (element) => (element.edge === undefined ? [] : [element.edge]),
-    face: (element) => (typeof element.face === 'number' ? [element.face] : []),
-    halfedge: (element) => element.halfedges?.slice(0, 1) ?? [],
-};
-
-// Returns the boundary half-edge that a selected element means, or null: its own, that of its edge, or
-// the only one beside it. `near` are the half-edges around the element, see around.js.
-function boundaryOf({ kind, id, element }, near) {
-    if (kind === 'vertex') {
-        return element.boundary ? element.halfedge : null;
-    }
-    if (kind === 'edge') {
-        const side = element.faces.indexOf(null);
-        return side < 0 ? null : element.halfedges[side];
-    }
-    if (kind === 'halfedge') {
-        const isInner = near.some((one) => one.id === id && one.across === null);
-        return element.boundary ? id : isInner ? element.twin : null;
-    }
-    const beside = near.filter(({ face }) => face === null);
-    return beside.length === 1 ? beside[0].id : null;
-}
-
-// The kinds of parameters that a selected element fills, and its name for one and for several.
-const TAKEN = {
-    vertex: { kinds: ['vertex'], names: ['vertex', 'vertices'] },
-    edge: { kinds: ['edge'], names: ['edge', 'edges'] },
-    face: { kinds: ['face'], names: ['face', 'faces'] },
-    halfedge: { kinds: ['halfedge', 'edge'], names: ['half-edge', 'half-edges'] },
-};
-
-// Returns a link to the page of an operation in the manual, which opens beside the mesh.
-function pageOf(operation) {
-    if (operation === undefined) {
-        return [];
-    }
-    const page = { href: operation.docs.slice(1), target: '_blank', rel: 'noopener' };
-    return [make('a', page, 'Drawing and example', make('span', { className: 'unseen' }, ' (in a new tab)'))];
-}
+import { Offered } from './offered.js';
+import { fieldsOf, pageOf } from './rows.js';
 
 export class Tools {
     #chooser;
@@ -76,13 +33,10 @@ export class Tools {
     #onDraw;
     #meshes;
     #armed = null; // {param, control, button} of the field that waits for a click
-    #selection = [];
-    #crowd = null;
-    #around = []; // half-edges around the element selected last
+    #offered = new Offered();
     #isEnabled = true;
     #isChosen = false; // the user chose an operation, so that it stays when the selection changes
-    // name of the parameter -> {param, control, row, or, marks, isTaken}; `or` is the line above the
-    // row of an alternative, and `marks` the note in the row
+    // name of the parameter -> its field, see rows.js
     #fields = new Map();
 
     // `onRun(operation)` runs the operation of the form and shows errors. `onTouch(operation,
@@ -141,13 +95,13 @@ export class Tools {
 
     // Fills the form with the selected elements, a Selection. If the last call had the same elements,
     // the text that the user has typed into the form stays.
-    setSelection({ chosen, crowd, around }) {
-        const isSame = keyOf(chosen) === keyOf(this.#selection) && crowd === this.#crowd;
-        [this.#selection, this.#crowd, this.#around] = [chosen, crowd, around?.halfedges ?? []];
-        if (isSame) {
+    setSelection(selection) {
+        const before = this.#offered;
+        this.#offered = new Offered(selection);
+        if (this.#offered.isSame(before)) {
             return;
         }
-        this.#chooser.setFilter(this.#filter());
+        this.#chooser.setFilter(this.#offered.filter);
         const fitting = this.#fitting();
         if (!this.#isChosen && fitting !== undefined && !this.#fits(this.#chooser.operation)) {
             this.#chooser.set(fitting.name);
@@ -156,29 +110,6 @@ export class Tools {
             this.#fill();
             this.#touch();
         }
-    }
-
-    // Returns which operations take all selected elements, see Chooser.setFilter(); null if nothing
-    // is selected.
-    #filter() {
-        const count = this.#count;
-        if (count === 0) {
-            return null;
-        }
-        const { kinds, names } = TAKEN[this.#kind];
-        return {
-            title: count === 1 ? `For the selected ${names[0]}` : `For ${formatCount(count)} ${names[1]}`,
-            takes: (operation) => roomFor(operation, kinds) >= count,
-        };
-    }
-
-    // The kind and the number of the selected elements.
-    get #kind() {
-        return this.#crowd?.kind ?? this.#selection.at(-1)?.kind;
-    }
-
-    get #count() {
-        return this.#crowd?.count ?? this.#selection.length;
     }
 
     // --- clicks ---
@@ -348,13 +279,13 @@ export class Tools {
 
     // Returns whether the first parameter of an operation takes elements of the selected kind.
     #fits({ params } = { params: [] }) {
-        return params.length > 0 && params[0].type === this.#kind;
+        return params.length > 0 && params[0].type === this.#offered.kind;
     }
 
     // Returns the operation whose form is shown when the user has chosen none: one that takes all
     // selected elements, else one that takes some of them, or undefined.
     #fitting() {
-        const [kind, count] = [this.#kind, this.#count];
+        const { kind, count } = this.#offered;
         const some = this.#chooser.all.filter((one) => this.#fits(one) && !isDeletion(one));
         return some.find((one) => roomFor(one, [kind]) >= count) ?? some[0];
     }
@@ -369,13 +300,12 @@ export class Tools {
     // Returns the request for an operation on all selected elements, or only on the one selected
     // last if the operation takes one element; null if the operation cannot take the selection.
     operationOn(name) {
-        const [kind, last] = [this.#kind, this.#selection.at(-1)];
+        const { kind, last, crowd, ids } = this.#offered;
         const row = this.#chooser.find(name);
         const { plural } = row?.params.find(({ type }) => type === kind) ?? {};
-        if (this.#crowd !== null) {
+        if (crowd !== null) {
             return plural === undefined ? null : { op: name, [plural]: SELECTION };
         }
-        const ids = this.#selection.map((chosen) => chosen.id);
         return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: last.id };
     }
 
@@ -434,13 +364,15 @@ export class Tools {
         const { operation } = this.#chooser;
         this.disarm();
         this.#fields.clear();
-        const params = operation?.params ?? [];
-        const rows = params.flatMap((param, i) =>
-            this.#rows(param, isOtherOf(params.slice(0, i), param)),
-        );
+        const fields = fieldsOf(operation?.params ?? [], {
+            meshes: this.#meshes,
+            onArm: (armed) => this.#arm(this.#armed === armed ? null : armed),
+            onDraw: this.#onDraw,
+        });
+        fields.forEach((field) => this.#fields.set(field.param.name, field));
         this.#form.replaceChildren(
             make('p', { className: 'small' }, ...prose(operation?.doc ?? ''), ' ', ...pageOf(operation)),
-            ...rows,
+            ...fields.flatMap(({ or, row }) => (or === null ? [row] : [or, row])),
             this.#verdict,
             make(
                 'button',
@@ -454,79 +386,14 @@ export class Tools {
         this.#touch();
     }
 
-    // Returns the rows of a parameter in the form; `isOther` says that the parameter is an
-    // alternative to the parameter before it.
-    #rows(param, isOther) {
-        const { name, doc } = param;
-        const id = `param-${name}`;
-        const pickable = (part, control) => this.#pickable(part, control);
-        const control = controlFor(param, this.#meshes, pickable);
-        const marks = make('span', { className: 'small' });
-        const or = isOther ? make('p', { className: 'or' }, 'or') : null;
-        const field = { param, control, row: null, or, marks, isTaken: false };
-        this.#fields.set(name, field);
-        // If a control consists of several inputs, they form a group and the first has the id.
-        const isGroup = control.main !== control.node;
-        const help = make('p', { id: `${id}-doc`, className: 'small' }, ...prose(doc));
-        control.main.id = id;
-        control.main.setAttribute('aria-describedby', help.id);
-        const label = isGroup
-            ? make('span', { id: `${id}-name`, className: 'name' }, name)
-            : make('label', { htmlFor: id, className: 'name' }, name);
-        const head = make('div', { className: 'head' }, label, marks);
-        const box = kindOf(param) === null ? this.#drawable(param, control) : pickable(param, control);
-        const className = control instanceof Flag ? 'field flag' : 'field';
-        field.row = make('div', { className }, head, box, help);
-        field.row.dataset.name = name;
-        if (isGroup) {
-            field.row.setAttribute('role', 'group');
-            field.row.setAttribute('aria-labelledby', label.id);
-        }
-        return isOther ? [or, field.row] : [field.row];
-    }
-
-    // Returns the node of a control; that of a polygon with a button, after which the user draws the
-    // polygon in the view.
-    #drawable({ name, type }, control) {
-        if (type !== 'polygon') {
-            return control.node;
-        }
-        const button = make(
-            'button',
-            {
-                type: 'button',
-                'aria-label': `Draw ${name} in the view`,
-                onclick: () => this.#onDraw(),
-            },
-            'Draw',
-        );
-        return make('div', { className: 'drawn' }, control.node, button);
-    }
-
-    // Returns an element with a control and a button: after a click on the button, a click in the
-    // view fills the control.
-    #pickable(param, control) {
-        const armed = { param, control };
-        armed.button = make(
-            'button',
-            {
-                type: 'button',
-                'aria-label': `Pick ${param.name} in the view`,
-                'aria-pressed': 'false',
-                onclick: () => this.#arm(this.#armed === armed ? null : armed),
-            },
-            'Pick',
-        );
-        return make('div', { className: 'picked' }, control.node, armed.button);
-    }
-
     // Fills each field with selected elements of the kind that its parameter takes, in the order of
     // selection; an element goes into one field only. A Crowd goes into the first field that takes
     // sets of its kind. Of several alternative parameters only the
     // first that fits is filled. Fields that the user filled by clicks stay as they are; if
     // `isEmptyOnly` is true, all fields that are not empty do.
     #fill(isEmptyOnly = false) {
-        const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
+        const isAtBoundary = this.#chooser.operation?.refusals.includes('not_boundary') ?? false;
+        const left = new Map(KINDS.map((kind) => [kind, this.#offered.idsOf(kind, isAtBoundary)]));
         const fields = this.#open;
         let isNamed = false; // a field names the selection
         const isKept = ({ control, isTaken }) => isTaken || (isEmptyOnly && control.isSaid);
@@ -538,7 +405,7 @@ export class Tools {
             if (kind === null || isPlace(param) || isKept(field)) {
                 continue;
             }
-            if (kind === this.#crowd?.kind && isList(param) && param.set && !isNamed) {
+            if (kind === this.#offered.crowd?.kind && isList(param) && param.set && !isNamed) {
                 control.setSelection();
                 isNamed = true;
                 groups.add(param.group);
@@ -554,25 +421,6 @@ export class Tools {
         }
     }
 
-    // Whether the operation takes only half-edges of the boundary.
-    get #isAtBoundary() {
-        return this.#chooser.operation?.refusals.includes('not_boundary') ?? false;
-    }
-
-    #ids(kind) {
-        if (kind === 'halfedge' && this.#isAtBoundary) {
-            const ids = this.#selection.map((chosen) => boundaryOf(chosen, this.#around));
-            const found = ids.filter((id) => id !== null);
-            if (found.length > 0) {
-                return [...new Set(found)];
-            }
-        }
-        const direct = this.#selection.filter((chosen) => chosen.kind === kind);
-        return direct.length > 0
-            ? direct.map(({ id }) => id)
-            : [...new Set(this.#selection.flatMap(({ element }) => LINKS[kind](element)))];
-    }
-
     #read() {
         const operation = { op: this.#chooser.operation.name };
         for (const field of this.#open) {
@@ -585,17 +433,8 @@ export class Tools {
     }
 }
 
-function keyOf(selection) {
-    return selection.map(({ kind, id }) => `${kind}:${id}`).join();
-}
-
 // Returns whether an operation deletes elements; the page never selects such an operation by
 // itself.
 function isDeletion({ name }) {
     return name.endsWith('_delete');
-}
-
-// Returns whether a parameter is an alternative to one of the parameters before it.
-function isOtherOf(before, { group }) {
-    return group !== undefined && before.some((other) => other.group === group);
 }
