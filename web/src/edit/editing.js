@@ -3,18 +3,16 @@
 
 import * as api from '../wire/api.js';
 import { Bend } from '../bend/bend.js';
-import { SELECTION } from '../kit/controls.js';
 import { Direct } from './direct.js';
 import { byId, enable } from '../kit/dom.js';
 import { begin, drag } from './gesture.js';
 import { PLURALS } from '../geometry/kinds.js';
-import { slip } from '../kit/numbers.js';
-import { nameInText } from '../wire/names.js';
 import { Lasso } from '../stage/lasso.js';
 import { isIn, markOf, readAll } from '../open/selection.js';
 import { Tools } from './tools.js';
-import { doneOf } from './results.js';
-import { Trial, madeOf, patchesOf, selectionOf, wordsOf } from './trial.js';
+import { expanded, namesSelection } from './expand.js';
+import { Outcomes } from './outcomes.js';
+import { Trial, madeOf, wordsOf } from './trial.js';
 import { clipMatrixOf } from '../geometry/view.js';
 import { Work } from '../kit/work.js';
 
@@ -24,12 +22,8 @@ const MOST_TRIED = 100000;
 // If a form's fields contain more elements than this, the view does not mark them.
 const MOST_MARKED = 1000;
 
-// If more elements are selected than MOST_TRIED_IDS, an operation on them gets no dry run. If there
-// are more than MOST_SENT, their ids are not sent: they become a set named SENT, which the operation
-// takes. The page keeps this name to itself, so that no set of the user is replaced.
+// If more elements are selected than this, an operation on them gets no dry run.
 const MOST_TRIED_IDS = 20000;
-const MOST_SENT = 500000;
-const SENT = 'hedge_page_selection';
 
 // The operation whose form is shown if a tool of the view cannot work on the selected elements, by
 // the name of the tool.
@@ -45,14 +39,6 @@ const AMOUNTS = {
 
 // The words for one element that the user has to click, by kind.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
-
-// The kinds of elements by the names of parameters that take one element or a list.
-const KINDS = Object.fromEntries(
-    Object.entries(PLURALS).flatMap(([one, many]) => [
-        [one, one],
-        [many, one],
-    ]),
-);
 
 // The operation that the X key runs, by the kind of the selected element.
 const REMOVALS = {
@@ -73,7 +59,7 @@ export class Editing {
     #trial;
     #work;
     #onPicking;
-    #nextAfter;
+    #outcomes;
     #isEnabled = false;
     #marking = 0; // number of the last request for the elements that the form's fields name
 
@@ -85,7 +71,10 @@ export class Editing {
     constructor(canvas, session, stage, toasts, { onPicking, onKnown, nextAfter }) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
         this.#onPicking = onPicking;
-        this.#nextAfter = nextAfter;
+        this.#outcomes = new Outcomes(session, toasts, {
+            rowOf: (name) => this.#tools.rowOf(name),
+            nextAfter,
+        });
         const onError = (error) => toasts.show(error);
         const onRun = (operation) => this.run(operation).catch(onError);
         const onApply = (operation) =>
@@ -251,7 +240,7 @@ export class Editing {
             return { words: 'No preview for so many elements.', isKnown: false };
         }
         try {
-            const answer = await api.tryEdit(mesh, await this.#expand(operation), signal);
+            const answer = await api.tryEdit(mesh, await expanded(operation, this.#session), signal);
             return { words: wordsOf(answer), isKnown: answer !== null };
         } catch (error) {
             if (!signal.aborted) {
@@ -272,40 +261,6 @@ export class Editing {
         }
     }
 
-    // Returns an operation in which the ids of the selected elements are in place of SELECTION. Throws
-    // a Problem if the operation does not take elements of the selected kind.
-    async #expand(operation) {
-        const members = Object.entries(operation).map(async ([name, value]) => [
-            name,
-            value === SELECTION ? await this.#selected(name) : value,
-        ]);
-        return Object.fromEntries(await Promise.all(members));
-    }
-
-    // Returns the selected elements, or their vertices, as the value of the parameter `name`.
-    async #selected(name) {
-        const { selection, shown } = this.#session;
-        const isVertices = name === 'vertices' && selection.asCrowd !== null;
-        if (PLURALS[selection.kind] !== name && !isVertices) {
-            const what = selection.kind === null ? 'Nothing is' : `${PLURALS[selection.kind]} are`;
-            throw slip(name, 'Other elements', `${what} selected, but ${name} are needed.`);
-        }
-        const ids = isVertices
-            ? selection.asCrowd.verticesIn(shown.geometry)
-            : await selection.ids();
-        if (ids.length <= MOST_SENT) {
-            return ids;
-        }
-        const set = { domain: name, name: SENT };
-        if ((await this.#session.saveSet(set, ids)) === null) {
-            throw new api.Problem({
-                title: 'Not sent',
-                detail: 'Another edit is in progress. Try again when it is done.',
-            });
-        }
-        return { [set.name]: true };
-    }
-
     // Runs an operation and says what it has done: in a message or, if `isQuiet` is true or the
     // operation is local, below the form.
     async run(operation, isQuiet = false) {
@@ -324,63 +279,19 @@ export class Editing {
         this.#work.start(operation.op, false);
         const { revision } = shown;
         try {
-            const answer = await this.#session.run(await this.#expand(operation), this.#work);
+            const answer = await this.#session.run(await expanded(operation, this.#session), this.#work);
             const [result] = answer?.results ?? [];
             if (result?.selected !== undefined) {
-                await this.#showSelected(operation, result);
+                await this.#outcomes.showSelected(operation, result);
             } else if (result?.patches !== undefined) {
-                await this.#showPatches(operation, result);
+                await this.#outcomes.showPatches(operation, result);
             } else if (answer !== null && isQuiet) {
                 this.#trial.tell(madeOf(answer));
             } else if (answer !== null) {
-                await this.#tellDone(operation, { mesh, before, revision, answer });
+                await this.#outcomes.tellDone(operation, { mesh, before, revision, answer });
             }
         } finally {
             this.#work.end();
-        }
-    }
-
-    // Says what an operation has done, see results.js; `before` are the counts and `revision` is the
-    // revision before it.
-    async #tellDone(operation, { mesh, before, revision, answer }) {
-        const { op: name } = operation;
-        const { shown } = this.#session;
-        const isKnown = shown.hasFacts && shown.mesh === mesh;
-        const summary = isKnown ? shown.summary : await api.getSummary(mesh);
-        const isFinal = shown.history.entries[0]?.undoable === false;
-        const words = doneOf(this.#tools.rowOf(name), {
-            result: answer.results?.[0],
-            before,
-            after: summary.counts,
-        });
-        const end = isFinal ? ' This edit cannot be undone.' : '';
-        const next = this.#nextAfter(operation, revision);
-        this.#toasts.tell(name, `${words ?? madeOf(answer)}${end}`, next);
-    }
-
-    // Says what the operation `select` has found, and selects it in the page, so that the forms of
-    // other operations are filled with it.
-    async #showSelected(operation, result) {
-        const { into = 'selected', value } = operation;
-        const listed = Object.keys(KINDS).find((kind) => kind in operation);
-        const isSized = operation.by === 'grow' || operation.by === 'shrink';
-        const kind = operation.elements ?? (isSized ? PLURALS[KINDS[listed]] : 'faces');
-        const name = value === undefined ? into : `${into}=${value}`;
-        const words = selectionOf(result);
-        this.#toasts.tell(operation.op, `The set \u201c${nameInText(name)}\u201d of ${kind} has ${words}.`);
-        const ids = await api.getSet(this.#session.mesh, kind, into, value);
-        const one = Object.entries(PLURALS).find(([, plural]) => plural === kind)[0];
-        await this.#session.selection.selectAll(one, ids);
-    }
-
-    // Says what the operation `segment` has found, and selects the feature edges in the page, so that
-    // the patches can be seen.
-    async #showPatches(operation, result) {
-        const next = this.#nextAfter(operation, this.#session.shown.revision);
-        this.#toasts.tell(operation.op, `The faces are divided into ${patchesOf(result)}.`, next);
-        if (result.features > 0) {
-            const ids = await api.getSet(this.#session.mesh, 'edges', 'feature');
-            await this.#session.selection.selectAll('edge', ids);
         }
     }
 
@@ -558,9 +469,4 @@ export class Editing {
             this.#session.selection.clear();
         }
     }
-}
-
-// Returns whether a parameter of an operation names the selection.
-function namesSelection(operation) {
-    return Object.values(operation).includes(SELECTION);
 }
