@@ -4,7 +4,7 @@
 // The values are read again when the mesh has changed, with one request at a time. Until they have
 // arrived, the elements keep their colours, and new elements are grey.
 
-import { formatCount, formatMeasure, make } from '../kit/dom.js';
+import { formatCount, make } from '../kit/dom.js';
 import { onUnit } from '../kit/units.js';
 import { MOST_READ } from '../open/selection.js';
 import { BINS } from './bars.js';
@@ -12,10 +12,12 @@ import { Column } from './column.js';
 import { Key } from './key.js';
 import { mapOf } from './maps.js';
 import { readValues } from './reading.js';
-import { Scale, missingNote, nounOf, withUnit } from './scale.js';
+import { Scale, missingNote, nounOf } from './scale.js';
+import { showingOf } from './showing.js';
 import { KINDS, keyOf, numbersOf, partsOf, readSources, usualPart } from './sources.js';
 import { scalingOf, texelsOfCategories, texelsOfNumbers, texelsOfVectors } from './texels.js';
 import { relatedTo } from './related.js';
+import { ValueText } from './value_text.js';
 
 // At most so many values are listed for the selected elements.
 const MOST_VALUES = 8;
@@ -350,25 +352,19 @@ export class Colouring {
             this.#acts.label(),
         );
         this.#scale.clear();
-        const lost = ids.filter((id) => !this.#isKnown(id)).length;
+        const texts = this.#texts;
+        const lost = ids.filter((id) => !texts.isKnown(id)).length;
         if (lost > 0) {
             this.#elements.scale.append(missingNote(this.#noun(lost)));
         }
         this.#key.show(title, null);
     }
 
-    #isKnown(id) {
-        const { numbers } = this.#read;
-        const { components } = this.#source;
-        const own = numbers.subarray(components * id, components * (id + 1));
-        return own.length === components && own.every((number) => Number.isFinite(number));
-    }
-
     #showNumbers() {
         const { ids, numbers } = this.#read;
         const { kind, components } = this.#source;
         this.#column = new Column(numbersOf(numbers, components, this.#part), ids);
-        const { map, categories } = this.#legend();
+        const { map, categories } = this.#showing;
         const isCategorical = map === 'categorical';
         const texels = isCategorical
             ? texelsOfCategories(kind, this.#column, this.#corners, categories)
@@ -380,25 +376,12 @@ export class Colouring {
         this.#showRange();
     }
 
-    // Returns how the numbers are shown: {map, maps, categories, usual, range}.
-    #legend() {
-        const column = this.#column;
-        const { isIndex } = this.#source;
-        const isSplit = column.count > 0 && column.least < 0 && column.most > 0;
-        const categories = isIndex || column.isWhole || this.#map === 'categorical' ? column.categories : null;
-        const maps = ['sequential', 'diverging', ...(categories === null ? [] : ['categorical'])];
-        const usualMap = isIndex && categories !== null ? 'categorical' : isSplit ? 'diverging' : 'sequential';
-        const map = maps.includes(this.#map) ? this.#map : usualMap;
-        const usual = column.usualRange(map === 'diverging' && isSplit);
-        return { map, maps, categories, usual, range: this.#range ?? usual };
-    }
-
     // Shows the legend, and the range in the view, after a change of the range only.
     #showRange() {
         if (this.#read === null) {
             return;
         }
-        const legend = this.#legend();
+        const legend = this.#showing;
         const { origin, factor } = scalingOf(this.#column);
         this.#stage.color((values) => {
             values.setRange(...legend.range.map((value) => (value - origin) * factor));
@@ -407,11 +390,21 @@ export class Colouring {
             ...legend,
             column: this.#column,
             bytes: mapOf(legend.map),
-            textOf: (number) => this.#textOf(number),
+            textOf: (number) => this.#texts.ofNumber(number),
             noun: (count) => this.#noun(count),
         };
         this.#scale.show(shown);
         this.#key.show(this.#title, shown);
+    }
+
+    // How the numbers are shown, see showing.js.
+    get #showing() {
+        return showingOf(this.#column, this.#source.isIndex, this.#map, this.#range);
+    }
+
+    // Writes the values as text.
+    get #texts() {
+        return new ValueText(this.#source, this.#read, this.#column);
     }
 
     get #title() {
@@ -425,30 +418,7 @@ export class Colouring {
         return nounOf(KINDS[this.#source.kind])(count);
     }
 
-    // Returns the text of a number: its label, if the attribute has labels.
-    #textOf(number) {
-        const label = this.#source.labels?.[number];
-        return label === undefined ? formatMeasure(number) : label === '' ? '(no name)' : label;
-    }
-
     // --- values of elements ---
-
-    // Returns the value of an element as text.
-    #valueOf(id) {
-        const { unit, components } = this.#source;
-        if (this.#column !== null) {
-            const number = this.#column.at(id);
-            const isLabel = this.#source.labels !== null;
-            return Number.isNaN(number)
-                ? 'no value'
-                : isLabel
-                  ? this.#textOf(number)
-                  : withUnit(number, unit);
-        }
-        const { numbers } = this.#read;
-        const own = [...numbers.subarray(components * id, components * (id + 1))];
-        return this.#isKnown(id) ? own.map((number) => formatMeasure(number, 4)).join(' ') : 'no value';
-    }
 
     // Lists the values of the selected elements, or of the elements beside them that have values.
     #showValues() {
@@ -459,7 +429,7 @@ export class Colouring {
         const { kind } = this.#source;
         const ids = relatedTo(this.#session.selection.chosen, kind);
         const rows = ids.slice(0, MOST_VALUES).map((id) => {
-            const dd = make('dd', {}, this.#valueOf(id));
+            const dd = make('dd', {}, this.#texts.of(id));
             dd.dataset.value = id;
             return make('div', {}, make('dt', {}, `${TITLES[kind]} ${id}`), dd);
         });
@@ -487,7 +457,7 @@ export class Colouring {
         const { kind } = this.#source;
         const found = this.#stage.elementAt(x, y, ELEMENTS[kind], true);
         const id = found === null ? null : this.#idOf(found);
-        this.#key.setValue(id === null ? '' : `${TITLES[kind]} ${id}: ${this.#valueOf(id)}`);
+        this.#key.setValue(id === null ? '' : `${TITLES[kind]} ${id}: ${this.#texts.of(id)}`);
     }
 
     #idOf({ kind, id, from, to }) {
@@ -504,7 +474,7 @@ export class Colouring {
         if (this.#read === null) {
             return;
         }
-        const [from, to] = this.#legend().range;
+        const [from, to] = this.#showing.range;
         this.#selectWhere((number) => number >= from && number <= to);
     }
 
