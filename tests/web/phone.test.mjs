@@ -58,6 +58,10 @@ for (const viewport of [...PHONES, { width: 1280, height: 800 }]) {
             }
             return;
         }
+        for (const wanted of ['#refresh', '.meshes .upload', '.meshes .new-shape']) {
+            const { left, right } = await seen(page, wanted);
+            assert.ok(left >= 0 && right <= viewport.width, wanted);
+        }
         const box = await seen(page, '#links-menu');
         assert.ok(box !== null && box.left >= 0 && box.right <= viewport.width, JSON.stringify(box));
         const bar = await page.locator('.bar').evaluate((one) => [one.scrollWidth, one.clientWidth]);
