@@ -44,7 +44,7 @@ LABEL org.opencontainers.image.title="hedge" \
       org.opencontainers.image.revision="${REVISION}"
 RUN apt-get -q update && \
     apt-get -q install -y --no-install-recommends \
-        libmicrohttpd12 libcjson1 zlib1g libzstd1 libsqlite3-0 libmeshoptimizer2d libamd2 libnettle8 libgnutls30 && \
+        libmicrohttpd12 libcjson1 zlib1g libisal2 libzstd1 libsqlite3-0 libmeshoptimizer2d libamd2 libnettle8 libgnutls30 && \
     rm -rf /var/lib/apt/lists/* /var/cache/apt/*.bin /var/log/*
 COPY LICENSE /usr/local/share/doc/hedge/
 COPY --from=page /src/build/web /usr/local/share/hedge/web

@@ -31,7 +31,7 @@ DEBUG    ?= $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
 CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
 # This is expanded only when a program is linked, after .ci/deps has run.
-DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle gnutls) -lmeshoptimizer -lamd -lm
+DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libisal libzstd sqlite3 nettle gnutls) -lmeshoptimizer -lamd -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
 # Some two hundred test programs each contain the whole daemon, in every configuration: lld links
 # them in half of the time. The daemon is linked by the compiler's default linker.

@@ -41,9 +41,9 @@ enum {
 };
 
 /* Answers longer than API_COMPRESS_FROM bytes are compressed. An answer of up to
- * API_COMPRESS_AT_ONCE bytes is compressed in one call, which takes half a millisecond. A longer
- * one is compressed in pieces of API_COMPRESS_AT_ONCE bytes, and the thread serves other requests
- * after API_COMPRESS_TURN bytes. */
+ * API_COMPRESS_AT_ONCE bytes is compressed in one call, which takes a tenth of a millisecond. A
+ * longer one is compressed in pieces of API_COMPRESS_AT_ONCE bytes, and the thread serves other
+ * requests after API_COMPRESS_TURN bytes. */
 enum { API_COMPRESS_FROM = 1024, API_COMPRESS_AT_ONCE = 64 * 1024, API_COMPRESS_TURN = 1 << 20 };
 
 /* Limits of JSON bodies */

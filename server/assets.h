@@ -4,7 +4,8 @@
  * docs.html (if it exists) as "/docs", docs/NAME.html as "/docs/NAME", docs/PART/NAME.html as
  * "/docs/PART/NAME", and the regular files of assets/ as "/assets/NAME". Symbolic links are not
  * followed and other files are not read. Requests are answered from memory and never reach the file
- * system. If there is no such folder, "/" is a plain notice. */
+ * system, so files that are changed later are served as they were. If there is no such folder, "/"
+ * is a plain notice. */
 #ifndef HE_SERVER_ASSETS_H
 #define HE_SERVER_ASSETS_H
 

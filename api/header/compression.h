@@ -1,5 +1,5 @@
-/* compression.h - lets zlib and zstd take their memory from base/mem.h; used by compressor.c and
- * decompressor.c.
+/* compression.h - the only header that gives access to the compression libraries. It lets zlib and
+ * zstd take their memory from base/mem.h; ISA-L uses memory of the caller.
  *
  * The functions of zstd that take an allocator are declared only if ZSTD_STATIC_LINKING_ONLY is
  * defined, but the shared library exports them too. Without these functions, the memory that
@@ -8,6 +8,7 @@
 #define HE_API_HEADER_COMPRESSION_H
 
 #define ZSTD_STATIC_LINKING_ONLY
+#include <isa-l/igzip_lib.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>

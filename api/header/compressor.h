@@ -2,10 +2,10 @@
  *
  *     api_compressor_new -> _whole -> _begin -> _read ... -> 0
  *
- * zlib and zstd run at level 1, the fastest. A client that downloads a million faces waits for the
- * compressor and not for the network, and a higher level makes a text of coordinates only a few
- * percent shorter in twice the time. Equal bodies are compressed to equal bytes, in however many
- * pieces they are read. */
+ * The compressors, ISA-L for gzip and zstd, run at level 1: about as fast as the loopback network
+ * takes the bytes, so that a client which accepts gzip only because its library does waits little
+ * longer for it. Equal bodies are compressed to equal bytes, in however many pieces they are
+ * read. */
 #ifndef HE_API_HEADER_COMPRESSOR_H
 #define HE_API_HEADER_COMPRESSOR_H
 
@@ -43,7 +43,7 @@ void api_compressor_give_up(api_compressor *compressor);
 
 /* Reads compressed bytes; it can be the `read` of an api_answer. A call compresses about
  * API_COMPRESS_TURN bytes of the body, so that it does not take long even if the body compresses
- * very well. It compresses more only as long as there is no output (zlib buffers up to 4 MiB of
+ * very well. It compresses more only as long as there is no output (ISA-L buffers up to 4 MiB of
  * zeros). */
 int64_t api_compressor_read(void *compressor, char *buffer, size_t size);
 

@@ -7,8 +7,9 @@
 // server does not have the result; `most` is how many clicks the task may need.
 
 import assert from 'node:assert/strict';
+import { once } from 'node:events';
 import { readFile } from 'node:fs/promises';
-import { gzipSync } from 'node:zlib';
+import http from 'node:http';
 
 import { projector, waitForFrame, waitForTold } from './browser.mjs';
 import { get, getAll, post } from './daemon.mjs';
@@ -277,17 +278,27 @@ const teachSplit = {
 
 export const TASKS = [repairHole, repairRefused, fillThird, measureWall, backToYesterday, teachSplit];
 
-// Returns the bytes of the files that an open page has loaded, each compressed with gzip. Answers of the
-// API do not count, because they depend on the meshes.
-export async function compressedSize(page) {
+// Returns the length of the body of an answer as it is sent. fetch() would hide the coding.
+async function receivedSize(url, coding) {
+    const request = http.get(url, { headers: { 'Accept-Encoding': coding } });
+    const [answer] = await once(request, 'response');
+    assert.equal(answer.statusCode, 200, url);
+    let size = 0;
+    for await (const piece of answer) {
+        size += piece.length;
+    }
+    return size;
+}
+
+// Returns how many bytes a browser receives that accepts `coding` and loads the files that an open page
+// has loaded. Answers of the API do not count, because they depend on the meshes.
+export async function compressedSize(page, coding = 'gzip') {
     const urls = await page.evaluate(() => [
         location.href.replace(/#.*/, ''),
         ...performance.getEntriesByType('resource').map(({ name }) => name),
     ]);
     const files = [...new Set(urls)].filter((url) => !new URL(url).pathname.startsWith('/v1/'));
     assert.ok(files.length > 2, `${files}`); // the page, its script and its style
-    const sizes = await Promise.all(
-        files.map(async (url) => gzipSync(Buffer.from(await (await fetch(url)).arrayBuffer())).length),
-    );
+    const sizes = await Promise.all(files.map((url) => receivedSize(url, coding)));
     return sizes.reduce((sum, size) => sum + size, 0);
 }
