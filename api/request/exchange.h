@@ -39,6 +39,7 @@
 #include "api/token/tickets.h"
 #include "base/siphash.h"
 #include "store/write.h"
+#include "system/spare.h"
 
 struct api_service {
     st_store *store;
@@ -57,6 +58,8 @@ struct api_service {
     api_limited limited;
     api_metrics *metrics;
     api_decompressor_room decompressing; /* counts the memory of all decoders of request bodies */
+    /* Freed blocks: of exchanges, and of what api/write/edits.c needs for an edit. */
+    st_spares exchanges, edits;
 };
 
 /* The phases of an exchange: it receives the body on a worker thread, works on a thread that may

@@ -318,10 +318,11 @@ api_load api_load_of(const api_exchange *x)
 
 static api_exchange *exchange_new(api_service *service, const api_request *request)
 {
-    api_exchange *x = he_mem_zero(1, sizeof *x);
+    api_exchange *x = st_spares_take(&service->exchanges, sizeof *x);
     if (x == NULL) {
         return NULL;
     }
+    memset(x, 0, sizeof *x);
     x->service = service;
     x->store = service->store;
     x->since = st_waits_durable(st_store_waits(x->store));
@@ -333,7 +334,7 @@ static api_exchange *exchange_new(api_service *service, const api_request *reque
     api_set_progress(x, NULL, NULL);
     if (!copy_request(x, request)) {
         api_arena_clear(&x->arena);
-        he_mem_free(x);
+        st_spares_put(&service->exchanges, x);
         return NULL;
     }
     return x;
@@ -737,7 +738,7 @@ void api_free(api_exchange *x)
     free_work(x);
     api_token_release(x->token);
     api_arena_clear(&x->arena);
-    he_mem_free(x);
+    st_spares_put(&x->service->exchanges, x);
 }
 
 api_exchange *api_handle(api_service *service, const api_request *request, const char *body,

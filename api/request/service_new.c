@@ -60,6 +60,8 @@ void api_service_free(api_service *service)
         api_rates_free(service->token_rates);
         api_rates_free(service->address_rates);
         api_metrics_free(service->metrics);
+        st_spares_clear(&service->exchanges);
+        st_spares_clear(&service->edits);
     }
     he_mem_free(service);
 }

@@ -16,8 +16,9 @@
 
 /* The state of a request between the decoding of its body and its answer. */
 typedef struct edits {
-    api_in list; /* cursor at the array of operations; unused for a single operation */
-    api_item op; /* the current operation of the list */
+    st_spares *home; /* where the block of this struct is kept afterwards */
+    api_in list;     /* cursor at the array of operations; unused for a single operation */
+    api_item op;     /* the current operation of the list */
     bool is_list;
     size_t count;
     api_in expected;
@@ -85,7 +86,7 @@ static void free_edits(void *state)
     api_item_clear(&e->op);
     api_text_clear(&e->results);
     api_arrays_clear(&e->arrays);
-    he_mem_free(e);
+    st_spares_put(e->home, e);
 }
 
 /* Appends the name of an operation to `ops`, the list in the history entry; appends ",..." if the
@@ -717,11 +718,12 @@ static void load_others(api_exchange *x)
 
 bool api_edits_decode(api_exchange *x)
 {
-    edits *e = he_mem_alloc(sizeof *e);
+    edits *e = st_spares_take(&x->service->edits, sizeof *e);
     if (e == NULL) {
         return api_fail_memory(x);
     }
     memset(e, 0, offsetof(edits, named));
+    e->home = &x->service->edits;
     x->state = e;
     x->free_state = free_edits;
     e->growth = 1;

@@ -210,6 +210,7 @@ static void http_free(srv_http *http)
     srv_deadlines_free(http->deadlines);
     srv_peers_free(http->peers);
     srv_inflight_clear(&http->inflight);
+    st_spares_clear(&http->requests);
     he_mem_free(http);
 }
 

@@ -24,11 +24,16 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
         return NULL;
     }
     size_t length = strnlen(uri, API_MAX_URI + 1);
-    srv_request *r = he_mem_zero(1, sizeof *r + length + 1);
+    const bool fits = sizeof(srv_request) + length + 1 <= SRV_REQUEST_BLOCK;
+    srv_request *r = fits ? st_spares_take(&http->requests, SRV_REQUEST_BLOCK)
+                          : he_mem_alloc(sizeof *r + length + 1);
     if (r == NULL) {
         return NULL;
     }
+    memset(r, 0, sizeof *r);
     memcpy(r->target, uri, length);
+    r->target[length] = '\0';
+    r->is_spare = fits;
     r->http = http;
     r->connection = connection;
     r->socket = socket;
@@ -140,7 +145,11 @@ void srv_request_end(srv_request *r)
     api_free(r->exchange);
     he_mem_free(r->joined);
     api_text_clear(&r->text);
-    he_mem_free(r);
+    if (r->is_spare) {
+        st_spares_put(&http->requests, r);
+    } else {
+        he_mem_free(r);
+    }
     if (counted) {
         srv_inflight_leave(&http->inflight);
     }

@@ -43,6 +43,7 @@
 #include "server/log/trace.h"
 #include "server/net/peers.h"
 #include "store/publish/durability_wait.h"
+#include "system/spare.h"
 
 #include <microhttpd.h>
 #include <stdatomic.h>
@@ -61,6 +62,7 @@ struct srv_http {
     srv_spans spans;
     _Atomic bool stopping;
     srv_inflight inflight;
+    st_spares requests;       /* freed blocks of requests, each of SRV_REQUEST_BLOCK bytes */
     _Atomic size_t downloads; /* number of answers sent piece by piece, except streams of events */
 };
 
@@ -82,7 +84,8 @@ typedef struct srv_request {
     char request_id[SRV_REQUEST_ID + 1];
     char *joined; /* values of headers with several lines (http_headers.h); NULL if none */
     srv_client client;
-    bool close; /* whether the connection is to be closed after the answer */
+    bool close;    /* whether the connection is to be closed after the answer */
+    bool is_spare; /* whether the block of the request is one of srv_http.requests */
 
     /* The exchange that makes the answer; NULL if the answer is `refusal`. */
     api_exchange *exchange;
@@ -106,6 +109,10 @@ typedef struct srv_request {
     const char *path; /* path of the request; NULL before the headers were read */
     char target[];    /* the request target as the client sent it */
 } srv_request;
+
+/* The size of the blocks of requests that are kept for further requests. A request whose target
+ * does not fit has a block of its own, larger than this. */
+enum { SRV_REQUEST_BLOCK = sizeof(srv_request) + 256 };
 
 /* Begins a request whose request line has arrived. Returns NULL when memory is out, or if the bytes
  * of the request were not checked (http_recv.h); then the connection is closed without an answer.

@@ -164,6 +164,8 @@ static void progress_is_seen_and_never_falls(void **state)
     print_message("note: %zu values seen\n", values);
 }
 
+enum { KEPT_BYTES = 64 * 1024 };
+
 /* Cancels a job when it has reached this progress. Returns false if the job ended before that. */
 static bool cancel_at(int percent)
 {
@@ -186,8 +188,9 @@ static bool cancel_at(int percent)
     assert_int_equal(api_job_remove(jobs, wanted(id), &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
     /* The thread that ran the job releases the last reference to it, so the memory is freed a
-     * little later. */
-    while (st_memory_used() != before) {
+     * little later. A few blocks of the job may be kept for the next requests (spare.h); the mesh
+     * that it was making is a hundred times larger. */
+    while (st_memory_used() > before + KEPT_BYTES) {
         assert_false(api_job_find(jobs, wanted(id), take_facts, &job));
     }
     return true;
