@@ -48,6 +48,7 @@ static size_t bits_of(const he_mesh *mesh, he_col column)
     case HE_COL_COLUMN_ADDED:
     case HE_COL_COLUMN_DROPPED:
     case HE_COL_MATERIAL:
+    case HE_COL_POSITIONS:
     case HE_COL_REPLACED:
     case HE_COL_ATTRIBUTE:
         break;
