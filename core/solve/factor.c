@@ -44,6 +44,9 @@ typedef struct scratch {
     double *diagonal; /* of the matrix, for the columns of the present supernode */
     double *product;
     size_t room; /* of product */
+    /* the multiplications of matrices since progress was reported, one for two entries that are
+     * multiplied */
+    uint64_t work;
 } scratch;
 
 static void clear_scratch(scratch *w)
@@ -126,6 +129,7 @@ static he_status subtract(he_factor *f, uint32_t s, uint32_t from, scratch *w, h
     he_panel right = left;
     right.rows = columns;
     he_dense_subtract(left, right, (he_panel){w->product, count, columns, count});
+    w->work += (uint64_t)need * source.columns;
     for (uint32_t j = 0; j < columns; j++) {
         double *column = d.at + (rows[j] - begin) * d.step;
         const double *product = w->product + (size_t)j * count;
@@ -149,13 +153,29 @@ static void enlist(const he_pattern *pattern, uint32_t s, scratch *w)
     }
 }
 
+/* Reports progress once after so much work: a supernode may take seconds. */
+static he_status tell(const he_factor *f, uint32_t s, scratch *w, he_progress *progress,
+                      he_error *err)
+{
+    static const uint64_t OFTEN = 1 << 24;
+    if (w->work < OFTEN) {
+        return HE_OK;
+    }
+    w->work = 0;
+    return he_progress_step(progress, f->pattern.values[s],
+                            f->pattern.values[f->pattern.supernodes], err);
+}
+
 static he_status factor_supernode(const he_sparse *a, he_factor *f, uint32_t s, scratch *w,
-                                  he_error *err)
+                                  he_progress *progress, he_error *err)
 {
     fill(a, f, s, w);
     for (uint32_t from = w->head[s], next; from != UINT32_MAX; from = next) {
         next = w->next[from];
         he_status status = subtract(f, s, from, w, err);
+        if (status == HE_OK) {
+            status = tell(f, s, w, progress, err);
+        }
         if (status != HE_OK) {
             return status;
         }
@@ -172,24 +192,19 @@ static he_status factor_supernode(const he_sparse *a, he_factor *f, uint32_t s, 
                              f->pattern.order[f->pattern.begins[s] + bad]);
     }
     enlist(&f->pattern, s, w);
-    return HE_OK;
+    w->work += (uint64_t)d.rows * d.columns * d.columns;
+    return tell(f, s, w, progress, err);
 }
 
 static he_status compute(const he_sparse *a, he_factor *f, he_progress *progress, he_error *err)
 {
     const he_pattern *pattern = &f->pattern;
-    const size_t all = pattern->values[pattern->supernodes];
     scratch w;
     he_status status = make_scratch(pattern, &w, err);
-    size_t told = 0;
     for (uint32_t s = 0; s < pattern->supernodes && status == HE_OK; s++) {
         const size_t below = he_pattern_below(pattern, s);
         f->most_below = below > f->most_below ? below : f->most_below;
-        status = factor_supernode(a, f, s, &w, err);
-        if (status == HE_OK && pattern->values[s] - told >= 1 << 16) {
-            told = pattern->values[s];
-            status = he_progress_step(progress, told, all, err);
-        }
+        status = factor_supernode(a, f, s, &w, progress, err);
     }
     clear_scratch(&w);
     return status;
