@@ -222,8 +222,9 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     return true;
 }
 
-/* The number of reports of progress that the charge for any operation includes. */
-enum { PHASES = 24 };
+/* The number of reports of progress that the charge for any operation includes, and for how many
+ * passes over new elements: they are made step by step. */
+enum { PHASES = 24, REPORTS_OF_NEW = 8 };
 
 /* Returns false if the list exceeds what it may do on this thread, or without claiming the mesh
  * (store/write.h). */
@@ -244,16 +245,20 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
         listed += call->args[i].list ? call->args[i].count : 0;
         elements += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
     }
-    double many = he_op_growth(call->op, mesh, call->args) * (double)elements;
+    const double growth = he_op_growth(call->op, mesh, call->args);
+    double many = growth * (double)elements;
     uint64_t grown = many < MANY ? (uint64_t)many : (uint64_t)MANY;
+    /* the elements that an operation makes which does not take the time of the whole mesh */
+    double some = whole ? 0 : (growth - 1) * (double)issued(mesh);
+    uint64_t made = some < MANY ? (uint64_t)some : (uint64_t)MANY;
     uint64_t steps = e->is_list ? api_edit_cost_steps(call, mesh, UINT64_MAX / 2, &e->hubs) : 0;
     e->looked_at += elements + listed;
     e->steps += steps;
     uint64_t work = (whole ? grown * he_op_pace(call->op, call->args) : elements) +
-                    listed * (whole ? 1 : he_op_pace(call->op, call->args)) +
+                    (listed + made) * (whole ? 1 : he_op_pace(call->op, call->args)) +
                     steps / API_STEPS_OF_WORK;
     e->work += work;
-    e->paid = PHASES + 2 * (grown + listed) / HE_PROGRESS_STRIDE;
+    e->paid = PHASES + (2 * (grown + listed) + REPORTS_OF_NEW * made) / HE_PROGRESS_STRIDE;
     e->look = (uint64_t)HE_PROGRESS_STRIDE * he_op_pace(call->op, call->args);
     return is_affordable(e, delta);
 }

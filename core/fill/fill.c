@@ -55,13 +55,15 @@ static he_status note_chords(const he_patch *p, he_rim_chords *chords, bool add,
 }
 
 he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *options,
-                       he_rim_chords *chords, he_filled *out, he_error *err)
+                       he_fill_shared *shared, he_filled *out, he_error *err)
 {
+    he_rim_chords *chords = &shared->chords;
     he_patch p;
     he_patch_values values = {.columns = NULL};
     he_filled made = {.vertex = {HE_NONE}};
     he_status status = he_patch_make(m, loop, chords, &p, err);
     if (status == HE_OK) {
+        p.left = shared->left;
         status = he_patch_cover(&p, err);
     }
     /* The equations are for the surface that they change, so a coarse patch is bent first. It has
@@ -87,6 +89,7 @@ he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *opt
     if (status == HE_OK) {
         made.vertex.i = p.vertices == p.rim + 1 ? he_mesh_issued(m, HE_VERTEX) - 1 : HE_NONE;
         status = note_chords(&p, chords, true, err); /* cannot fail */
+        shared->left -= p.triangles;
     }
     he_patch_values_clear(&values);
     he_patch_clear(&p);
@@ -102,20 +105,24 @@ he_status he_hole_fill_smooth(he_mesh *m, he_halfedge h, const he_smooth_fill *o
                               he_filled *out, he_error *err)
 {
     he_ids loop = {0};
-    he_rim_chords chords = {.made = false};
+    he_fill_shared shared = {.left = INFINITY};
+    uint64_t steps = UINT64_MAX;
     if (!isfinite(options->edge_length) || options->edge_length < 0) {
         return he_fail_plain(err, HE_BAD_VALUE,
                              "the length of edges must be finite and not below 0");
     }
     he_status status = he_hole_loop(m, h, &loop, err);
+    if (status == HE_OK && options->edge_length > 0) {
+        status = he_fill_within(he_fill_foretell(m, h, options, &steps), options->edge_length, err);
+    }
     if (status == HE_OK) {
-        status = he_fill_loop(m, &loop, options, &chords, out, err);
+        status = he_fill_loop(m, &loop, options, &shared, out, err);
     }
     if (status == HE_OK && out != NULL) {
         out->loop = loop;
         loop = (he_ids){0};
     }
-    he_edge_lookup_clear(&chords.lookup);
+    he_edge_lookup_clear(&shared.chords.lookup);
     he_ids_clear(&loop);
     return status;
 }

@@ -1,4 +1,3 @@
-#include "fill/fill.h"
 #include "fill/patch.h"
 
 #include "geometry/geometry.h"
@@ -17,62 +16,14 @@ he_fill he_fill_of(he_fill_method method)
     return methods[method];
 }
 
-/* --- what is foreseen --- */
-
-/* Returns the mean length of the boundary edges among a few thousand edges; that of all of these if
- * none is a boundary edge; 0 if there are no edges. */
-static double sample_length(const he_mesh *m)
-{
-    enum { SAMPLES = 4096 };
-    const uint32_t issued = he_mesh_issued(m, HE_EDGE), stride = issued / SAMPLES + 1;
-    double sums[2] = {0, 0}, counts[2] = {0, 0};
-    for (uint32_t e = 0; e < issued; e += stride) {
-        if (he_edge_is_live(m, (he_edge){e})) {
-            const bool boundary = he_is_boundary_edge(m, (he_edge){e});
-            sums[boundary] += he_edge_length(m, (he_edge){e});
-            counts[boundary]++;
-        }
-    }
-    const int which = counts[1] > 0;
-    return counts[which] > 0 ? sums[which] / counts[which] : 0;
-}
-
-/* Returns about how many faces fill a round hole, whose edges have the length 1. No surface of
- * least area is larger than that of a circle as long as its boundary, and a triangle of the wanted
- * length has the area sqrt(3) / 4 of its square. */
-static double foretell_round(double edges, double edge_length)
-{
-    static const double OF_SQUARE = 1 / (4 * 3.14159265358979323846 * 0.43301270189221932);
-    /* without a wanted length, edges grow inwards in a hole that would get more */
-    static const double MANY = 50000, FOR_EACH_EDGE = 8;
-    const double wanted = edge_length > 0 ? edge_length : 1;
-    const double even = OF_SQUARE * (edges / wanted) * (edges / wanted);
-    const double growing = fmax(MANY, FOR_EACH_EDGE * edges);
-    return edges + (edge_length > 0 ? fmin(even, HE_FILL_FACES) : fmin(even, growing));
-}
-
-double he_fill_holes_foretell(const he_mesh *m, const he_fill_holes_options *options)
-{
-    const double edges = he_mesh_boundary_halfedges(m);
-    const bool limited = options->max_edges > 0 && options->max_edges < edges;
-    const double each = limited ? options->max_edges : edges;
-    if (edges <= 0 || options->method != HE_FILL_ALL_SMOOTH) {
-        return edges; /* no other method makes more faces than a hole has edges */
-    }
-    const double length = options->smooth.edge_length > 0 ? sample_length(m) : 0;
-    const double wanted = length > 0 ? options->smooth.edge_length / length : 0;
-    return fmin(edges / each * foretell_round(each, wanted), HE_FILL_ALL_FACES);
-}
-
 /* --- all holes --- */
 
 /* The work of he_fill_holes. */
 typedef struct filling {
     he_mesh *m;
     const he_fill_holes_options *options;
-    he_rim_chords chords;
-    uint64_t *seen; /* the half-edges of holes that were handled: a bit set */
-    uint64_t faces; /* that were made */
+    he_fill_shared shared;
+    uint64_t *seen; /* the half-edges of holes that were looked at: a bit set */
     he_filled_holes done;
 } filling;
 
@@ -83,6 +34,13 @@ typedef struct hole {
     double size;   /* the diagonal of its box */
     bool one_face; /* one face is around all of it */
 } hole;
+
+/* Returns true if h is a half-edge of a hole that was not looked at yet. */
+static bool is_new(const filling *w, he_halfedge h)
+{
+    return he_edge_is_live(w->m, he_edge_of(h)) && !he_bits_get(w->seen, h.i) &&
+           he_is_boundary_halfedge(w->m, h);
+}
 
 /* Walks around a hole once, and marks its half-edges as seen. */
 static hole look_at(const filling *w, he_halfedge h)
@@ -114,18 +72,12 @@ static bool is_large(const he_fill_holes_options *o, const hole *h)
 static he_status fill_one(filling *w, const he_ids *loop, he_error *err)
 {
     const he_fill_method method = w->options->method;
-    const uint32_t before = he_mesh_faces(w->m);
-    if (w->faces > HE_FILL_ALL_FACES) {
-        return he_fail_plain(err, HE_LIMIT, "the holes would be filled with more than %d faces",
-                             (int)HE_FILL_ALL_FACES);
-    }
     he_status status =
         method == HE_FILL_ALL_SMOOTH
-            ? he_fill_loop(w->m, loop, &w->options->smooth, &w->chords, NULL, err)
+            ? he_fill_loop(w->m, loop, &w->options->smooth, &w->shared, NULL, err)
             : he_hole_fill(w->m, (he_halfedge){loop->ids[0]}, he_fill_of(method), NULL, err);
     if (status == HE_OK) {
         w->done.filled++;
-        w->faces += he_mesh_faces(w->m) - before;
         w->done.bend = fmax(w->done.bend, he_fill_bend(w->m, loop));
     }
     return status;
@@ -166,6 +118,32 @@ static he_status handle(filling *w, const hole *h, he_error *err)
     return status;
 }
 
+/* Refuses a length of edges that asks for too many faces, as far as the sizes of the holes tell,
+ * before any of them is filled. */
+static he_status foresee_all(const filling *w, he_error *err)
+{
+    const he_fill_holes_options *o = w->options;
+    const uint32_t count = he_mesh_issued(w->m, HE_HALFEDGE);
+    filling look = {.m = w->m, .options = o, .seen = he_bits_new((size_t)count + 1)};
+    he_status status = look.seen == NULL
+                           ? he_fail_plain(err, HE_NO_MEMORY, "no memory to look for holes")
+                           : he_progress_phase(w->m->progress, "looking for holes", 0.02, err);
+    double all = 0;
+    for (uint32_t i = 0; i < count && status == HE_OK; i++) {
+        const he_halfedge h = {i};
+        status = he_progress_at(w->m->progress, i, count, err);
+        if (status == HE_OK && is_new(&look, h)) {
+            const hole found = look_at(&look, h);
+            uint64_t steps = is_large(o, &found) || found.one_face ? 0 : UINT64_MAX;
+            const double faces = he_fill_foretell(w->m, h, &o->smooth, &steps);
+            all += faces;
+            status = he_fill_within(faces, o->smooth.edge_length, err);
+        }
+    }
+    he_mem_free(look.seen);
+    return status == HE_OK ? he_fill_within_all(all, w->shared.left, err) : status;
+}
+
 static he_status fill_all(filling *w, he_error *err)
 {
     const uint32_t count = he_mesh_issued(w->m, HE_HALFEDGE);
@@ -173,8 +151,7 @@ static he_status fill_all(filling *w, he_error *err)
     for (uint32_t i = 0; i < count && status == HE_OK; i++) {
         status = he_progress_at(w->m->progress, i, count, err);
         const he_halfedge h = {i};
-        if (status == HE_OK && he_edge_is_live(w->m, he_edge_of(h)) && !he_bits_get(w->seen, i) &&
-            he_is_boundary_halfedge(w->m, h)) {
+        if (status == HE_OK && is_new(w, h)) {
             const hole found = look_at(w, h);
             status = handle(w, &found, err);
         }
@@ -185,7 +162,7 @@ static he_status fill_all(filling *w, he_error *err)
 he_status he_fill_holes(he_mesh *m, const he_fill_holes_options *options, he_filled_holes *out,
                         he_error *err)
 {
-    filling w = {.m = m, .options = options};
+    filling w = {.m = m, .options = options, .shared.left = he_fill_most(m)};
     he_bracket bracket;
     if (!isfinite(options->smooth.edge_length) || options->smooth.edge_length < 0 ||
         !isfinite(options->max_size) || options->max_size < 0) {
@@ -197,9 +174,11 @@ he_status he_fill_holes(he_mesh *m, const he_fill_holes_options *options, he_fil
     }
     he_status status = he_edit_begin(m, &bracket, err);
     if (status == HE_OK) {
-        status = he_edit_end(m, &bracket, fill_all(&w, err));
+        const bool asked = options->method == HE_FILL_ALL_SMOOTH && options->smooth.edge_length > 0;
+        status = asked ? foresee_all(&w, err) : HE_OK;
+        status = he_edit_end(m, &bracket, status == HE_OK ? fill_all(&w, err) : status);
     }
-    he_edge_lookup_clear(&w.chords.lookup);
+    he_edge_lookup_clear(&w.shared.chords.lookup);
     he_mem_free(w.seen);
     if (status == HE_OK && out != NULL) {
         *out = w.done;

@@ -20,6 +20,8 @@
 #ifndef HE_FILL_PATCH_H
 #define HE_FILL_PATCH_H
 
+#include "fill/fill.h"
+
 #include "base/mem.h"
 #include "geometry/edge_lookup.h"
 #include "geometry/vec3.h"
@@ -47,6 +49,7 @@ typedef struct he_patch {
     he_vec3 *beyond;
     he_vec3 base; /* the position of the first corner */
     double unit;  /* the length that is 1 in the coordinates of the patch */
+    double left;  /* how many faces the patch may get, as several holes share a limit */
 } he_patch;
 
 /* Makes a patch of the corners of a hole, without triangles. he_patch_clear frees it, also after a
@@ -107,7 +110,8 @@ HE_NODISCARD he_status he_patch_cover(he_patch *p, he_error *err);
  * have the length `edge_length`, in the coordinates of the patch, or, if it is 0, that of the
  * mesh's edges at the rim; then they grow towards the middle of a hole that would get too many
  * faces otherwise. Edges are flipped as he_patch_relax does (Liepa 2003). Returns HE_LIMIT if
- * `edge_length` asks for more than HE_FILL_FACES faces, HE_NO_MEMORY or HE_CANCELLED. */
+ * `edge_length` asks for more than HE_FILL_FACES faces, or the patch would get more than `left`;
+ * returns HE_NO_MEMORY or HE_CANCELLED. */
 HE_NODISCARD he_status he_patch_refine(he_patch *p, double edge_length, double coarseness,
                                        he_error *err);
 
@@ -142,5 +146,27 @@ void he_patch_values_clear(he_patch_values *values);
  * Returns HE_NO_MEMORY or HE_IDS_EXHAUSTED; the mesh is then as it was. */
 HE_NODISCARD he_status he_patch_write(he_mesh *m, const he_patch *p, const he_patch_values *values,
                                       he_ids *edges, he_ids *faces, he_error *err);
+
+/* What the holes that one operation fills have in common. */
+typedef struct he_fill_shared {
+    he_rim_chords chords; /* he_edge_lookup_clear frees its lookup */
+    double left;          /* how many faces may still be made */
+} he_fill_shared;
+
+/* Does what he_hole_fill_smooth does after its checks: fills the hole that has this loop. Subtracts
+ * the faces that it makes from shared->left. The mesh is as it was after a refusal.
+ * Returns HE_LIMIT if the hole would get more than HE_FILL_FACES or shared->left faces.
+ * Returns HE_NO_MEMORY, HE_IDS_EXHAUSTED or HE_CANCELLED. */
+HE_NODISCARD he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *options,
+                                    he_fill_shared *shared, he_filled *out, he_error *err);
+
+/* Refuses the faces that `edge_length`, a length in the mesh, asks for in one hole: returns
+ * HE_LIMIT if they are more than HE_FILL_FACES. */
+HE_NODISCARD he_status he_fill_within(double faces, double edge_length, he_error *err);
+/* Returns how many faces the method smooth may make in all holes of a mesh. */
+double he_fill_most(const he_mesh *m);
+/* Refuses faces that all holes together would get: returns HE_LIMIT if they are more than `left`.
+ */
+HE_NODISCARD he_status he_fill_within_all(double faces, double left, he_error *err);
 
 #endif

@@ -220,6 +220,7 @@ he_status he_patch_relax(he_patch *p, he_error *err)
 typedef struct spacing {
     double length; /* the wanted length of all edges; 0: that of the rim */
     double growth; /* by how much it grows for each unit of distance from the rim */
+    double most;   /* the number of triangles at which dividing ends */
 } spacing;
 
 static double area(const he_patch *p, uint32_t triangle)
@@ -299,7 +300,7 @@ static he_status divide_all(he_patch *p, const spacing *wanted, queue *q, bool *
         if (status == HE_OK) {
             status = queue_reserve(q, p, err);
         }
-        if (status == HE_OK && p->triangles + 2 <= HE_FILL_FACES && divide(p, wanted, t)) {
+        if (status == HE_OK && p->triangles + 2 <= wanted->most && divide(p, wanted, t)) {
             *more = true;
             queue_add(q, p, 3 * t);
             queue_add(q, p, 3 * (p->triangles - 2));
@@ -312,20 +313,20 @@ static he_status divide_all(he_patch *p, const spacing *wanted, queue *q, bool *
 /* Chooses the lengths of edges, and refuses those that make too many faces. */
 static he_status plan(he_patch *p, double edge_length, spacing *out, he_error *err)
 {
-    enum { MANY = 50000 };
+    /* Edges that grow inwards make less than FOR_EACH_EDGE faces for each edge of the hole. What is
+     * foreseen is mostly a third too few. Dividing ends at twice as many, to be safe, and at
+     * MOST. */
+    static const double MANY = 50000, FOR_EACH_EDGE = 8, MOST = 1000000;
     *out = (spacing){.length = edge_length};
     for (uint32_t v = 0; v < p->vertices && edge_length > 0; v++) {
         p->size[v] = edge_length;
     }
-    const double faces = foresee(p);
-    if (edge_length > 0 && !(faces <= HE_FILL_FACES)) {
-        return he_fail_plain(err, HE_LIMIT,
-                             "edges of this length would fill the hole with about %.3g faces, and "
-                             "at most %u are allowed",
-                             faces, (unsigned)HE_FILL_FACES);
-    }
-    out->growth = edge_length > 0 || faces <= MANY ? 0 : 0.25;
-    return HE_OK;
+    const double faces = foresee(p), growing = fmax(MANY, FOR_EACH_EDGE * p->rim);
+    const bool grows = edge_length <= 0 && faces > MANY;
+    he_status status = edge_length > 0 ? he_fill_within(faces, edge_length * p->unit, err) : HE_OK;
+    out->growth = grows ? 0.25 : 0;
+    out->most = fmin(MOST, 2 * fmax(HE_FILL_FACES, grows ? growing : 0));
+    return status == HE_OK ? he_fill_within_all(grows ? growing : faces, p->left, err) : status;
 }
 
 static void scale_sizes(he_patch *p, double factor)

@@ -28,6 +28,44 @@ static he_status fill_hole(he_mesh *m, const he_arg *args, he_filled *out, he_er
     return he_hole_fill(m, h, he_fill_of(method), out, err);
 }
 
+/* Returns the number in row i of a column, or the one number for all rows. */
+static double number_at(const he_arg *arg, size_t i)
+{
+    return arg->list ? arg->numbers[i] : arg->number;
+}
+
+/* An estimate: the sizes of the holes, but not how they bulge, are looked at. */
+static double hole_fill_growth(const he_mesh *m, const he_arg *args)
+{
+    /* a large surface of n triangles has n / 2 vertices and 3 n / 2 edges */
+    static const uint64_t most_steps = 1 << 20;
+    static const double elements_of_face = 3;
+    const he_arg *holes = &args[HOLE_FILL_HALFEDGE], *length = &args[HOLE_FILL_EDGE_LENGTH];
+    uint64_t steps = most_steps;
+    double faces = 0;
+    if (m == NULL || args[HOLE_FILL_METHOD].choice != HE_FILL_ALL_SMOOTH) {
+        return 1;
+    }
+    const double elements = (double)he_mesh_issued(m, HE_VERTEX) + he_mesh_issued(m, HE_EDGE) +
+                            he_mesh_issued(m, HE_FACE);
+    for (size_t i = 0; i < (holes->list ? holes->count : 1) && steps > 0; i++) {
+        const he_halfedge h = {holes->list ? holes->ids[i] : holes->id};
+        const he_smooth_fill options = {.edge_length = length->given ? number_at(length, i) : 0};
+        const double made = he_fill_foretell(m, h, &options, &steps);
+        faces += made <= HE_FILL_FACES || !length->given ? made : 0; /* else it will be refused */
+    }
+    return elements > 0 ? 1 + elements_of_face * faces / elements : 1;
+}
+
+/* `pace` is the time of the other methods. The equations of a higher order take longer. */
+static unsigned hole_fill_times(const he_arg *args)
+{
+    static const unsigned smooth[] = {10, 20, 30};
+    const he_arg *continuity = &args[HOLE_FILL_CONTINUITY];
+    const size_t order = continuity->list ? HE_CONTINUOUS_CURVATURE : (size_t)continuity->number;
+    return args[HOLE_FILL_METHOD].choice == HE_FILL_ALL_SMOOTH ? smooth[order] : 1;
+}
+
 static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_filled filled;
@@ -108,7 +146,9 @@ static he_status run_fill_holes(he_mesh *m, const he_arg *args, he_results *out,
         .flags = HE_DERIVED | HE_RANGE | HE_EXCLUSIVE, .min = 0, .max = DBL_MAX,                  \
         .with = HE_WITH(HE_FILL_ALL_SMOOTH),                                                      \
         .doc = "The wanted length of the new edges. Default: that of the edges around the hole, " \
-               "growing inwards in a hole that would get more than 50000 faces otherwise."        \
+               "growing inwards in a hole that would get more than 50000 faces otherwise. "       \
+               "A length that asks for more than 100000 faces in a hole, or 500000 in all holes " \
+               "together, is refused."                                                            \
     }
 
 #define CONTINUITY                                                                             \
@@ -149,6 +189,8 @@ const he_op he_fill_rows[] = {
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
                      HE_DOUBLED_EDGE, HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
+        .times = hole_fill_times,
+        .growth = hole_fill_growth,
         .run = run_hole_fill,
     },
     {

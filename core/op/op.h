@@ -192,7 +192,8 @@ typedef struct he_op {
      * once. */
     unsigned (*times)(const he_arg *args);
     /* Returns the approximate factor by which the mesh grows, at least 1; NULL if the mesh keeps
-     * its size. `mesh` is NULL if it is not known yet. Takes no longer for a large mesh. */
+     * its size, or an HE_OP_LOCAL operation makes no more elements than it touches. `mesh` is NULL
+     * if it is not known yet. Takes no longer for a large mesh. */
     double (*growth)(const he_mesh *mesh, const he_arg *args);
     /* Finds out, from the mesh's numbers of elements alone, whether the operation will be refused.
      * HE_OK does not mean that the operation will succeed. NULL if the operation has no such

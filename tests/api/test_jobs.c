@@ -401,6 +401,44 @@ static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
     send(410, "GET", "/v1/meshes/m/faces/6", NULL);
 }
 
+/* A filling is charged by the faces that it is going to make: a few are made at once, many by a job
+ * that can be cancelled, and too many are refused before any work. The mesh has six faces. */
+static void a_hole_is_filled_with_many_faces_by_a_job(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *edge_length;
+        int status;
+    } cases[] = {{"0.1", 200}, {"0.0055", 202}, {"0.0041", 413}, {"1e-9", 413}};
+    send(201, "PUT", "/v1/meshes/m", CUBE);
+    send(200, "POST", "/v1/meshes/m/edits", "{\"op\":\"face_delete\",\"face\":0}");
+    bench_reply r = expect(200, "GET", "/v1/meshes/m/boundaries", NULL, NULL);
+    const cJSON *loop = cJSON_GetObjectItem(r.json, "loops")->child;
+    const int hole = cJSON_GetObjectItem(loop, "halfedge")->valueint;
+    bench_reply_free(&r);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char body[200];
+        snprintf(body, sizeof body,
+                 "{\"op\":\"hole_fill\",\"halfedge\":%d,\"method\":\"smooth\",\"edge_length\":%s,"
+                 "\"dry_run\":true}",
+                 hole, cases[i].edge_length);
+        r = expect(cases[i].status, "POST", "/v1/meshes/m/edits", NULL, body);
+        if (cases[i].status == 202) {
+            char path[64];
+            snprintf(path, sizeof path, "%s", bench_header(&r, "Location"));
+            send(202, "DELETE", path, NULL);
+            bench_run_jobs(bench, 1);
+        } else if (cases[i].status == 413) {
+            assert_non_null(strstr(bench_text(&r, "detail"), "edge_length"));
+            assert_non_null(strstr(bench_text(&r, "detail"), "100000"));
+        }
+        bench_reply_free(&r);
+    }
+    r = expect(200, "GET", "/v1/meshes/m", NULL, NULL);
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 2);
+    bench_reply_free(&r);
+}
+
 /* The refinements would need more ids than exist. The edit must be refused before a job begins, and
  * the mesh must stay writable. */
 static void more_steps_than_ids_allow_are_refused_at_once(void **state)
@@ -669,6 +707,7 @@ int main(void)
         JOB_TEST(a_mesh_may_be_deleted_under_a_long_edit),
         JOB_TEST(compact_as_a_job_ends_the_undo_stack),
         JOB_TEST(a_mesh_that_grows_large_is_refined_by_a_job),
+        JOB_TEST(a_hole_is_filled_with_many_faces_by_a_job),
         JOB_TEST(more_steps_than_ids_allow_are_refused_at_once),
         JOB_TEST(a_dry_run_changes_nothing_as_a_job_either),
         JOB_TEST(what_is_estimated_above_a_second_becomes_a_job),

@@ -411,9 +411,26 @@ static void random_meshes_survive_every_operation(void **state)
     free(w);
 }
 
+/* In these rounds a small mesh is asked for holes with half a million faces. */
+static void small_holes_are_not_filled_with_very_many_faces(void **state)
+{
+    (void)state;
+    static const uint64_t seeds[] = {29001255, 29001650};
+    world *w = calloc(1, sizeof *w);
+    assert_non_null(w);
+    w->oracle = or_new();
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++) {
+        w->random.state = w->seed = seeds[i];
+        pass(w, w->seed % (RANDOM_FAMILIES + 1), NULL);
+    }
+    or_free(w->oracle);
+    free(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(small_holes_are_not_filled_with_very_many_faces),
         cmocka_unit_test(random_meshes_survive_every_operation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

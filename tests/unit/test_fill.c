@@ -203,6 +203,88 @@ static void edges_are_as_long_as_asked(void **state)
     he_mesh_free(m);
 }
 
+/* Returns options that ask for so many faces in a hole of area 1. */
+static he_smooth_fill asking_for(double faces)
+{
+    return (he_smooth_fill){.edge_length = sqrt(1 / (0.4330127 * faces))};
+}
+
+/* Makes tubes, each of which has a square hole of area 1 at both ends. */
+static he_mesh *make_square_tubes(uint32_t tubes)
+{
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    for (uint32_t i = 0; i < 8 * tubes; i++) {
+        const uint32_t tube = i / 8;
+        (void)dense_add_vertex(&soup, 2 * tube + (i % 4 == 1 || i % 4 == 2), i % 4 >= 2,
+                               i % 8 >= 4);
+    }
+    for (uint32_t i = 0; i < 4 * tubes; i++) {
+        const uint32_t base = 8 * (i / 4), a = base + i % 4, b = base + (i + 1) % 4;
+        dense_add_triangle(&soup, a, b, b + 4);
+        dense_add_triangle(&soup, a, b + 4, a + 4);
+    }
+    return dense_built(&soup);
+}
+
+static void require_told_limit(he_status status, const he_error *err, const char *limit)
+{
+    assert_int_equal(status, HE_LIMIT);
+    assert_non_null(strstr(err->text, limit));
+    assert_non_null(strstr(err->text, "edge_length"));
+}
+
+static void too_many_faces_are_refused_before_any_work(void **state)
+{
+    (void)state;
+    he_mesh *m = make_square_tubes(4), *before = dense_copy(m);
+    he_error err = {0};
+    uint64_t steps = 100;
+    const he_smooth_fill over = asking_for(1.02 * HE_FILL_FACES), few = asking_for(1000);
+    assert_true(fabs(he_fill_foretell(m, some_hole(m), &few, &steps) - 1000) < 1);
+    assert_int_equal(steps, 96);
+    require_told_limit(he_hole_fill_smooth(m, some_hole(m), &over, NULL, &err), &err, "100000");
+    he_fill_holes_options all = {.method = HE_FILL_ALL_SMOOTH, .smooth = over};
+    require_told_limit(he_fill_holes(m, &all, NULL, &err), &err, "100000");
+    /* none of the eight holes gets too many, but all together do */
+    all.smooth = asking_for(0.13 * HE_FILL_ALL_FACES);
+    require_told_limit(he_fill_holes(m, &all, NULL, &err), &err, "500000");
+    /* holes that will be left do not count */
+    all.max_size = 1;
+    assert_int_equal(he_fill_holes(m, &all, NULL, &err), HE_OK);
+    assert_true(he_mesh_equal_live(m, before));
+    steps = 2; /* the walk around a hole ends when there are no more steps */
+    (void)he_fill_foretell(m, some_hole(m), &few, &steps);
+    assert_int_equal(steps, 0);
+    assert_true(he_fill_foretell(m, some_hole(m), &few, &steps) <= 0);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
+static void a_filling_is_charged_by_the_faces_that_it_makes(void **state)
+{
+    (void)state;
+    const he_op *op = he_op_find("hole_fill", 9);
+    he_arg args[HE_OP_PARAMS];
+    he_mesh *m = make_square_tubes(1);
+    const double elements = (double)he_mesh_issued(m, HE_VERTEX) + he_mesh_issued(m, HE_EDGE) +
+                            he_mesh_issued(m, HE_FACE);
+    he_op_defaults(op, args);
+    args[0] = (he_arg){.given = true, .id = some_hole(m).i};
+    assert_true(he_op_growth(op, m, args) <= 1 && he_op_pace(op, args) == 1);
+    args[1] = (he_arg){.given = true, .choice = HE_FILL_ALL_SMOOTH};
+    args[2] = (he_arg){.given = true, .number = asking_for(10000).edge_length};
+    assert_true(fabs((he_op_growth(op, m, args) - 1) * elements - 30000) < 30);
+    assert_true(he_op_growth(op, NULL, args) <= 1);
+    assert_true(he_op_pace(op, args) > 1);
+    const double lengths[] = {asking_for(1000).edge_length, asking_for(2000).edge_length};
+    const uint32_t ids[] = {some_hole(m).i, some_hole(m).i};
+    args[0] = (he_arg){.given = true, .list = true, .ids = ids, .count = 2};
+    args[2] = (he_arg){.given = true, .list = true, .numbers = lengths, .count = 2};
+    assert_true(fabs((he_op_growth(op, m, args) - 1) * elements - 9000) < 9);
+    he_mesh_free(m);
+}
+
 static void a_hole_of_many_edges_does_not_get_too_many_faces(void **state)
 {
     (void)state;
@@ -518,6 +600,8 @@ int main(void)
         cmocka_unit_test(a_cap_of_a_sphere_comes_back),
         cmocka_unit_test(a_hole_in_a_plane_stays_in_the_plane),
         cmocka_unit_test(edges_are_as_long_as_asked),
+        cmocka_unit_test(too_many_faces_are_refused_before_any_work),
+        cmocka_unit_test(a_filling_is_charged_by_the_faces_that_it_makes),
         cmocka_unit_test(a_hole_of_many_edges_does_not_get_too_many_faces),
         cmocka_unit_test(a_hole_whose_diagonals_exist_gets_a_vertex),
         cmocka_unit_test(extreme_holes_get_finite_vertices_and_few_faces),
