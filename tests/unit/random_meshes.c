@@ -24,8 +24,9 @@ void random_shake(he_mesh *m, md_random *r, double size)
             continue;
         }
         he_vec3 p = he_position(m, (he_vertex){v});
-        p = he_vec3_add(p, (he_vec3){wobble(r, size), wobble(r, size), wobble(r, size)});
-        he_set_position(m, (he_vertex){v}, p);
+        const he_vec3 to =
+            he_vec3_add(p, (he_vec3){wobble(r, size), wobble(r, size), wobble(r, size)});
+        he_set_position(m, (he_vertex){v}, he_vec3_is_finite(to) ? to : p);
     }
 }
 

@@ -15,7 +15,8 @@ typedef struct random_family {
 enum { RANDOM_FAMILIES = 7 };
 extern const random_family random_families[RANDOM_FAMILIES];
 
-/* Moves each vertex by up to `size` in each direction. */
+/* Moves each vertex by up to `size` in each direction, unless it would leave the range of a double.
+ */
 void random_shake(he_mesh *m, md_random *r, double size);
 
 /* Adds random marks and attributes. */
