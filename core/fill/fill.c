@@ -1,6 +1,8 @@
 #include "fill/fill.h"
 
 #include "fill/patch.h"
+
+#include "base/progress.h"
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/layout.h"
@@ -54,6 +56,13 @@ static he_status note_chords(const he_patch *p, he_rim_chords *chords, bool add,
     return status;
 }
 
+/* Begins the next phase of the progress, if the steps of a patch are phases. */
+static he_status begin(const he_patch *p, const he_fill_shared *shared, const char *name, double to,
+                       he_error *err)
+{
+    return shared->phases ? he_progress_phase(p->mesh->progress, name, to, err) : HE_OK;
+}
+
 he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *options,
                        he_fill_shared *shared, he_filled *out, he_error *err)
 {
@@ -64,18 +73,30 @@ he_status he_fill_loop(he_mesh *m, const he_ids *loop, const he_smooth_fill *opt
     he_status status = he_patch_make(m, loop, chords, &p, err);
     if (status == HE_OK) {
         p.left = shared->left;
+        status = begin(&p, shared, "covering the hole", 0.03, err);
+    }
+    if (status == HE_OK) {
         status = he_patch_cover(&p, err);
     }
     /* The equations are for the surface that they change, so a coarse patch is bent first. It has
      * about a ninth of the triangles, and takes an eighth of the time. */
-    static const double coarseness[] = {3, 1};
+    static const double coarseness[] = {3, 1}, refined[] = {0.06, 0.3}, faired[] = {0.12, 0.95};
     const double wanted =
         options->edge_length > 0 ? fmax(options->edge_length / p.unit, DBL_MIN) : 0;
     for (size_t i = 0; i < 2 && status == HE_OK; i++) {
-        status = he_patch_refine(&p, wanted, coarseness[i], err);
+        status = begin(&p, shared, "refining", refined[i], err);
+        if (status == HE_OK) {
+            status = he_patch_refine(&p, wanted, coarseness[i], err);
+        }
+        if (status == HE_OK) {
+            status = begin(&p, shared, "fairing", faired[i], err);
+        }
         if (status == HE_OK) {
             status = he_patch_fair(&p, (unsigned)options->continuity, err);
         }
+    }
+    if (status == HE_OK) {
+        status = begin(&p, shared, "finding attributes", 1, err);
     }
     if (status == HE_OK) {
         status = he_patch_values_find(&p, &values, err);
@@ -112,8 +133,11 @@ he_status he_hole_fill_smooth(he_mesh *m, he_halfedge h, const he_smooth_fill *o
                              "the length of edges must be finite and not below 0");
     }
     he_status status = he_hole_loop(m, h, &loop, err);
-    if (status == HE_OK && options->edge_length > 0) {
-        status = he_fill_within(he_fill_foretell(m, h, options, &steps), options->edge_length, err);
+    if (status == HE_OK) {
+        const double faces = he_fill_foretell(m, h, options, &steps);
+        shared.phases = faces >= HE_PROGRESS_STRIDE; /* others are too short for six reports */
+        status =
+            options->edge_length > 0 ? he_fill_within(faces, options->edge_length, err) : HE_OK;
     }
     if (status == HE_OK) {
         status = he_fill_loop(m, &loop, options, &shared, out, err);

@@ -151,6 +151,7 @@ HE_NODISCARD he_status he_patch_write(he_mesh *m, const he_patch *p, const he_pa
 typedef struct he_fill_shared {
     he_rim_chords chords; /* he_edge_lookup_clear frees its lookup */
     double left;          /* how many faces may still be made */
+    bool phases;          /* the steps of a patch are phases of the progress */
 } he_fill_shared;
 
 /* Does what he_hole_fill_smooth does after its checks: fills the hole that has this loop. Subtracts

@@ -558,6 +558,29 @@ static void play(const random_family *of, md_random *r)
     he_mesh_free(m);
 }
 
+static void a_large_filling_can_be_cancelled_at_each_report(void **state)
+{
+    (void)state;
+    he_mesh *m = make_square_tubes(1), *before = dense_copy(m);
+    const he_smooth_fill options = asking_for(5000);
+    he_status status = HE_CANCELLED;
+    long reports = 0;
+    while (status == HE_CANCELLED) {
+        long left = ++reports;
+        he_progress progress;
+        he_progress_init(&progress, tell, &left);
+        he_mesh_set_progress(m, &progress);
+        status = he_hole_fill_smooth(m, some_hole(m), &options, NULL, NULL);
+        he_mesh_set_progress(m, NULL);
+        assert_true(status == HE_CANCELLED ? he_mesh_equal_live(m, before) : status == HE_OK);
+        assert_true(status != HE_OK || strcmp(progress.phase, "finding attributes") == 0);
+    }
+    print_message("note: %ld reports\n", reports - 1);
+    assert_true(reports > 10);
+    he_mesh_free(before);
+    he_mesh_free(m);
+}
+
 static void random_holes_are_filled(void **state)
 {
     (void)state;
@@ -608,6 +631,7 @@ int main(void)
         cmocka_unit_test(attributes_continue_into_the_hole),
         cmocka_unit_test(fill_holes_says_what_it_left),
         cmocka_unit_test(what_fills_all_holes_is_foreseen),
+        cmocka_unit_test(a_large_filling_can_be_cancelled_at_each_report),
         cmocka_unit_test(random_holes_are_filled),
         cmocka_unit_test(every_allocation_may_fail),
     };
