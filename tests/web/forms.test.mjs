@@ -541,3 +541,12 @@ test('what an operation did is said in numbers of the mesh', async (t) => {
     await waitForTold(page, /Changed: 8 F|Changed: .*8 F/);
     assert.ok(!(await page.evaluate(() => window.told)).some((text) => /Done|revision/.test(text)));
 });
+
+test('a long form scrolls in its panel, the page stays where it is', async (t) => {
+    const { page } = await openMesh(t, CUBE);
+    for (const name of ['remesh', 'select', 'deform']) {
+        await choose(page, name);
+        const height = await page.evaluate(() => document.documentElement.scrollHeight);
+        assert.equal(height, 800, name);
+    }
+});
