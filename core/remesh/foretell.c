@@ -34,9 +34,12 @@ static double extent_of(const sample *s)
     he_face f;
     for (size_t i = 0; i < s->count; i += s->stride) {
         if (find_face(s, i, &f)) {
-            const he_vec3 p = he_position(s->m, he_origin(s->m, he_face_halfedge(s->m, f)));
-            low = (he_vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
-            high = (he_vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+            he_halfedge h = he_face_halfedge(s->m, f);
+            for (unsigned k = 0; k < 3; k++, h = he_next(s->m, h)) {
+                const he_vec3 p = he_position(s->m, he_origin(s->m, h));
+                low = (he_vec3){fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z)};
+                high = (he_vec3){fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z)};
+            }
         }
     }
     return fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));

@@ -295,6 +295,25 @@ static void what_an_error_makes_is_foreseen(void **state)
     }
 }
 
+/* The usual largest length follows from the extent of the faces that are replaced. One triangle has
+ * an extent, too. */
+static void what_an_error_makes_of_one_face_is_foreseen(void **state)
+{
+    (void)state;
+    static const uint32_t face[] = {0};
+    he_mesh *m = dense_cube(20);
+    he_remesh_options options = remesh_options(0);
+    options.by = HE_REMESH_BY_ERROR;
+    options.error = 0.01;
+    options.faces = face;
+    options.face_count = 1;
+    const double before = he_mesh_faces(m), told = he_remesh_foretell(m, &options);
+    assert_true(told >= before - 1 && told < before + 300);
+    (void)remesh_mesh(m, &options);
+    assert_true(he_mesh_faces(m) < before + 300);
+    he_mesh_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -306,6 +325,7 @@ int main(void)
         cmocka_unit_test(the_number_of_faces_is_met),
         cmocka_unit_test(what_a_length_makes_is_foreseen),
         cmocka_unit_test(what_an_error_makes_is_foreseen),
+        cmocka_unit_test(what_an_error_makes_of_one_face_is_foreseen),
         cmocka_unit_test(what_would_make_too_many_faces_is_refused_before_it_begins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
