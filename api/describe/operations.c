@@ -126,6 +126,8 @@ static const api_field param_fields[] = {
     API_FIELD(
         "exclusive", "flag", shown_param, exclusive, .zero_is_none = true,
         .doc = "True if the value must lie between min and max and may not be min or max itself."),
+    API_FIELD("unit", "text", shown_param, param.unit,
+              .doc = "The unit of a number: radians if it is an angle."),
     API_FIELD("choices", "*text", shown_param, param.choices, .required = false),
     API_FIELD_MADE_OF("doc", "text", shown_param, param.doc, write_doc, .required = true),
 };
@@ -181,6 +183,8 @@ static const api_field result_fields[] = {
     API_FIELD_MADE("type", "text", write_result_type, .required = true),
     API_FIELD("choices", "*text", he_result_row, choices,
               .doc = "The possible values, if the type is choice."),
+    API_FIELD("unit", "text", he_result_row, unit,
+              .doc = "The unit of a number: radians if it is an angle."),
     API_FIELD_MADE_OF("doc", "text", he_result_row, doc, write_doc, .required = true),
 };
 const api_record api_result_record = API_RECORD("result", result_fields);
@@ -466,19 +470,38 @@ static void add_choices(api_text *text, const char *before, const char *const *c
     }
 }
 
+/* Adds the description of a parameter or result, with its unit if it has one. */
+static void add_doc(api_text *text, const char *doc, const char *unit)
+{
+    api_text_add_string(text, doc);
+    if (unit != NULL) {
+        api_text_add_format(text, " In %s.", unit);
+    }
+}
+
+/* Writes a text as the description of a schema, or `doc` if there was no memory for the text.
+ * Clears the text. */
+static void end_description(api_out *out, api_text *text, const char *doc)
+{
+    api_text_add(text, "", 1); /* the NUL at its end */
+    api_out_key_string(out, "description", text->failed ? doc : text->bytes);
+    api_text_clear(text);
+}
+
 /* Writes the description of a parameter. If the parameter depends on the operation's selector, a
  * sentence at its end says so. */
 static void write_description(api_out *out, const he_op *op, const he_param *param)
 {
     api_text text = {0};
+    add_doc(&text, param->doc, param->unit);
     if (param->with == 0) {
-        api_out_key_string(out, "description", param->doc);
+        end_description(out, &text, param->doc);
         return;
     }
     const char *with[MOST_CHOICES + 1], *needed[MOST_CHOICES + 1];
     list_choices(op, param->with, with);
     list_choices(op, param->needed, needed);
-    api_text_add_format(&text, "%s Only if `%s` is ", param->doc, he_op_selector(op)->name);
+    api_text_add_format(&text, " Only if `%s` is ", he_op_selector(op)->name);
     add_choices(&text, "", with);
     api_text_add_string(&text, ".");
     if (param->needed == param->with && param->group == 0 && param->plural == NULL) {
@@ -490,9 +513,7 @@ static void write_description(api_out *out, const he_op *op, const he_param *par
                     needed);
         api_text_add_string(&text, ".");
     }
-    api_text_add(&text, "", 1); /* the NUL at its end */
-    api_out_key_string(out, "description", text.failed ? param->doc : text.bytes);
-    api_text_clear(&text);
+    end_description(out, &text, param->doc);
 }
 
 /* Returns true if the list for each of whose items the operation runs has a name of its own. */
@@ -640,7 +661,9 @@ static void write_result_schema(api_out *out, const he_result_row *result)
     api_out_key(out, result->name);
     api_out_object_begin(out);
     if (result->doc != NULL) {
-        api_out_key_string(out, "description", result->doc);
+        api_text text = {0};
+        add_doc(&text, result->doc, result->unit);
+        end_description(out, &text, result->doc);
     }
     switch (result->type) {
     case HE_RESULT_ELEMENT:

@@ -184,8 +184,8 @@ const he_op he_fill_rows[] = {
              [HOLE_FILL_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
              [HOLE_FILL_OUT_BEND] = {"bend", HE_RESULT_NUMBER, HE_EDGE,
                                      "The largest angle between the normals of a new face "
-                                     "and of its neighbour outside of the hole, in "
-                                     "radians."}},
+                                     "and of its neighbour outside of the hole.",
+                                     .unit = HE_RADIANS}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
                      HE_DOUBLED_EDGE, HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -238,8 +238,8 @@ const he_op he_fill_rows[] = {
                                                 "their corners would double an edge."},
                     [FILL_HOLES_OUT_BEND] = {"bend", HE_RESULT_NUMBER, HE_EDGE,
                                              "The largest angle between the normals of a new face "
-                                             "and of its neighbour outside of the hole, in "
-                                             "radians."}},
+                                             "and of its neighbour outside of the hole.",
+                                             .unit = HE_RADIANS}},
         .refusals = {HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .pace = 20,

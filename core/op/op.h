@@ -65,6 +65,9 @@ enum {
 /* The bit of a value of the selector in `with` and `needed` of a parameter. */
 #define HE_WITH(choice) (1u << (choice))
 
+/* The unit of angles. */
+#define HE_RADIANS "radians"
+
 typedef struct he_param {
     const char *name;
     /* The name of the member of a request that gives a list; NULL unless `type` is
@@ -89,6 +92,7 @@ typedef struct he_param {
     unsigned needed;
     double min, max;
     double fallback;            /* default of a number; 0 or 1 for a flag; index of a choice */
+    const char *unit;           /* the unit of a number, such as HE_RADIANS; NULL: none */
     const char *const *choices; /* names of the choices, ending in NULL */
     const char *doc;
 } he_param;
@@ -143,6 +147,7 @@ typedef struct he_result_row {
     he_kind kind;
     const char *doc;
     const char *const *choices; /* names of the choices, ending in NULL */
+    const char *unit;           /* the unit of a number, such as HE_RADIANS; NULL: none */
 } he_result_row;
 
 enum { HE_OP_PARAMS = 24, HE_OP_RESULTS = 12, HE_OP_REFUSALS = 16 };

@@ -1,5 +1,6 @@
 #include "op/rows.h"
 
+#include "geometry/scale.h"
 #include "remesh/remesh.h"
 
 #include <float.h>
@@ -148,11 +149,12 @@ const he_op he_remesh_rows[] = {
                                 .type = HE_PARAM_NUMBER,
                                 .flags = HE_RANGE,
                                 .min = 0,
-                                .max = 3.14159265358979323846,
+                                .max = HE_PI,
                                 .fallback = HE_REMESH_CREASE,
-                                .doc = "An angle in radians. Edges between faces whose normals "
-                                       "differ by more count as features, and vertices at which a "
-                                       "boundary or feature line turns by more stay in place."},
+                                .unit = HE_RADIANS,
+                                .doc = "Edges between faces whose normals differ by more than this "
+                                       "angle count as features, and vertices at which a boundary "
+                                       "or feature line turns by more stay in place."},
              [REMESH_KEEP_BOUNDARY] = {.name = "keep_boundary",
                                        .type = HE_PARAM_FLAG,
                                        .doc = "Do not change boundary edges at all."},
@@ -194,9 +196,9 @@ const he_op he_remesh_rows[] = {
              [REMESH_OUT_LONGEST] = {"longest", HE_RESULT_NUMBER, HE_EDGE,
                                      "The length of the longest edge."},
              [REMESH_OUT_SMALLEST_ANGLE] = {"smallest_angle", HE_RESULT_NUMBER, HE_HALFEDGE,
-                                            "The smallest angle of a face, in radians."},
+                                            "The smallest angle of a face.", .unit = HE_RADIANS},
              [REMESH_OUT_LARGEST_ANGLE] = {"largest_angle", HE_RESULT_NUMBER, HE_HALFEDGE,
-                                           "The largest angle of a face, in radians."},
+                                           "The largest angle of a face.", .unit = HE_RADIANS},
              [REMESH_OUT_REGULAR] =
                  {"regular", HE_RESULT_NUMBER, HE_VERTEX,
                   "The fraction of the vertices that have six edges, among those "

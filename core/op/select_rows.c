@@ -197,9 +197,10 @@ const he_op he_select_rows[] = {
                                .type = HE_PARAM_NUMBER,
                                .flags = HE_RANGE,
                                .max = HE_PI,
+                               .unit = HE_RADIANS,
                                .with = HE_WITH(HE_BY_REGION) | HE_WITH(HE_BY_CONE),
                                .needed = HE_WITH(HE_BY_REGION) | HE_WITH(HE_BY_CONE),
-                               .doc = "In radians, 0 to pi. region: the largest angle between the "
+                               .doc = "region: the largest angle between the "
                                       "normals of neighbours. cone: the largest angle between a "
                                       "normal and the direction `normal`."},
              [SELECT_CROSS_FEATURES] =
@@ -364,14 +365,16 @@ const he_op he_select_rows[] = {
                       'a',
                   .max =
                       HE_PI,
+                  .unit = HE_RADIANS,
                   .doc =
                       "Patches end at edges at which the normals of the faces differ by more than "
-                      "this angle, in radians. Edges of this sort inside a patch are marked, "
+                      "this angle. Edges of this sort inside a patch are marked, "
                       "too."},
              [SEGMENT_PLANES] =
                  {.name = "planes",
                   .type = HE_PARAM_NUMBER,
-                  .flags = HE_REQUIRED | HE_RANGE | HE_WHOLE,
+                  .flags = HE_REQUIRED |
+                           HE_RANGE | HE_WHOLE,
                   .group = 'a',
                   .min = 1,
                   .max = HE_MAX_ROWS,

@@ -525,7 +525,7 @@ test('segment offers colours by patch, remesh by quality, and decimate by deviat
         await page.getByRole('button', { name: 'Apply' }).click();
     };
     const offer = (name) => page.locator('#toasts').getByRole('button', { name });
-    await apply('segment', { angle: '0.6' });
+    await apply('segment', { angle: '35' });
     await waitForTold(page, /divided into/);
     await offer('Colour by patch').click();
     await waitForColor(page, 'attribute/faces/patch 2');

@@ -550,3 +550,30 @@ test('a long form scrolls in its panel, the page stays where it is', async (t) =
         assert.equal(height, 800, name);
     }
 });
+
+test('an angle is given and told in degrees', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, CUBE);
+    const marks = (name) => page.locator(`[data-name="${name}"] .head .small`).textContent();
+    await choose(page, 'remesh');
+    assert.equal(await marks('crease'), 'degrees, from 0 to 180, optional');
+    assert.equal(await field(page, 'crease').getAttribute('placeholder'), '40.107');
+    await choose(page, 'segment');
+    await field(page, 'angle').fill('180.5');
+    await submit(page);
+    await expectVerdict(page, 'angle must be from 0 to 180 degrees.');
+    assert.equal(await field(page, 'angle').getAttribute('aria-invalid'), 'true');
+    await field(page, 'angle').fill('180');
+    assert.equal((await apply(page)).angle, Math.PI);
+    await waitForFrame(page, { revision: 2 });
+    await choose(page, 'select');
+    await field(page, 'by').selectOption('region');
+    await field(page, 'face').fill('0');
+    await field(page, 'angle').fill('45');
+    assert.equal((await apply(page)).angle, Math.PI / 4);
+    await waitForFrame(page, { revision: 3 });
+    await post(daemon, `/${mesh}/edits`, { op: 'face_delete', faces: [0] });
+    await waitForFrame(page, { revision: 4 });
+    await choose(page, 'fill_holes');
+    await submit(page);
+    await waitForTold(page, /bend 90\u00b0/);
+});

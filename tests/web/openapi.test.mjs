@@ -74,6 +74,24 @@ test('each part of a union is told apart by its discriminator', async (t) => {
     assert.deepEqual(Object.keys(components.schemas.operation.discriminator.mapping), names);
 });
 
+test('numbers that are angles say that they are in radians', async (t) => {
+    const { url } = await startDaemon(t);
+    const { components } = await (await fetch(`${url}/v1/openapi.json`)).json();
+    const { operations } = await (await fetch(`${url}/v1/operations`)).json();
+    const angles = operations.flatMap(({ name, params, results }) =>
+        [...params.map((row) => [`op_${name}`, row]), ...results.map((row) => [`done_${name}`, row])]
+            .filter(([, { unit }]) => unit !== undefined),
+    );
+    assert.deepEqual(angles.map(([schema, { name }]) => `${schema} ${name}`).sort(), [
+        'done_fill_holes bend', 'done_hole_fill bend', 'done_remesh largest_angle',
+        'done_remesh smallest_angle', 'op_remesh crease', 'op_segment angle', 'op_select angle',
+    ]);
+    for (const [schema, { name, unit }] of angles) {
+        assert.equal(unit, 'radians');
+        assert.match(components.schemas[schema].properties[name].description, / In radians\./);
+    }
+});
+
 test('the first paths that one tries lead somewhere', async (t) => {
     const { url } = await startDaemon(t);
     const index = await (await fetch(`${url}/v1`)).json();

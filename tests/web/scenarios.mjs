@@ -101,10 +101,10 @@ export const SCENARIOS = [
         { op: 'material_set', name: 'steel', faces: [0] },
     ]],
     ['select', GRID, {
-        by: 'region', face: [MIDDLE], angle: '0.5', cross_features: true, elements: 'edges',
+        by: 'region', face: [MIDDLE], angle: '30', cross_features: true, elements: 'edges',
         into: 'part',
     }],
-    ['segment', CUBES, { angle: '0.5', features: 'replace', into: 'side' }],
+    ['segment', CUBES, { angle: '30', features: 'replace', into: 'side' }],
     ['delaunay', LONG, { edge: [edge(0, 2)] }],
     ['compact', GRID, {}, HOLE],
     ['vertex_weld', GRID, { vertex: [vertex(5), vertex(6)], position: 'lowest' }],

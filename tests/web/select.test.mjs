@@ -42,7 +42,7 @@ test('the form shows what the rule needs, and sends nothing else', async (t) => 
     const { page } = await openMesh(t, CAN);
     await choose(page, 'select');
     assert.deepEqual(await shown(page), ['by', 'face', 'angle', 'cross_features', ...ALWAYS]);
-    await field(page, 'angle').fill('0.5');
+    await field(page, 'angle').fill('30');
     await field(page, 'by').selectOption('component');
     assert.deepEqual(await shown(page), ['by', 'face', 'edge', 'vertex', ...ALWAYS]);
     assert.equal(await page.locator('#parameters .or:not([hidden])').count(), 2);
@@ -72,7 +72,7 @@ test('seeds come from the selection, and what is found fills the next form', asy
     await goTo(page, 'face', sides[0]);
     await choose(page, 'select');
     assert.equal(await field(page, 'face').inputValue(), `${sides[0]}`);
-    await field(page, 'angle').fill('0.6');
+    await field(page, 'angle').fill('35');
     await expectVerdict(page, 'Would select: 12 elements (+12).');
     await apply(page);
     await expectSelection(page, 'face', sides);
@@ -185,7 +185,7 @@ test('patches are counted, and their borders are shown', async (t) => {
     await choose(page, 'segment');
     assert.deepEqual(await shown(page), ['angle', 'planes', 'features', 'into']);
     assert.equal(await page.locator('#parameters .or:not([hidden])').count(), 1);
-    await field(page, 'angle').fill('0.6');
+    await field(page, 'angle').fill('35');
     await expectVerdict(page, 'Would divide the faces into 3 patches, with 24 feature edges.');
     await checkAccessible(page, 'segment', '#details');
     await apply(page);
@@ -206,7 +206,7 @@ test('a set of many elements is selected, too', async (t) => {
     await choose(page, 'select');
     await field(page, 'by').selectOption('cone');
     await fillVector(page, 'normal', [0, 0, 1]);
-    await field(page, 'angle').fill('0.1');
+    await field(page, 'angle').fill('6');
     await apply(page);
     await expectToast(page, 'The set \u201cselected\u201d of faces has 1,600 elements (+1,600).');
     await waitForFrame(page, { revision: 2, selection: '1600 faces' });

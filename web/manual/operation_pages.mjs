@@ -84,14 +84,19 @@ const PARAMETER_TYPES = {
     color: '3 numbers', color_alpha: '3 or 4 numbers',
 };
 
-function parameterType({ type, plural, each, choices, min, max, exclusive, nullable, set }) {
+// Writes a limit of a number.
+function limit(value) {
+    return value === Math.PI ? '\u03c0' : String(value);
+}
+
+function parameterType({ type, plural, each, choices, min, max, exclusive, nullable, set, unit }) {
     const list = plural ?? each;
     const base = choices !== undefined ? choices.join(', ') : PARAMETER_TYPES[type] ?? (['vertex', 'edge', 'face', 'halfedge'].includes(type) ? `id of a ${type === 'halfedge' ? 'half-edge' : type}` : type);
     const range = min === undefined ? '' : exclusive
-        ? ` above ${min}${max < 1e300 ? `, below ${max}` : ''}`
-        : max >= 1e300 ? (min <= -1e300 ? '' : ` from ${min}`) : ` from ${min} to ${max}`;
+        ? ` above ${limit(min)}${max < 1e300 ? `, below ${limit(max)}` : ''}`
+        : max >= 1e300 ? (min <= -1e300 ? '' : ` from ${limit(min)}`) : ` from ${limit(min)} to ${limit(max)}`;
     const more = `${nullable ? ', or null' : ''}${list && list !== undefined ? `, or a list in ${list}${set ? ', or a set' : ''}` : ''}`;
-    return base + range + more;
+    return base + (unit === undefined ? '' : ` in ${unit},`) + range + more;
 }
 
 // Says which parameters of an operation are alternatives of one of them.
@@ -128,8 +133,8 @@ function resultsTable(results, link) {
     if (results.length === 0) {
         return '';
     }
-    return [h('h2', { id: 'results' }, 'Results'), table(['Result', 'Type', 'Meaning'], results.map(({ name, type, choices, doc }) => [
-        code(name), choices?.join(', ') ?? type, inline(doc, link),
+    return [h('h2', { id: 'results' }, 'Results'), table(['Result', 'Type', 'Meaning'], results.map(({ name, type, unit, choices, doc }) => [
+        code(name), choices?.join(', ') ?? (unit === undefined ? type : `${type} in ${unit}`), inline(doc, link),
     ]), 'Results')];
 }
 

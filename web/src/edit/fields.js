@@ -2,6 +2,7 @@
 // about the parameter.
 
 import { KIND_OF } from '../geometry/kinds.js';
+import { Angle, degreesOf } from '../kit/angle.js';
 import {
     Choice,
     Color,
@@ -15,6 +16,7 @@ import {
     polygon,
     vectors,
 } from '../kit/controls.js';
+import { formatMeasure } from '../kit/dom.js';
 import { matrix } from '../kit/matrix.js';
 import { MeshChoice } from '../kit/mesh_choice.js';
 
@@ -77,6 +79,9 @@ export function controlFor(param, meshes, pickable) {
     if (type === 'mesh') {
         return new MeshChoice(name, meshes());
     }
+    if (isAngle(param)) {
+        return new Angle(name, hintFor(param), param);
+    }
     if (type === 'number' || type === 'integer') {
         return new Numeral(name, hintFor(param), type === 'integer' ? '1' : 'any');
     }
@@ -106,10 +111,21 @@ function isChosenByServer({ default: usual, required, required_with: needed }) {
     return usual === undefined && !required && needed === undefined;
 }
 
+// Returns whether a parameter is an angle. The server takes it in radians, and the form in degrees.
+function isAngle({ unit }) {
+    return unit === 'radians';
+}
+
+// Returns how a value of a parameter is written in the form.
+function written(value, param) {
+    return isAngle(param) ? formatMeasure(degreesOf(value)) : `${value}`;
+}
+
 // Returns the placeholder of an empty number field: the default value, if it is known; else
 // 'number' if the user must give one, or 'default' if the server chooses one.
-function hintFor({ default: usual, required }) {
-    return usual === undefined ? (required ? 'number' : 'default') : `${usual}`;
+function hintFor(param) {
+    const { default: usual, required } = param;
+    return usual === undefined ? (required ? 'number' : 'default') : written(usual, param);
 }
 
 // Returns whether a parameter may be given, where `selected` is the value of the operation's
@@ -126,16 +142,17 @@ function isNeeded({ required, required_with: values = [] }, selected) {
 // The largest whole number that the server takes. A limit that is as large is none to a user.
 const LIMITLESS = 2147483646;
 
-// Returns a note on a parameter: whether the value is a whole number, its range, and whether it may
-// be left out.
+// Returns a note on a parameter: whether the value is a whole number or an angle, its range, and
+// whether it may be left out.
 export function marksOf(param, selected) {
     const { type, min, max, exclusive } = param;
-    const marks = type === 'integer' ? ['whole'] : [];
+    const marks = type === 'integer' ? ['whole'] : isAngle(param) ? ['degrees'] : [];
     if (max >= LIMITLESS) {
         marks.push(exclusive ? `more than ${min}` : `${min} or more`);
     } else if (min !== undefined || max !== undefined) {
         const between = exclusive ? 'between' : 'from';
-        marks.push(`${between} ${min} ${exclusive ? 'and' : 'to'} ${max}`);
+        const [least, most] = [min, max].map((value) => written(value, param));
+        marks.push(`${between} ${least} ${exclusive ? 'and' : 'to'} ${most}`);
     }
     if (!isNeeded(param, selected) && type !== 'flag') {
         marks.push('optional');

@@ -1,6 +1,7 @@
 // results.js - says in words what an edit has done. Pure.
 
 import { formatCount, formatMeasure, formatNumberOf } from '../kit/dom.js';
+import { formatAngle } from '../kit/lengths.js';
 
 const KINDS = [
     ['faces', 'face', 'faces'],
@@ -35,9 +36,12 @@ function changesOf(before, after) {
 
 // Returns the results of an operation that are numbers or words, with their names.
 function numbersOf({ results = [] } = {}, result = {}) {
-    return results.flatMap(({ name, type }) => {
+    return results.flatMap(({ name, type, unit }) => {
         const value = result[name];
         const words = name.replaceAll('_', ' ');
+        if (unit === 'radians' && typeof value === 'number') {
+            return [`${words} ${formatAngle(value, DIGITS)}`];
+        }
         if (type === 'number' && typeof value === 'number') {
             const isCount = Number.isInteger(value);
             return [`${words} ${isCount ? formatCount(value) : formatMeasure(value, DIGITS)}`];

@@ -12,7 +12,7 @@ export function formatArea(area) {
     return formatSize(area, 2);
 }
 
-// Writes an angle, which is given in radians, in degrees.
-export function formatAngle(angle) {
-    return `${formatMeasure((angle * 180) / Math.PI)}\u00b0`;
+// Writes an angle, which is given in radians, in degrees with at most `digits` significant digits.
+export function formatAngle(angle, digits = 6) {
+    return `${formatMeasure((angle * 180) / Math.PI, digits)}\u00b0`;
 }
