@@ -577,3 +577,24 @@ test('an angle is given and told in degrees', async (t) => {
     await submit(page);
     await waitForTold(page, /bend 90\u00b0/);
 });
+
+test('a message says each number once, and which holes stay open', async (t) => {
+    const { daemon, mesh, page } = await openMesh(t, { name: 'ball', shape: 'icosphere', subdivisions: 2 });
+    await post(daemon, `/${mesh}/edits`, { op: 'face_delete', faces: [0, 40, 41, 42, 43] });
+    await waitForFrame(page, { revision: 2 });
+    const { loops } = await get(daemon, `/${mesh}/boundaries`);
+    const lengths = loops.map(({ length }) => length);
+    await choose(page, 'fill_holes');
+    await field(page, 'max_edges').fill('3');
+    const open = lengths.filter((length) => length > 3).length;
+    const said = new RegExp(`${open} holes? stays? open \\(too large: ${open}\\)`);
+    await expectVerdict(page, said);
+    await submit(page);
+    await waitForTold(page, said);
+    await choose(page, 'remesh');
+    await field(page, 'edge_length').fill('0.4');
+    await submit(page);
+    await waitForTold(page, /faces, .*stop/);
+    const told = await page.evaluate(() => window.told.join());
+    assert.ok(!/large 0|doubled 0|faces before|faces after/.test(told), told);
+});

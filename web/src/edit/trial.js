@@ -2,6 +2,7 @@
 // in words.
 
 import { formatCount, formatNumberOf } from '../kit/dom.js';
+import { openOf } from './results.js';
 
 // A dry run starts when the form has not changed for this many milliseconds.
 const DELAY = 300;
@@ -111,29 +112,8 @@ export function wordsOf(answer) {
         return null;
     }
     const end = answer.undoable === false ? ' This edit cannot be undone.' : '';
-    return `${changesOf(answer)}${openOf(answer)}${end}`;
-}
-
-// Why the operation `fill_holes` leaves holes open, by the member of its result that counts them.
-const LEFT = {
-    large: 'too large',
-    touching: 'touching itself',
-    single: 'around a single face',
-    doubled: 'between edges that exist already',
-};
-
-// Returns how many holes an edit leaves open, in a sentence; '' if none.
-function openOf({ results }) {
-    const filled = results.find(({ left }) => left?.length > 0);
-    if (filled === undefined) {
-        return '';
-    }
-    const reasons = Object.entries(LEFT)
-        .filter(([name]) => filled[name] > 0)
-        .map(([name, words]) => `${words}: ${formatCount(filled[name])}`);
-    const { length } = filled.left;
-    const stays = length === 1 ? 'stays' : 'stay';
-    return `. ${formatNumberOf(length, 'hole')} ${stays} open (${reasons.join(', ')}).`;
+    const open = answer.results.map(openOf).find((words) => words !== '');
+    return `${changesOf(answer)}${open === undefined ? '' : `. ${open}`}${end}`;
 }
 
 // Returns what an edit has done, by its answer: how many elements it made, deleted or changed.
