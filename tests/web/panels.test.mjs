@@ -258,3 +258,18 @@ test('on a telephone the mesh is on the first screen, and the help fits', async 
     assert.ok(help.x >= 0 && help.x + help.width <= 360 && help.height <= 740);
     await checkAccessible(page, 'help on a telephone');
 });
+
+test('buttons leave room around their words', async (t) => {
+    for (const width of [375, 1280]) {
+        const { page } = await openMesh(t, CUBE, { viewport: { width, height: 800 } });
+        const tight = await page.locator('#details button:visible').evaluateAll((buttons) =>
+            buttons.flatMap((button) => {
+                const range = document.createRange();
+                range.selectNodeContents(button);
+                const room = button.clientWidth - range.getBoundingClientRect().width;
+                return room < 6 ? [`${button.textContent}: ${room}`] : [];
+            }),
+        );
+        assert.deepEqual(tight, []);
+    }
+});
