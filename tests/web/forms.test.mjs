@@ -158,6 +158,9 @@ test('a whole number is asked for in whole steps', async (t) => {
     assert.equal(await field(page, 'steps').getAttribute('step'), '1');
     await choose(page, 'face_inset');
     assert.equal(await field(page, 'factor').getAttribute('step'), 'any');
+    await choose(page, 'remesh');
+    const marks = page.locator('[data-name="target_faces"] .head .small');
+    assert.equal(await marks.textContent(), 'whole, from 1 to 33,554,432');
 });
 
 test('a map is put together of steps, or given as 16 numbers', async (t) => {

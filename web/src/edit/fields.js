@@ -16,7 +16,7 @@ import {
     polygon,
     vectors,
 } from '../kit/controls.js';
-import { formatMeasure } from '../kit/dom.js';
+import { formatCount, formatMeasure } from '../kit/dom.js';
 import { matrix } from '../kit/matrix.js';
 import { MeshChoice } from '../kit/mesh_choice.js';
 
@@ -151,7 +151,8 @@ export function marksOf(param, selected) {
         marks.push(exclusive ? `more than ${min}` : `${min} or more`);
     } else if (min !== undefined || max !== undefined) {
         const between = exclusive ? 'between' : 'from';
-        const [least, most] = [min, max].map((value) => written(value, param));
+        const write = type === 'integer' ? formatCount : (value) => written(value, param);
+        const [least, most] = [min, max].map(write);
         marks.push(`${between} ${least} ${exclusive ? 'and' : 'to'} ${most}`);
     }
     if (!isNeeded(param, selected) && type !== 'flag') {
