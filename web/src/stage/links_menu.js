@@ -4,7 +4,8 @@ import { Menu } from '../kit/menu.js';
 
 // `button` opens the menu. It offers the links and buttons beside it that have no room. Others are not
 // seen because they are of no use, such as the name of the token if the server requires none, or the
-// examples if the user may not make meshes; the menu does not offer these.
+// examples if the user may not make meshes; the menu does not offer these. If nothing lacks room, because
+// the window has become wider since the button was pressed, no menu opens.
 export function offerLinks(button) {
     const menu = new Menu();
     button.addEventListener('click', () => {
@@ -14,10 +15,12 @@ export function offerLinks(button) {
                 !one.checkVisibility() &&
                 !one.matches('[hidden], .looks-only .edits'),
         );
-        menu.open(
-            button,
-            button.ariaLabel,
-            hidden.map((one) => ({ label: one.ariaLabel ?? one.textContent, run: () => one.click() })),
-        );
+        const items = hidden.map((one) => ({
+            label: one.ariaLabel ?? one.textContent,
+            run: () => one.click(),
+        }));
+        if (items.length > 0) {
+            menu.open(button, button.ariaLabel, items);
+        }
     });
 }
