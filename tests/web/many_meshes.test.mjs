@@ -102,6 +102,44 @@ test('ten thousand meshes are scrolled, searched and walked through', async (t) 
     await page.waitForFunction(() => document.querySelectorAll('#meshes li').length === 200);
 });
 
+test('a late page of an earlier search does not let a page be read twice', async (t) => {
+    const daemon = await startDaemon(t);
+    const one = await post(daemon, '', { name: 'mesh', shape: 'cube' });
+    const page = await openPage(t, daemon, { path: '/docs' });
+    const asked = []; // {query, answer()} of each later page, in the order of the requests
+    await page.route(/\/v1\/meshes\?/, (route) => {
+        const query = new URL(route.request().url()).searchParams;
+        const contains = query.get('contains') ?? '';
+        const from = Number(query.get('cursor')?.split('/')[1] ?? 0);
+        const items = Array.from({ length: 200 }, (_, i) => ({ ...one, id: from + i === 0 ? one.id : `m${from + i}` }));
+        const answer = () => route.fulfill({ json: { items, next: from < 400 ? `${contains}/${from + 200}` : null } });
+        return from === 0 ? answer() : asked.push({ query, answer });
+    });
+    const next = async (act) => {
+        const request = page.waitForRequest(/cursor=/);
+        await act();
+        await request;
+    };
+    const more = page.getByRole('button', { name: 'Show more' });
+    await page.goto(`${daemon.url}/#mesh=${one.id}`);
+    await rows(page).first().waitFor();
+    await next(() => more.click());
+    // The filter changes while the page is being read.
+    const again = page.waitForResponse(/contains=mesh/);
+    await page.locator('#mesh-filter').fill('mesh');
+    await (await again).finished();
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
+    await next(() => more.click());
+    const late = page.waitForResponse(/cursor=%2F200/);
+    await asked[0].answer();
+    await (await late).finished();
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
+    await more.click();
+    await asked[1].answer();
+    await page.waitForFunction(() => document.querySelectorAll('#meshes li').length === 400);
+    assert.deepEqual(asked.map(({ query }) => query.get('cursor')), ['/200', 'mesh/200']);
+});
+
 // --- names ---
 
 const HEBREW = '\u05e9\u05dc\u05d5\u05dd 3';

@@ -32,7 +32,7 @@ export class MeshList {
     #current = null;
     #cursor = null;
     #reading = 0;
-    #appending = null; // the cursor of the page that is being added
+    #appending = null; // the reading and the cursor of the page that is being added
     #stop = null; // the row that the Tab key reaches
     #leaving = new Set(); // ids of meshes that are about to be deleted
 
@@ -211,18 +211,22 @@ export class MeshList {
     // Adds the next page, unless it is being read already.
     async #append() {
         const [reading, cursor] = [this.#reading, this.#cursor];
-        if (cursor === this.#appending) {
+        const page = `${reading} ${cursor}`;
+        if (page === this.#appending) {
             return;
         }
-        this.#appending = cursor;
+        this.#appending = page;
         try {
             const { items, next } = await this.#read(cursor);
-            if (reading === this.#reading) {
+            if (reading === this.#reading && cursor === this.#cursor) {
                 this.#list.append(...items.map((item) => this.#row(item)));
                 this.#setNext(next);
             }
         } finally {
-            this.#appending = null;
+            // After a change of the filter or the order, another page may be read already.
+            if (page === this.#appending) {
+                this.#appending = null;
+            }
         }
     }
 
