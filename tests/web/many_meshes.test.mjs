@@ -140,6 +140,59 @@ test('a late page of an earlier search does not let a page be read twice', async
     assert.deepEqual(asked.map(({ query }) => query.get('cursor')), ['/200', 'mesh/200']);
 });
 
+// Runs in the page: breakOff() ends the stream of events as a lost connection does.
+function makeBreakable() {
+    const send = window.fetch;
+    window.fetch = async (path, options) => {
+        const answer = await send(path, options);
+        if (!`${path}`.endsWith('/events')) {
+            return answer;
+        }
+        const start = (controller) => {
+            window.breakOff = () => controller.error(new Error('broken off'));
+        };
+        return new Response(answer.body.pipeThrough(new TransformStream({ start })));
+    };
+}
+
+test('without a connection, scrolling asks once, and reads on when the connection is back', async (t) => {
+    const daemon = await startDaemon(t);
+    const vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];
+    for (let i = 0; i < 205; i++) {
+        await post(daemon, '', { name: nameOf(i), vertices, faces: [[0, 1, 2]] });
+    }
+    const page = await openPage(t, daemon, { init: makeBreakable, allowed: [/ERR_INTERNET_DISCONNECTED/] });
+    await page.waitForFunction(() => document.querySelectorAll('#meshes li').length === 200);
+    await page.locator('#mesh-title').filter({ hasText: nameOf(204) }).waitFor();
+    await page.context().setOffline(true);
+    await page.evaluate(() => window.breakOff());
+    const failures = page.locator('#toasts .toast').filter({ hasText: 'No connection' });
+    const scroll = (top) =>
+        page.evaluate((to) => {
+            const list = document.querySelector('#meshes');
+            const scrolled = new Promise((resolve) => list.addEventListener('scroll', resolve, { once: true }));
+            list.scrollTop = list.scrollHeight - list.clientHeight - to;
+            return scrolled;
+        }, top);
+    let asked = 0;
+    page.on('request', (request) => (asked += request.url().includes('cursor=') ? 1 : 0));
+    await scroll(200);
+    await failures.waitFor();
+    for (const top of [150, 100, 50, 0]) {
+        await scroll(top);
+    }
+    assert.equal(await failures.getAttribute('data-count'), '1');
+    assert.equal(asked, 1);
+    // The button asks again.
+    await page.locator('#more-meshes').click();
+    await page.waitForFunction(() => document.querySelector('#toasts [data-count="2"]') !== null);
+    assert.equal(asked, 2);
+    await page.locator('#connection').filter({ hasText: 'Connection lost' }).waitFor();
+    await page.context().setOffline(false);
+    await page.waitForFunction(() => document.querySelectorAll('#meshes li').length === 205);
+    assert.equal(asked, 3);
+});
+
 // --- names ---
 
 const HEBREW = '\u05e9\u05dc\u05d5\u05dd 3';

@@ -373,6 +373,9 @@ function update(what, change) {
     if (isChanged) {
         comparing.forget();
     }
+    if (what === 'state' && session.connection === 'on') {
+        list.goOn();
+    }
     time.follow(what, session.shown);
     followOthers(what, change);
     if (isNew || what === 'name') {

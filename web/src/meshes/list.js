@@ -33,6 +33,7 @@ export class MeshList {
     #cursor = null;
     #reading = 0;
     #appending = null; // the reading and the cursor of the page that is being added
+    #hasFailed = false; // the last page could not be read, so scrolling does not ask for it again
     #stop = null; // the row that the Tab key reaches
     #leaving = new Set(); // ids of meshes that are about to be deleted
 
@@ -50,7 +51,7 @@ export class MeshList {
         this.#onMore = onMore;
         this.#onError = onError;
         more.addEventListener('click', () => this.#append().catch(onError));
-        list.addEventListener('scroll', () => this.#isNearEnd && this.#append().catch(onError));
+        list.addEventListener('scroll', () => this.#hasFailed || this.#appendIfNearEnd());
         list.addEventListener('keydown', (event) => this.#onKey(event));
         list.addEventListener('focusin', (event) => this.#setStop(event.target.closest('li')));
         const again = () => this.#show(PAGE).catch(onError);
@@ -92,6 +93,7 @@ export class MeshList {
             });
             this.#bringIntoSight();
             this.#setNext(next);
+            this.#hasFailed = false;
             this.#setStop(this.#currentRow ?? this.#list.firstElementChild);
             this.#showFound(items.length);
         }
@@ -208,6 +210,20 @@ export class MeshList {
         }
     }
 
+    // Says that the connection is back: what scrolling has asked for in vain is read now.
+    goOn() {
+        if (this.#hasFailed) {
+            this.#hasFailed = false;
+            this.#appendIfNearEnd();
+        }
+    }
+
+    #appendIfNearEnd() {
+        if (this.#isNearEnd) {
+            this.#append().catch(this.#onError);
+        }
+    }
+
     // Adds the next page, unless it is being read already.
     async #append() {
         const [reading, cursor] = [this.#reading, this.#cursor];
@@ -221,7 +237,11 @@ export class MeshList {
             if (reading === this.#reading && cursor === this.#cursor) {
                 this.#list.append(...items.map((item) => this.#row(item)));
                 this.#setNext(next);
+                this.#hasFailed = false;
             }
+        } catch (error) {
+            this.#hasFailed ||= reading === this.#reading;
+            throw error;
         } finally {
             // After a change of the filter or the order, another page may be read already.
             if (page === this.#appending) {
