@@ -5,9 +5,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
-import { get, post } from './daemon.mjs';
+import { get, post, startDaemon } from './daemon.mjs';
 import { goTo } from './page.mjs';
-import { openMesh } from './visit.mjs';
+import { openMesh, openPage } from './visit.mjs';
 
 const GRID = { name: 'grid', shape: 'grid', columns: 4, rows: 4 };
 const edit = (daemon, mesh, operation) => post(daemon, `/${mesh}/edits`, operation);
@@ -218,6 +218,33 @@ test('after a replacement there is no way back to earlier revisions', async (t) 
     await waitForFrame(page, { revision: 5 });
     assert.ok(await note(page).isHidden());
     assert.ok(await page.locator('#time').isHidden());
+});
+
+test('a name that is being written goes with its revision', async (t) => {
+    // So small a history holds three steps.
+    const daemon = await startDaemon(t, '--undo-budget', '4096');
+    const { id: mesh } = await post(daemon, '', GRID);
+    await edit(daemon, mesh, { op: 'face_poke', face: 0 });
+    const page = await openPage(t, daemon);
+    await waitForFrame(page, { mesh, revision: 2 });
+    const sent = [];
+    page.on('request', (request) => request.method() === 'PATCH' && sent.push(request.url()));
+    await row(page, 2).getByRole('button', { name: 'Name revision 2' }).click();
+    await page.keyboard.type('before the dent');
+    for (let face = 1; face < 8; face++) {
+        await edit(daemon, mesh, { op: 'face_poke', face });
+    }
+    await row(page, 9).waitFor();
+    await row(page, 2).waitFor({ state: 'detached' });
+    const { entries } = await get(daemon, `/${mesh}/edits`);
+    const named = await page
+        .locator('#history li:has(.moment)')
+        .evaluateAll((all) => all.map((one) => Number(one.dataset.revision)));
+    assert.deepEqual(named, entries.map(({ revision }) => revision));
+    // There is nothing to name, so nothing is sent, and the list keeps the focus.
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'history');
+    await goTo(page, 'face', 10);
+    assert.deepEqual(sent, []);
 });
 
 test('each revision says when it was made, and the present one is in sight after an undo', async (t) => {

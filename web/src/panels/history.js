@@ -21,6 +21,7 @@ export class History {
     #beginning = null; // the revision before the first step that can be undone
     #isTopShown = false; // whether the row of the present state is in the list
     #mesh = null;
+    #kept = null; // a row of the history before, whose revision is not in the list yet
 
     // `readPage(cursor)` reads the next page of the history; `onUndo(revision)` is called when the
     // user chooses the revision to go back to, `onReturn(entry)` if it is one with a name that was
@@ -45,15 +46,16 @@ export class History {
     }
 
     // Shows the first page of the history of a mesh, as the server sent it. The row in which the user
-    // is writing a name stays where it is, so that the field keeps its text, selection and focus.
+    // is writing a name stays where it is, so that the field keeps its text, selection and focus, unless
+    // its revision is not in the history any more.
     show(history, mesh) {
         const hadFocus = this.#hasFocus || this.#list.contains(document.activeElement);
         this.#hasFocus = false;
         this.#shown = history;
         this.#isTopShown = false;
-        const kept = mesh === this.#mesh ? this.#named : null;
+        this.#kept = mesh === this.#mesh ? this.#named : null;
         this.#mesh = mesh;
-        [...this.#list.children].filter((row) => row !== kept).forEach((row) => row.remove());
+        [...this.#list.children].filter((row) => row !== this.#kept).forEach(remove);
         this.#append(history);
         this.#bringPresentIntoSight();
         if (hadFocus && !this.#list.contains(document.activeElement)) {
@@ -78,9 +80,20 @@ export class History {
             } else if (revision === at && row.querySelector('.moment') !== null) {
                 named.firstElementChild.replaceWith(row.firstElementChild);
                 named.ariaCurrent = row.ariaCurrent;
+                this.#kept = null;
             } else {
                 this.#list.append(row);
             }
+        }
+    }
+
+    // Removes the row that was kept if the page that was added, {entries, next}, reaches to its revision and
+    // does not have it: the mesh was replaced, or the step was forgotten.
+    #dropKept({ entries, next }) {
+        const oldest = next === null ? -Infinity : entries.at(-1).revision;
+        if (this.#kept !== null && Number(this.#kept.dataset.revision) >= oldest) {
+            remove(this.#kept);
+            this.#kept = null;
         }
     }
 
@@ -127,6 +140,7 @@ export class History {
             rows.push(this.#present(this.#shown.entries[0].state, [...words, make('span', {})]));
         }
         this.#place(rows);
+        this.#dropKept({ entries, next });
         this.#more.dataset.cursor = next ?? '';
         this.#more.hidden = next === null;
     }
@@ -198,6 +212,13 @@ export class History {
         row.dataset.revision = revision;
         return row;
     }
+}
+
+// Removes a row. What is being written in it is given up: a field that has the focus would else send the
+// name when it is removed, although its revision, or its mesh, is gone.
+function remove(row) {
+    row.querySelector('.moment-name')?.dispatchEvent(new Event('cancel'));
+    row.remove();
 }
 
 // Returns when a revision was made.

@@ -7,7 +7,8 @@ const MOST_BYTES = 200;
 
 // Returns the buttons of an entry of the history: one looks at the revision, one names it.
 // `onLook(revision)` and `onName(revision, name)` are called; the latter returns a promise, and
-// `name` is null if the revision loses its name.
+// `name` is null if the revision loses its name. An event `cancel` at the field gives up the name that is
+// being written.
 export function momentButtons(
     { revision, name = '' },
     { onLook, onName, onError },
@@ -61,6 +62,7 @@ export function momentButtons(
             }
             event.stopPropagation();
         });
+        field.addEventListener('cancel', end);
         field.addEventListener('blur', () => {
             if (field.validity.valid) {
                 save().catch(onError);
