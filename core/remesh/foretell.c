@@ -21,11 +21,19 @@ typedef struct sample {
     double least_cosine; /* of the angle of an edge that is no crease */
 } sample;
 
-/* Finds the i-th face. Returns false if there is no such face; the list was not checked. */
+static bool is_triangle(const he_mesh *m, he_face f)
+{
+    const he_halfedge h = he_face_halfedge(m, f);
+    return he_next(m, he_next(m, he_next(m, h))).i == h.i;
+}
+
+/* Finds the i-th face. Returns false if there is no such face, because the list was not checked, or
+ * if the face is no triangle: remeshing refuses such a face, and it may have millions of corners.
+ */
 static bool find_face(const sample *s, size_t i, he_face *out)
 {
     out->i = s->options->faces != NULL ? s->options->faces[i] : (uint32_t)i;
-    return he_mesh_is_live(s->m, HE_FACE, out->i);
+    return he_mesh_is_live(s->m, HE_FACE, out->i) && is_triangle(s->m, *out);
 }
 
 static double extent_of(const sample *s)

@@ -128,9 +128,10 @@ HE_NODISCARD he_status he_remesh(he_mesh *m, const he_remesh_options *options, h
                                  he_error *err);
 
 /* Estimates how many faces the mesh would have, from at most some thousand faces, so that it takes
- * no longer for a large mesh. The list of faces need not be valid; the lengths and the error that
- * `by` tells of must be above 0. If lengths depend on the curvature and that changes within a few
- * faces, there may be a few times as many. Returns at most HE_REMESH_FACES. */
+ * no longer for a large mesh. The list of faces need not be valid, and faces that are no triangles
+ * are not looked at; the lengths and the error that `by` tells of must be above 0. If lengths
+ * depend on the curvature and that changes within a few faces, there may be a few times as many.
+ * Returns at most HE_REMESH_FACES. */
 double he_remesh_foretell(const he_mesh *m, const he_remesh_options *options);
 
 #endif

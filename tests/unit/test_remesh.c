@@ -314,6 +314,43 @@ static void what_an_error_makes_of_one_face_is_foreseen(void **state)
     he_mesh_free(m);
 }
 
+/* A face with many corners may be listed many times before the list is checked, so the forecast
+ * must not walk around it. */
+static void the_forecast_looks_only_at_triangles(void **state)
+{
+    (void)state;
+    static const uint32_t both[] = {0, 1}, repeated[] = {0, 0, 0, 0, 0};
+    for (unsigned i = 0; i < 2; i++) {
+        he_mesh *m = fixture_mesh("01234567,108,219"), *first = dense_copy(m);
+        he_remesh_options options = remesh_options(1);
+        he_error err = {0};
+        if (i == 1) {
+            options.by = HE_REMESH_BY_ERROR;
+            options.error = 0.1;
+            options.min_length = 1;
+            options.max_length = 2;
+        }
+        options.faces = &both[1];
+        options.face_count = 1;
+        const double replaced = he_remesh_foretell(m, &options) - 2;
+        assert_true(replaced > 2);
+        options.faces = both;
+        options.face_count = 2;
+        assert_near(he_remesh_foretell(m, &options), 1 + 2 * replaced, 1e-12);
+        options.faces = repeated;
+        options.face_count = 1;
+        assert_true(he_remesh_foretell(m, &options) == 2);
+        options.face_count = sizeof repeated / sizeof *repeated;
+        assert_true(he_remesh_foretell(m, &options) == 0);
+        options.face_count = 1;
+        assert_int_equal(he_remesh(m, &options, NULL, &err), HE_NOT_TRIANGLE);
+        assert_int_equal(err.id, 0);
+        assert_true(he_mesh_equal(m, first));
+        he_mesh_free(first);
+        he_mesh_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -326,6 +363,7 @@ int main(void)
         cmocka_unit_test(what_a_length_makes_is_foreseen),
         cmocka_unit_test(what_an_error_makes_is_foreseen),
         cmocka_unit_test(what_an_error_makes_of_one_face_is_foreseen),
+        cmocka_unit_test(the_forecast_looks_only_at_triangles),
         cmocka_unit_test(what_would_make_too_many_faces_is_refused_before_it_begins),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
