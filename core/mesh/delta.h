@@ -193,7 +193,9 @@ HE_NODISCARD he_status he_changes_find(const he_mesh *mesh, const he_delta *delt
 /* Records of a delta, from index `from` to `to` - 1, that were applied forwards or, if `undone` is
  * true, backwards. he_changes_sum finds the net changes of several such parts, in the order in
  * which they were applied, with `mesh` in the state after the last part. Changes that cancel each
- * other out are not listed. */
+ * other out are not listed. No two parts may have the same delta: he_changes_sum reads the objects
+ * that a delta owns (columns, all positions), and these are now the objects that its last
+ * application took out of the mesh, not those that an earlier one took out. */
 typedef struct he_change_part {
     const he_delta *delta;
     size_t from, to;
