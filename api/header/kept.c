@@ -114,11 +114,11 @@ static form *make_form(const api_kept *kept, api_coding coding)
     form *made = he_mem_alloc(sizeof *made + room);
     const bool ok = made != NULL && (coding == API_GZIP ? pack_gzip(kept, made, room)
                                                         : pack_zstd(kept, made, room));
-    form *fitted = ok ? he_mem_resize(made, sizeof *made + made->length) : NULL;
-    if (fitted == NULL) {
+    if (!ok) {
         he_mem_free(made);
+        return NULL;
     }
-    return fitted;
+    return he_mem_shrink(made, sizeof *made + made->length);
 }
 
 bool api_kept_coded(api_kept *kept, api_coding coding, const char **bytes, size_t *length)

@@ -357,9 +357,7 @@ static char *take_bytes(api_exchange *x)
     const api_answer *answer = &x->answer;
     char *bytes = NULL;
     if (answer->bytes != NULL && answer->bytes == x->text.bytes) {
-        bytes = he_mem_resize(x->text.bytes, answer->length > 0 ? (size_t)answer->length : 1);
-        /* If shrinking the block fails, it is used as it is. */
-        bytes = bytes == NULL ? x->text.bytes : bytes;
+        bytes = he_mem_shrink(x->text.bytes, answer->length > 0 ? (size_t)answer->length : 0);
         x->text = (api_text){0};
     } else if (answer->bytes != NULL && answer->length > 0) {
         bytes = he_mem_alloc((size_t)answer->length);

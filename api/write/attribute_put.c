@@ -210,8 +210,7 @@ static size_t count_columns(const he_mesh *mesh)
 static void take_body(api_writing *w)
 {
     he_column *column = w->column;
-    void *rows = he_mem_array(w->body.bytes, w->count, column->row_bytes);
-    column->data = rows != NULL ? rows : w->body.bytes;
+    column->data = he_mem_shrink(w->body.bytes, w->count * column->row_bytes);
     column->rows = column->capacity = w->count;
     w->body = (api_text){0};
 }

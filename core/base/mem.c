@@ -62,6 +62,14 @@ void *he_mem_resize(void *memory, size_t size)
     return resized;
 }
 
+/* The size is not rounded up: that could make the block larger than it is, which the memory budget
+ * may refuse. */
+void *he_mem_shrink(void *memory, size_t size)
+{
+    void *shrunk = hook.resize(hook.context, memory, size == 0 ? 1 : size);
+    return shrunk == NULL ? memory : shrunk;
+}
+
 void *he_mem_alloc(size_t size)
 {
     return he_mem_resize(NULL, size == 0 ? 1 : size);

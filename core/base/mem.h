@@ -26,6 +26,10 @@ void he_mem_set_hook(const he_mem_hook *hook);
 
 void *he_mem_alloc(size_t size);
 void *he_mem_resize(void *memory, size_t size);
+/* Gives back what a block has beyond `size` bytes, which must not be more than it has. Returns the
+ * block, which may have moved. If it cannot be shrunk, returns it as it is, so the call never
+ * fails. */
+void *he_mem_shrink(void *memory, size_t size);
 void he_mem_free(void *memory);
 /* Allocates count * size bytes, all zero; returns NULL if memory is out. */
 void *he_mem_zero(size_t count, size_t size);

@@ -92,11 +92,8 @@ size_t he_delta_bytes(const he_delta *d)
 void he_delta_trim(he_delta *d)
 {
     if (d->count < d->capacity) {
-        void *records = he_mem_array(d->records, d->count, sizeof *d->records);
-        if (records != NULL) {
-            d->records = records;
-            d->capacity = d->count;
-        }
+        d->records = he_mem_shrink(d->records, d->count * sizeof *d->records);
+        d->capacity = d->count;
     }
 }
 

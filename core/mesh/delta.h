@@ -101,8 +101,7 @@ void he_delta_empty(he_delta *delta);
  * spare capacity of its columns and contents does not, so that a delta that is read back from
  * storage counts as much as before it was stored. */
 size_t he_delta_bytes(const he_delta *delta);
-/* Frees the spare memory of a delta's array of records. If the array cannot be moved, because
- * memory is out, it stays as it is. */
+/* Frees the spare memory of a delta's array of records. */
 void he_delta_trim(he_delta *delta);
 
 /* Combines the records of a delta from record `from` on: all records of one word become one record,

@@ -171,15 +171,10 @@ static bool arrange(he_bvh *tree, he_boxes *boxes)
     if (tree->discs == NULL) {
         return false;
     }
-    /* The array of nodes is shrunk to the number of nodes. */
-    he_box_node *nodes = he_mem_array(boxes->nodes, boxes->node_count, sizeof *nodes);
-    if (nodes == NULL) {
-        return false;
-    }
-    tree->nodes = nodes;
+    tree->nodes = he_mem_shrink(boxes->nodes, boxes->node_count * sizeof *tree->nodes);
     tree->node_count = boxes->node_count;
     boxes->nodes = NULL;
-    tree->wide = he_bvh_wide_new(nodes, &tree->wide_count);
+    tree->wide = he_bvh_wide_new(tree->nodes, &tree->wide_count);
     memcpy(tree->min, boxes->all.min, sizeof tree->min);
     memcpy(tree->max, boxes->all.max, sizeof tree->max);
     return tree->wide != NULL;

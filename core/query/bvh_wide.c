@@ -113,11 +113,6 @@ he_bvh_wide *he_bvh_wide_new(const he_box_node *nodes, uint32_t *count)
             }
         }
     }
-    /* The array is shrunk to the number of nodes. */
-    he_bvh_wide *wide = he_mem_array(l.nodes, l.count, sizeof *wide);
-    if (wide == NULL) {
-        he_mem_free(l.nodes);
-    }
     *count = (uint32_t)l.count;
-    return wide;
+    return he_mem_shrink(l.nodes, l.count * sizeof *l.nodes);
 }

@@ -389,10 +389,7 @@ static st_revision *add_spare(st_revision_log *log, const st_logged *change, con
     note_marks(&entry->point, content);
     copy_ops(entry->ops, change->ops);
     entry->size = entry_size(strlen(entry->ops));
-    st_revision *shrunk = he_mem_resize(entry, sizeof *entry + strlen(entry->ops) + 1);
-    if (shrunk != NULL) {
-        entry = shrunk;
-    }
+    entry = he_mem_shrink(entry, sizeof *entry + strlen(entry->ops) + 1);
     add_entry(log, entry);
     return entry;
 }

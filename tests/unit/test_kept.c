@@ -149,7 +149,7 @@ static void without_memory_the_next_call_tries_again(void **state)
     (void)state;
     fill_body(false);
     for (api_coding coding = 0; coding < API_IDENTITY; coding++) {
-        failing f = {0};
+        failing f = {.may_succeed = true}; /* a form that cannot be shrunk stays as it is */
         while (failing_next(&f)) {
             api_kept *kept = api_kept_new(body, 1000);
             const char *bytes;

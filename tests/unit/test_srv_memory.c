@@ -5,6 +5,7 @@
 #include "api/json/problem.h"
 #include "base/mem.h"
 #include "system/memory.h"
+#include "tests/failing.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -139,10 +140,54 @@ static void a_refusal_names_the_budget_if_that_is_used_up(void **state)
     he_mem_set_hook(NULL);
 }
 
+/* A large block that grows gets a whole number of huge pages. A block that shrinks must not: it
+ * could become larger than it was. */
+static void a_block_shrinks_although_the_budget_is_used_up(void **state)
+{
+    (void)state;
+    enum { MIB = 1 << 20, BLOCK_BYTES = 7 * MIB - 64 * 1024, NEW_BYTES = BLOCK_BYTES - 4096 };
+    st_memory_install(0);
+    const uint64_t before = st_memory_used();
+    unsigned char *block = he_mem_alloc(BLOCK_BYTES);
+    assert_non_null(block);
+    memset(block, 7, BLOCK_BYTES);
+    const uint64_t full = st_memory_used();
+    st_memory_set_budget(full);
+    assert_null(he_mem_alloc(1 << 20));
+    block = he_mem_shrink(block, NEW_BYTES);
+    assert_true(st_memory_used() <= full && block[NEW_BYTES - 1] == 7);
+    block = he_mem_shrink(block, 5 * MIB);
+    assert_in_range(st_memory_used() - before, 5 * MIB, 5 * MIB + 64 * 1024);
+    assert_true(block[0] == 7 && block[5 * MIB - 1] == 7);
+    he_mem_free(block);
+    assert_true(st_memory_used() == before);
+    he_mem_set_hook(NULL);
+}
+
+static void a_block_that_cannot_shrink_stays_as_it_is(void **state)
+{
+    (void)state;
+    unsigned char *block = he_mem_alloc(5 << 20);
+    assert_non_null(block);
+    block[1000] = 7;
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        unsigned char *shrunk = he_mem_shrink(block, 5000);
+        assert_non_null(shrunk);
+        assert_true(f.n > 1 || shrunk == block);
+        block = shrunk;
+        (void)failing_end(&f, true);
+    }
+    assert_true(block[1000] == 7);
+    he_mem_free(block);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_refusal_names_the_budget_if_that_is_used_up),
+        cmocka_unit_test(a_block_shrinks_although_the_budget_is_used_up),
+        cmocka_unit_test(a_block_that_cannot_shrink_stays_as_it_is),
         cmocka_unit_test(pages_are_given_back_once_after_work_when_it_rests),
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
         cmocka_unit_test(what_is_freed_between_used_blocks_goes_back_to_the_system),
