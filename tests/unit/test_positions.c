@@ -99,6 +99,35 @@ static void a_few_positions_are_records_of_words(void **state)
     he_mesh_free(m);
 }
 
+/* A record of a word takes 16 bytes, and the record of all positions 24 bytes a vertex. */
+static void the_smaller_record_is_kept(void **state)
+{
+    (void)state;
+    static const double heights[] = {1, 0.1}; /* these differ from 0 in one and in two words */
+    for (unsigned i = 0; i < 2; i++) {
+        he_mesh *m = dense_grid(SIDE, NULL, 1), *before = copy_of(m);
+        he_column *points = points_of(m);
+        const size_t vertices = he_mesh_issued(m, HE_VERTEX);
+        for (uint32_t v = 0; v < vertices; v++) {
+            assert_true(point(points, v)->z == 0);
+            point(points, v)->z = heights[i];
+        }
+        he_delta *delta = he_delta_new();
+        he_mesh_record(m, delta);
+        assert_int_equal(he_positions_put(m, points, NULL), HE_OK);
+        he_mesh_record(m, NULL);
+        assert_int_equal(delta->count, i == 0 ? vertices : 1);
+        assert_int_equal(delta->object_count, i);
+        assert_true(he_delta_bytes(delta) < (i == 0 ? 17 : 26) * vertices);
+        assert_true(he_position(m, (he_vertex){77}).z == heights[i]);
+        he_delta_undo(delta, m);
+        assert_true(he_mesh_equal(m, before));
+        he_delta_free(delta);
+        he_mesh_free(before);
+        he_mesh_free(m);
+    }
+}
+
 static void refused_positions_leave_the_mesh_as_it_was(void **state)
 {
     (void)state;
@@ -253,6 +282,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(most_positions_are_one_record),
         cmocka_unit_test(a_few_positions_are_records_of_words),
+        cmocka_unit_test(the_smaller_record_is_kept),
         cmocka_unit_test(refused_positions_leave_the_mesh_as_it_was),
         cmocka_unit_test(memory_may_run_out),
         cmocka_unit_test(changes_equal_the_differences),

@@ -20,31 +20,40 @@ static he_vertex vertex_at(const plan *p, size_t i)
     return (he_vertex){p->ids != NULL ? p->ids[i] : (uint32_t)i};
 }
 
-static bool same_bits(double a, double b)
+/* The number of vertices that move, and of the words of their positions that change. */
+typedef struct tally {
+    uint64_t vertices, words;
+} tally;
+
+/* Returns how many of the two words of a coordinate differ. */
+static unsigned words_between(double a, double b)
 {
     uint64_t x, y;
     memcpy(&x, &a, sizeof x);
     memcpy(&y, &b, sizeof y);
-    return x == y;
+    return (unsigned)((uint32_t)x != (uint32_t)y) + (unsigned)(x >> 32 != y >> 32);
 }
 
-/* Returns true if entry i of the plan is a live vertex that is not at its point, in every bit. */
-static bool moves(const he_mesh *m, const plan *p, size_t i)
+/* Returns in how many words the position of the vertex of entry i of the plan differs from its
+ * point; 0 if the vertex is deleted. */
+static unsigned moves(const he_mesh *m, const plan *p, size_t i)
 {
     const he_vertex v = vertex_at(p, i);
     const he_vec3 from = he_position(m, v), to = p->points[i * p->step];
-    return !(same_bits(from.x, to.x) && same_bits(from.y, to.y) && same_bits(from.z, to.z)) &&
-           he_vertex_is_live(m, v);
+    const unsigned words =
+        words_between(from.x, to.x) + words_between(from.y, to.y) + words_between(from.z, to.z);
+    return words > 0 && he_vertex_is_live(m, v) ? words : 0;
 }
 
-static he_status check(const he_mesh *m, const plan *p, uint64_t *moved, he_error *err)
+static he_status check(const he_mesh *m, const plan *p, tally *moved, he_error *err)
 {
     he_marks marks;
     const bool marked = he_marks_find(m, &marks);
     he_status status = he_progress_phase(m->progress, "checking", 0.5, err);
     for (size_t i = 0; i < p->count && status == HE_OK; i++) {
         status = he_progress_at(m->progress, i, p->count, err);
-        if (!moves(m, p, i)) {
+        const unsigned words = moves(m, p, i);
+        if (words == 0) {
             continue;
         }
         const he_vertex v = vertex_at(p, i);
@@ -55,7 +64,8 @@ static he_status check(const he_mesh *m, const plan *p, uint64_t *moved, he_erro
             status = he_fail(err, HE_NOT_FINITE, HE_VERTEX, v.i,
                              "vertex %u would have a position that is not finite", v.i);
         }
-        ++*moved;
+        moved->vertices++;
+        moved->words += words;
     }
     return status;
 }
@@ -66,16 +76,17 @@ enum { MANY = 1 << 14 };
 
 /* Returns true if a record of all positions takes less memory than records of the words of those
  * that change. */
-static bool is_most(const he_mesh *m, uint64_t moved)
+static bool is_most(const he_mesh *m, const tally *moved)
 {
-    return moved >= MANY && sizeof(he_vec3) * (uint64_t)he_mesh_issued(m, HE_VERTEX) <
-                                HE_POSITION_RECORDS * sizeof(he_record) * moved;
+    return moved->vertices >= MANY && sizeof(he_vec3) * (uint64_t)he_mesh_issued(m, HE_VERTEX) <
+                                          sizeof(he_record) * moved->words;
 }
 
 /* Moves the vertices that move, one by one. */
-static he_status move_each(he_mesh *m, const plan *p, uint64_t moved, he_error *err)
+static he_status move_each(he_mesh *m, const plan *p, const tally *moved, he_error *err)
 {
-    he_status status = he_reserve(m, (he_reservation){.positions = moved}, err);
+    /* Each record of a word takes as much memory as the record of a link. */
+    he_status status = he_reserve(m, (he_reservation){.links = moved->words}, err);
     /* Nothing below can fail. */
     for (size_t i = 0; i < p->count && status == HE_OK; i++) {
         he_progress_note(m->progress, i, p->count);
@@ -121,7 +132,7 @@ he_status he_positions_write(he_mesh *m, const uint32_t *ids, size_t count, cons
                              bool same, he_error *err)
 {
     const plan p = {ids, count, points, same ? 0 : 1};
-    uint64_t moved = 0;
+    tally moved = {0};
     he_status status = ids != NULL
                            ? he_list_require(m, HE_VERTEX, ids, count, HE_REPEATED_ELEMENT, err)
                            : check_count(m, count, err);
@@ -134,13 +145,13 @@ he_status he_positions_write(he_mesh *m, const uint32_t *ids, size_t count, cons
     if (status != HE_OK) {
         return status;
     }
-    return is_most(m, moved) ? move_all(m, &p, err) : move_each(m, &p, moved, err);
+    return is_most(m, &moved) ? move_all(m, &p, err) : move_each(m, &p, &moved, err);
 }
 
 he_status he_positions_put(he_mesh *m, he_column *takes, he_error *err)
 {
     const plan p = {NULL, takes->rows, (const he_vec3 *)(const void *)takes->data, 1};
-    uint64_t moved = 0;
+    tally moved = {0};
     he_status status = check_count(m, p.count, err);
     if (status == HE_OK) {
         status = check(m, &p, &moved, err);
@@ -151,8 +162,8 @@ he_status he_positions_put(he_mesh *m, he_column *takes, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    if (!is_most(m, moved)) {
-        status = move_each(m, &p, moved, err);
+    if (!is_most(m, &moved)) {
+        status = move_each(m, &p, &moved, err);
         if (status == HE_OK) {
             he_column_free(takes);
         }
