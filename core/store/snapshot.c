@@ -23,13 +23,15 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Counts the bytes of a cached copy of a mesh for monitoring. Edits that are applied to the copy
- * later add few bytes, so the number is not updated. */
+/* Counts the bytes of a cached copy of a mesh for monitoring, with the columns and positions that
+ * the copy keeps to undo and redo edits. Must be called again after the copy was moved to another
+ * revision. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
+    const uint64_t before = copy->bytes;
     copy->counts = &mesh->followers->counts;
-    copy->bytes = he_mesh_bytes(he_replay_mesh(copy->replay));
-    st_count(&copy->counts->copies, copy->bytes);
+    copy->bytes = he_replay_bytes(copy->replay);
+    st_count(&copy->counts->copies, copy->bytes - before);
 }
 
 /* Adds a reference to a copy for a snapshot. The caller holds the lock of the cache of the copy. */
@@ -90,6 +92,8 @@ static st_copy *present_copy(st_mesh *mesh)
     }
     if (mesh->copy == NULL) {
         mesh->copy = copy_new(mesh);
+    } else {
+        count_copy(mesh->copy, mesh);
     }
     if (mesh->copy != NULL) {
         mesh->copy->revision = mesh->info.revision;

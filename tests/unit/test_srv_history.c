@@ -1,10 +1,12 @@
 /* Tests of the history of a stored mesh: snapshots of earlier revisions, and cursors that move from
  * revision to revision, must equal the mesh at the revision. Columns are added and removed, memory
  * is limited, and other threads write. */
+#include "tests/unit/dense.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
 
+#include "edit/whole/positions.h"
 #include "mesh/write.h"
 #include "store/history_cursor.h"
 #include "store/store.h"
@@ -208,6 +210,68 @@ static void snapshots_of_earlier_revisions(void **state)
     assert_int_equal(st_snapshot_at(mesh, pictures.head + 1, &none), ST_AHEAD);
     assert_int_equal(writing_replace(mesh, fixture_mesh("012"), NULL, NULL), ST_OK);
     assert_int_equal(st_snapshot_at(mesh, pictures.head, &none), ST_GONE);
+    clear_album(&pictures);
+    close_mesh(mesh);
+}
+
+static uint64_t bytes_of_copies(void)
+{
+    st_store_measures measures;
+    st_store_measure(store, &measures);
+    return measures.snapshot_bytes;
+}
+
+/* Moves all vertices of a mesh in one edit, whose delta has one record of all positions. */
+static void lift(st_mesh *mesh)
+{
+    st_write w;
+    he_mesh *m = writing_begin(mesh, &w);
+    he_column present, *points;
+    assert_non_null(m);
+    he_mesh_position_column(m, &present);
+    assert_int_equal(he_column_copy(&present, &points, NULL), HE_OK);
+    for (size_t v = 0; v < points->rows; v++) {
+        ((he_vec3 *)(void *)he_column_row(points, v))->z += 0.1;
+    }
+    assert_int_equal(he_positions_put(m, points, NULL), HE_OK);
+    assert_int_equal(w.delta->object_count, 1);
+    assert_true(writing_commit(&w, "some", NULL));
+}
+
+/* The copy of an earlier revision keeps the positions of each edit that it crosses, to cross it
+ * again. */
+static void what_a_copy_keeps_to_cross_edits_is_counted(void **state)
+{
+    (void)state;
+    enum { EDITS = 3 };
+    store = st_store_new(&(st_store_options){
+        .undo_budget = 1 << 26, .max_meshes = 1, .journal = st_journal_memory()});
+    assert_non_null(store);
+    he_mesh *content = dense_grid(130, dense_waves, 1);
+    const uint64_t positions = sizeof(he_vec3) * (uint64_t)he_mesh_issued(content, HE_VERTEX);
+    st_mesh *mesh;
+    st_snapshot *snapshot;
+    album pictures = {0};
+    assert_int_equal(st_create(store, "m", NULL, content, NULL, &mesh), ST_OK);
+    take_picture(&pictures, mesh);
+    const uint64_t first = pictures.head;
+    for (unsigned i = 0; i < EDITS; i++) {
+        lift(mesh);
+        take_picture(&pictures, mesh);
+        assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
+        expect_picture(&pictures, pictures.head, st_snapshot_content(snapshot, NULL));
+        st_snapshot_release(snapshot);
+    }
+    st_store_shed(store);
+    assert_int_equal(bytes_of_copies(), 0);
+    for (uint64_t back = 1; back <= EDITS; back++) {
+        const uint64_t revision = first + EDITS - back;
+        expect_snapshot(&pictures, mesh, revision);
+        assert_in_range(bytes_of_copies(), he_mesh_bytes(pictures.at[revision]) + back * positions,
+                        he_mesh_bytes(pictures.at[revision]) + (back + 1) * positions);
+    }
+    st_store_shed(store);
+    assert_int_equal(bytes_of_copies(), 0);
     clear_album(&pictures);
     close_mesh(mesh);
 }
@@ -534,6 +598,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(snapshots_of_earlier_revisions),
+        cmocka_unit_test(what_a_copy_keeps_to_cross_edits_is_counted),
         cmocka_unit_test(a_walk_follows_the_mesh),
         cmocka_unit_test(a_walk_is_told_that_the_history_was_cut),
         cmocka_unit_test(the_log_keeps_its_budget),
