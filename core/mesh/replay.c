@@ -4,6 +4,7 @@
 #include "mesh/long_faces.h"
 
 #include <assert.h>
+#include <string.h>
 
 /* Attribute columns, materials or whole mesh data (objects) that the copy of a mesh exchanges each
  * time it crosses one delta, that is, undoes or redoes one edit. Before the crossing, the list has
@@ -214,4 +215,12 @@ he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_err
      * edit began. */
     assert(status != HE_CORRUPT);
     return status;
+}
+
+void he_replay_take_positions(he_replay *replay, const he_mesh *mesh)
+{
+    const uint32_t vertices = he_mesh_issued(mesh, HE_VERTEX);
+    assert(he_mesh_issued(replay->mesh, HE_VERTEX) == vertices && vertices > 0);
+    he_long_faces_forget(replay->mesh);
+    memcpy(replay->mesh->c.position, mesh->c.position, vertices * sizeof *mesh->c.position);
 }

@@ -55,4 +55,9 @@ size_t he_replay_bytes(const he_replay *replay);
 HE_NODISCARD he_status he_replay_cross(he_replay *replay, const he_crossing *crossing,
                                        he_error *err);
 
+/* Moves the copy to the present revision of the original mesh `mesh` across a delta that has only
+ * one record, of all positions: takes the positions from the mesh. This needs no object that the
+ * delta owns, but the copy cannot cross this delta backwards later. */
+void he_replay_take_positions(he_replay *replay, const he_mesh *mesh);
+
 #endif

@@ -56,11 +56,27 @@ static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
     return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
 }
 
+/* Returns true if the newest edit, undo or redo did nothing but write all positions. Its delta owns
+ * the positions from before it, so a copy takes those from after it from the mesh. */
+static bool moved_all(const st_revision_log *log)
+{
+    const he_delta *delta = st_log_delta(log, st_log_head(log));
+    return delta != NULL && delta->count == 1 && delta->records[0].column == HE_COL_POSITIONS;
+}
+
 static bool bring_forward(const st_mesh *mesh, st_copy *copy)
 {
-    uint64_t head = mesh->info.revision;
-    return is_near(mesh, copy->revision, head) &&
-           st_log_walk(&mesh->log, copy->replay, &copy->revision, head, UINT64_MAX) == HE_OK;
+    const uint64_t head = mesh->info.revision;
+    const bool moved = moved_all(&mesh->log);
+    if (!is_near(mesh, copy->revision, head) ||
+        st_log_walk(&mesh->log, copy->replay, &copy->revision, moved ? head - 1 : head,
+                    UINT64_MAX) != HE_OK) {
+        return false;
+    }
+    if (moved) {
+        he_replay_take_positions(copy->replay, mesh->content);
+    }
+    return true;
 }
 
 static st_copy *copy_new(const st_mesh *mesh)

@@ -276,6 +276,65 @@ static void what_a_copy_keeps_to_cross_edits_is_counted(void **state)
     close_mesh(mesh);
 }
 
+/* Requires that a snapshot of the present revision, made without copying the mesh, equals it. */
+static void expect_moved(st_mesh *mesh)
+{
+    st_snapshot *snapshot;
+    he_mesh *content;
+    failing_at(0);
+    assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
+    assert_int_equal(failing_count(), 1); /* the snapshot itself */
+    failing_off();
+    (void)head_of(mesh, &content);
+    assert_true(he_mesh_equal(st_snapshot_content(snapshot, NULL), content));
+    he_mesh_free(content);
+    st_snapshot_release(snapshot);
+}
+
+static void a_copy_follows_edits_of_all_positions(void **state)
+{
+    (void)state;
+    store = st_store_new(&(st_store_options){
+        .undo_budget = 1 << 26, .max_meshes = 1, .journal = st_journal_memory()});
+    assert_non_null(store);
+    st_mesh *mesh;
+    st_snapshot *snapshot;
+    assert_int_equal(st_create(store, "m", NULL, dense_grid(130, dense_waves, 1), NULL, &mesh),
+                     ST_OK);
+    assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
+    st_snapshot_release(snapshot);
+    const uint64_t bytes = bytes_of_copies();
+    for (unsigned i = 0; i < 3; i++) {
+        lift(mesh);
+        expect_moved(mesh);
+        assert_int_equal(bytes_of_copies(), bytes);
+    }
+    assert_int_equal(step(mesh, ST_UNDO, 1), ST_OK);
+    expect_moved(mesh);
+    assert_int_equal(step(mesh, ST_UNDO, 1), ST_OK);
+    expect_moved(mesh);
+    assert_int_equal(step(mesh, ST_REDO, 1), ST_OK);
+    expect_moved(mesh);
+    /* an edit of one face before the one of all positions is crossed as usual */
+    st_write w;
+    he_mesh *m = writing_begin(mesh, &w);
+    assert_non_null(m);
+    script_prepare(m, "face_delete face=#7");
+    assert_true(writing_commit(&w, "some", NULL));
+    lift(mesh);
+    expect_moved(mesh);
+    /* a copy that is two such edits behind is replaced */
+    lift(mesh);
+    lift(mesh);
+    assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
+    he_mesh *content;
+    (void)head_of(mesh, &content);
+    assert_true(he_mesh_equal(st_snapshot_content(snapshot, NULL), content));
+    he_mesh_free(content);
+    st_snapshot_release(snapshot);
+    close_mesh(mesh);
+}
+
 static void follow(const album *a, st_cursor *walk, uint64_t head)
 {
     st_cursor_step at;
@@ -598,6 +657,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(snapshots_of_earlier_revisions),
+        cmocka_unit_test(a_copy_follows_edits_of_all_positions),
         cmocka_unit_test(what_a_copy_keeps_to_cross_edits_is_counted),
         cmocka_unit_test(a_walk_follows_the_mesh),
         cmocka_unit_test(a_walk_is_told_that_the_history_was_cut),
