@@ -179,8 +179,9 @@ enum {
     API_CLAIM_ELEMENTS = 200000,
     /* A list of more operations than this also claims the mesh, that is, works on a copy without
      * the lock. A list that turns out to change more rows than API_LOCKED_ROWS is started again
-     * with a claim: the lock must not be held while a megabyte or more of its changes is encoded
-     * for the journal. */
+     * with a claim, with every kind of store: readers of the mesh wait for the lock on worker
+     * threads, which then answer nobody, so it must not be held while many rows are made and
+     * encoded for the journal. */
     API_CLAIM_EDITS = 4096,
     /* An operation that runs more often than this, once for each item of a list, claims the mesh,
      * too. The runs take less time than as many operations. */

@@ -517,7 +517,7 @@ static void limit_work(api_exchange *x, edits *e)
     e->most_work = e->unlimited                 ? UINT64_MAX
                    : x->phase == API_PHASE_BODY ? API_WORKER_EDITS
                                                 : API_POOL_EDITS;
-    e->most_rows = x->write.claimed || !st_write_keeps(&x->write) ? SIZE_MAX : API_LOCKED_ROWS;
+    e->most_rows = x->write.claimed ? SIZE_MAX : API_LOCKED_ROWS;
     e->paid = PHASES;
     e->told = x->progress;
     x->progress.tell = tell_and_charge;

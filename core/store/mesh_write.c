@@ -137,11 +137,6 @@ void st_write_unread(st_write *w)
     w->unread = true;
 }
 
-bool st_write_keeps(const st_write *w)
-{
-    return w->mesh->journal->keeps;
-}
-
 bool st_write_undoable(const st_write *w)
 {
     assert(w->found || w->unread);

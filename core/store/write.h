@@ -102,8 +102,6 @@ HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
  * the mesh without adding, dropping or replacing columns, materials or contents. The history then
  * does not say how many elements changed, and listeners that need the changes find them. */
 void st_write_unread(st_write *write);
-/* Returns true if the store keeps changes on a disk, so that a commit encodes them. */
-bool st_write_keeps(const st_write *write);
 /* Returns true if the edit could be undone if it were committed; must be called after
  * st_write_changes or st_write_unread. Returns false if the edit is larger than the undo budget or
  * renumbers elements; the commit of such an edit clears the history. */
