@@ -448,6 +448,35 @@ static st_status list_cards(void *self, const char *after, st_card *out, size_t 
     return ST_OK;
 }
 
+static bool is_in_page(const st_card_page *page, const st_card *card)
+{
+    return page->after == NULL || st_card_compare(page->order, page->after, card) < 0;
+}
+
+static st_status list_cards_by(void *self, const st_card_page *page, st_card *out, size_t *count)
+{
+    kept_journal *journal = self;
+    pthread_mutex_lock(&journal->lock);
+    *count = 0;
+    for (const kept_mesh *mesh = journal->meshes; mesh != NULL; mesh = mesh->next) {
+        if (!is_in_page(page, &mesh->card)) {
+            continue;
+        }
+        size_t at = *count < page->limit ? (*count)++ : page->limit;
+        while (at > 0 && st_card_compare(page->order, &mesh->card, &out[at - 1]) < 0) {
+            if (at < page->limit) {
+                out[at] = out[at - 1];
+            }
+            at--;
+        }
+        if (at < page->limit) {
+            out[at] = mesh->card;
+        }
+    }
+    pthread_mutex_unlock(&journal->lock);
+    return ST_OK;
+}
+
 static uint64_t count_meshes(void *self)
 {
     kept_journal *journal = self;
@@ -521,6 +550,7 @@ st_journal kept_journal_open(kept_journal *journal)
     out.shut = shut;
     out.condemn = condemn;
     out.list = list_cards;
+    out.list_by = list_cards_by;
     out.keys = journal_keys_none;
     out.count = count_meshes;
     out.health = tell_health;

@@ -116,6 +116,15 @@ static st_status list_none(void *self, const char *after, st_card *out, size_t l
     return ST_OK;
 }
 
+static st_status list_none_by(void *self, const st_card_page *page, st_card *out, size_t *count)
+{
+    (void)self;
+    (void)page;
+    (void)out;
+    *count = 0;
+    return ST_OK;
+}
+
 static uint64_t count_none(void *self)
 {
     (void)self;
@@ -208,6 +217,7 @@ st_journal slow_journal_open_keeping(slow_journal *journal)
     kept.unstage = unstage;
     kept.open = open_none;
     kept.list = list_none;
+    kept.list_by = list_none_by;
     kept.keys = journal_keys_none;
     kept.count = count_none;
     kept.health = tell_health;
