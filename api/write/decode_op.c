@@ -516,10 +516,11 @@ static bool check_given(const api_decoder *d)
                 continue;
             }
             if (args[i].given && args[j].given) {
-                api_in at = member_of(d, j > i ? other : param);
-                return api_in_fail(&at, API_CONFLICTING_MEMBERS,
-                                   "give either \"%s\" or \"%s\", not both", param->name,
-                                   other->name);
+                const api_in first = member_of(d, j > i ? param : other);
+                const api_in second = member_of(d, j > i ? other : param);
+                return api_in_fail(&second, API_CONFLICTING_MEMBERS,
+                                   "give either \"%s\" or \"%s\", not both", api_in_name(&first),
+                                   api_in_name(&second));
             }
             given = given || args[j].given;
             needed = needed || he_op_needs(d->op, args, j);

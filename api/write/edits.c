@@ -300,19 +300,41 @@ static bool within_attributes(attribute_count before, const he_mesh *mesh, const
     return true;
 }
 
+/* Returns the parameter whose list names the element of a refusal at index `i`: `each`, or a column
+ * of other elements beside it. */
+static const he_param *list_with_element(const api_call *call, const he_param *each, size_t i,
+                                         const api_problem *problem)
+{
+    const size_t params = problem->has_element ? he_op_params(call->op) : 0;
+    for (size_t k = 0; k < params; k++) {
+        const he_param *param = &call->op->params[k];
+        const he_arg *arg = &call->args[k];
+        if (param->type == HE_PARAM_ELEMENT && param->kind == problem->kind && arg->list &&
+            i < arg->count && arg->ids[i] == problem->id) {
+            return param;
+        }
+    }
+    return each;
+}
+
 /* Gives a refusal the JSON pointer of the operation, or of the item of the list for which it was
  * refused. */
 static void point_at(const edits *e, const api_in *in, const api_call *call, size_t i)
 {
     const he_param *each = he_op_each(call->op, call->args);
     api_in list;
-    if (each != NULL && api_in_find(in, each->each, &list)) {
-        /* A reference may have put several ids into the list; then its items are others. */
-        const bool is_item =
-            api_in_is_array(&list) && api_in_count(&list) == he_op_runs(call->op, call->args);
-        const api_in item = api_in_item(&list, i);
-        api_in_point(is_item ? &item : &list);
-    } else if (e->is_list) {
+    if (each != NULL) {
+        const he_param *param = list_with_element(call, each, i, in->problem);
+        if (api_in_find(in, param->each != NULL ? param->each : param->name, &list)) {
+            /* A reference may have put several ids into the list; then its items are others. */
+            const bool is_item =
+                api_in_is_array(&list) && api_in_count(&list) == he_op_runs(call->op, call->args);
+            const api_in item = api_in_item(&list, i);
+            api_in_point(is_item ? &item : &list);
+            return;
+        }
+    }
+    if (e->is_list) {
         api_in_point(in);
     }
 }

@@ -160,6 +160,10 @@ static void a_refused_list_changes_nothing_and_points_to_its_item(void **state)
         {"{\"op\":\"edge_split\",\"t\":[0.5]}", 400, "wrong_type", "/t"},
         {"{\"op\":\"edge_split\"}", 400, "missing_member", ""},
         {"{\"op\":\"edge_weld\",\"a\":[0,1],\"b\":[2]}", 400, "bad_value", "/b"},
+        {"{\"ops\":[{\"op\":\"face_delete\",\"face\":0},"
+         "{\"op\":\"edge_weld\",\"a\":[0],\"b\":[99999]}]}",
+         422, "no_such_element", "/ops/1/b/0"},
+        {"{\"op\":\"edge_weld\",\"a\":[99999],\"b\":[4]}", 422, "no_such_element", "/a/0"},
         {"{\"op\":\"vertex_add\",\"positions\":[]}", 400, "bad_value", "/positions"},
         {"{\"op\":\"vertex_add\",\"positions\":[[0,0,0],[0,0]]}", 400, "bad_value", "/positions/1"},
         {"{\"op\":\"vertex_add\",\"positions\":[0,0,0]}", 400, "wrong_type", "/positions/0"},
@@ -193,6 +197,18 @@ static void the_lengths_of_a_column_and_its_list_are_named(void **state)
         400, bench_post(b, EDITS, "{\"op\":\"edge_split\",\"edges\":[0,1,2],\"t\":[0.5,0.5]}"));
     assert_string_equal(bench_text(&r, "detail"), "\"t\" has 2 values, but \"edges\" has 3: give "
                                                   "one value, or one for each");
+    bench_done(r);
+    bench_free(b);
+}
+
+static void alternatives_are_named_as_they_were_given(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply r = bench_expect(
+        400, bench_post(b, EDITS, "{\"op\":\"edge_collapse\",\"edges\":[5],\"halfedges\":[0]}"));
+    assert_string_equal(bench_text(&r, "detail"),
+                        "give either \"halfedges\" or \"edges\", not both");
     bench_done(r);
     bench_free(b);
 }
@@ -361,6 +377,7 @@ int main(void)
         cmocka_unit_test(a_list_equals_its_operations_one_by_one),
         cmocka_unit_test(a_refused_list_changes_nothing_and_points_to_its_item),
         cmocka_unit_test(the_lengths_of_a_column_and_its_list_are_named),
+        cmocka_unit_test(alternatives_are_named_as_they_were_given),
         cmocka_unit_test(results_of_a_list_can_be_referred_to),
         cmocka_unit_test(a_set_may_be_the_list),
         cmocka_unit_test(a_long_list_is_one_revision_and_one_step),
