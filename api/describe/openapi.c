@@ -534,7 +534,8 @@ static void write_header_parameters(api_out *out, const api_route *route)
             out, "Idempotency-Key",
             "1 to 255 visible characters that the client chooses. For a day, a request with the "
             "same key is not done again: its first answer is repeated with Idempotency-Replayed: "
-            "true, or is 204 or 201 without a body if it was too large to keep or the server was "
+            "true, in the media type that it had, or is 204 or 201 without a body if it was too "
+            "large to keep or the server was "
             "restarted. A different request with the same key is answered 422; while the first is "
             "in progress, 409. Errors are not kept.");
     }

@@ -53,6 +53,7 @@ typedef struct api_items {
 /* Limits and options for parsing a text. */
 typedef struct api_in_options {
     size_t values; /* how many values the text may contain at most */
+    size_t before; /* bytes of the body before the text; problems count bytes from its begin */
     /* Describes the array whose items are left out, with `name` set; NULL: there is no such
      * array. */
     api_items *items;
@@ -119,11 +120,11 @@ const char *api_in_name(const api_in *member); /* returns the name of a member o
 /* --- reading values --- */
 bool api_in_bool(const api_in *in, bool *out);
 bool api_in_number(const api_in *in, double *out); /* reads a finite number */
-/* Reads a number. Refuses a number outside [min, max] with bad_value; if `exclusive` is true, also
- * `min` and `max` themselves. */
 /* These functions check a number that was read already, and refuse the value at `in`. */
 bool api_in_check_within(const api_in *in, double value, const double range[2], bool exclusive);
 bool api_in_check_whole(const api_in *in, double value, uint64_t min, uint64_t max);
+/* Reads a number. Refuses a number outside [min, max] with bad_value; if `exclusive` is true, also
+ * `min` and `max` themselves. */
 bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out);
 /* Reads a whole number in [min, max]; max is at most 2^53. */
 bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out);

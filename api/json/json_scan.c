@@ -80,6 +80,7 @@ bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *p
     bool inside = false; /* true if the scan is inside the array whose items the caller parses */
     he_lexer_init(&x, NULL);
     x.depth_most = API_MAX_DEPTH;
+    x.offset = options->before;
     he_lexer_feed(&x, text.at, text.length);
     while (token != HE_TOKEN_END) {
         if (inside && x.depth == 2 && he_lexer_value_ahead(&x)) {

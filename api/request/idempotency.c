@@ -89,7 +89,7 @@ static void replay(api_exchange *x)
         api_answer_header_format(x, "Location", "/v1/meshes/%s", kept->id);
     }
     if (kept->body != NULL) {
-        api_answer_bytes(x, kept->status, "application/json", kept->body, kept->length);
+        api_answer_bytes(x, kept->status, kept->media, kept->body, kept->length);
     } else {
         api_answer_empty(x, kept->status == 200 ? 204 : kept->status);
     }
@@ -136,6 +136,19 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
     return "";
 }
 
+/* Returns the media type of the answer if its body is stored; NULL if it has another type. */
+static const char *media_to_keep(const api_exchange *x)
+{
+    static const char *const types[] = {"application/json", API_PACKED_EDITS};
+    const char *type = header_of_answer(x, "Content-Type");
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        if (strcmp(type, types[i]) == 0) {
+            return types[i];
+        }
+    }
+    return NULL;
+}
+
 /* Stores the key of a request that changed nothing. The key of a request that changed a mesh is a
  * part of the record of the change in the journal; the key of this request gets a record of its
  * own, and the answer waits until that record is durable. */
@@ -156,14 +169,14 @@ void api_idempotency_settle(api_exchange *x)
         return;
     }
     if (answer->status < 300) {
-        /* A stored body is sent again as JSON, so other bodies are not stored. */
-        const bool is_json = strcmp(header_of_answer(x, "Content-Type"), "application/json") == 0;
+        const char *media = media_to_keep(x);
         st_kept kept = {.status = answer->status,
                         .changed = x->published != 0,
                         .incarnation = x->info.incarnation,
                         .position = x->info.position,
-                        .body = is_json ? answer->bytes : NULL,
-                        .length = is_json ? (size_t)answer->length : 0};
+                        .body = media != NULL ? answer->bytes : NULL,
+                        .length = media != NULL ? (size_t)answer->length : 0,
+                        .media = media};
         const char *etag = header_of_answer(x, "ETag");
         if (strlen(etag) < sizeof kept.etag) {
             memcpy(kept.etag, etag, strlen(etag) + 1);

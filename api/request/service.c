@@ -539,15 +539,18 @@ static bool end_coding(api_exchange *x)
 
 /* Parses the document of a body, which has arrays beside its JSON if it is of the type
  * API_PACKED_EDITS. */
-static bool parse_document(api_exchange *x, const api_in_options *options)
+static bool parse_document(api_exchange *x, api_in_options *options)
 {
     api_bytes text = api_text_bytes(&x->body);
     const bool packed = x->media_in != NULL && api_media_is(x->media_in, API_PACKED_EDITS);
     if (packed) {
         x->ops.arrays = &x->arrays;
     }
-    return (!packed || api_packed_open(text, &x->arrays, &text, &x->problem)) &&
-           api_document_parse(text, options, &x->document, &x->root, &x->problem);
+    if (packed && !api_packed_open(text, &x->arrays, &text, &x->problem)) {
+        return false;
+    }
+    options->before = packed ? (size_t)(text.at - x->body.bytes) : 0;
+    return api_document_parse(text, options, &x->document, &x->root, &x->problem);
 }
 
 static bool parse_body(api_exchange *x)

@@ -463,7 +463,7 @@ static void answer(api_exchange *x, const edits *e)
         }
     }
     if (!e->dry_run) {
-        api_answer_etag(x, "edits");
+        api_answer_etag(x, e->packed ? "edits-octets" : "edits");
     }
     if (api_answer_minimal(x)) {
         return;

@@ -436,10 +436,11 @@ typedef struct st_kept {
     /* The state of the mesh from which the answer's ETag can be made again, if the ETag itself is
      * not kept because the answer was given before the last start of the server; else 0. */
     uint64_t revision, metadata;
-    /* `body` is the JSON body of the answer; if NULL although `length` is not 0, the body was not
-     * kept */
+    /* `body` is the body of the answer; if NULL although `length` is not 0, the body was not kept
+     */
     const char *body;
     size_t length;
+    const char *media; /* media type of the body; a text that is never freed */
 } st_kept;
 
 /* Begins a request with an Idempotency-Key, before the request is executed; the caller holds no

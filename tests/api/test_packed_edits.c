@@ -440,8 +440,7 @@ static void every_allocation_may_fail(void **state)
     api_arrays_clear(&arrays);
 }
 
-/* A keyed request that is sent again gets its status, but not its octets, which are not stored. */
-static void a_repeated_key_does_not_answer_octets_as_json(void **state)
+static void a_repeated_key_answers_the_same_octets(void **state)
 {
     (void)state;
     static const char *const keyed[] = {
@@ -450,13 +449,55 @@ static void a_repeated_key_does_not_answer_octets_as_json(void **state)
     api_arrays arrays = arrays_of_requests();
     api_text body = pack(pairs[0].packed, &arrays);
     const bench_request request = {"POST", EDITS, keyed, body.bytes, body.length};
-    bench_done(bench_expect(200, bench_send_bytes(b, &request)));
+    bench_reply first = bench_expect(200, bench_send_bytes(b, &request));
     he_mesh *mesh = copy_of(b, "m");
-    bench_reply r = bench_expect(204, bench_send_bytes(b, &request));
-    assert_int_equal(r.length, 0);
-    bench_reply_free(&r);
+    bench_reply again = bench_expect(200, bench_send_bytes(b, &request));
+    assert_string_equal(bench_header(&again, "Idempotency-Replayed"), "true");
+    assert_string_equal(bench_header(&again, "Content-Type"), API_PACKED_EDITS);
+    assert_string_equal(bench_header(&again, "ETag"), bench_header(&first, "ETag"));
+    assert_int_equal(again.length, first.length);
+    assert_memory_equal(again.body, first.body, first.length);
     expect_equal(b, mesh, "m");
+    bench_reply_free(&first);
+    bench_reply_free(&again);
     he_mesh_free(mesh);
+    api_text_clear(&body);
+    api_arrays_clear(&arrays);
+    bench_free(b);
+}
+
+static void octets_and_json_have_tags_of_their_own(void **state)
+{
+    (void)state;
+    static const char *const accept[] = {"Accept", API_PACKED_EDITS, NULL};
+    static const char poke[] = "{\"op\":\"face_poke\",\"face\":0}";
+    api_bench *b = begin();
+    bench_reply r = bench_expect(200, bench_send(b, "POST", EDITS, accept, poke));
+    assert_non_null(strstr(bench_header(&r, "ETag"), "-edits-octets\""));
+    const char *const match[] = {"If-Match", bench_header(&r, "ETag"), NULL};
+    bench_reply json = bench_expect(200, bench_send(b, "POST", EDITS, match, poke));
+    assert_non_null(strstr(bench_header(&json, "ETag"), "-edits\""));
+    bench_reply_free(&json);
+    bench_reply_free(&r);
+    bench_free(b);
+}
+
+/* The offset of a fault in the JSON is that in the body. */
+static void faults_of_the_json_are_counted_from_the_begin_of_the_body(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    api_arrays arrays = arrays_of_requests();
+    api_text body = pack("{\"op\":!}", &arrays);
+    const size_t at = ROWS_AT + 16 * arrays.count + strlen("{\"op\":");
+    char begins[30];
+    assert_int_equal(body.bytes[at], '!');
+    (void)snprintf(begins, sizeof begins, "byte %zu: ", at);
+    bench_reply r = bench_expect(400, send_bytes(b, body.bytes, body.length, false));
+    if (strncmp(bench_text(&r, "detail"), begins, strlen(begins)) != 0) {
+        fail_msg("%s: %s", begins, r.body);
+    }
+    bench_reply_free(&r);
     api_text_clear(&body);
     api_arrays_clear(&arrays);
     bench_free(b);
@@ -472,7 +513,9 @@ int main(void)
         cmocka_unit_test(a_body_of_another_length_is_refused),
         cmocka_unit_test(changed_bytes_do_no_harm),
         cmocka_unit_test(every_allocation_may_fail),
-        cmocka_unit_test(a_repeated_key_does_not_answer_octets_as_json),
+        cmocka_unit_test(a_repeated_key_answers_the_same_octets),
+        cmocka_unit_test(octets_and_json_have_tags_of_their_own),
+        cmocka_unit_test(faults_of_the_json_are_counted_from_the_begin_of_the_body),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
