@@ -33,9 +33,9 @@ static const struct {
                       "\"At most 1023 bytes of UTF-8 without control characters.\"}"},
     {"shown_name",
      "{\"type\":\"string\",\"pattern\":\"^[^\\\\u0000-\\\\u001F\\\\u007F-\\\\u009F"
-     "\\\\u202A-\\\\u202E\\\\u2066-\\\\u2069]*$\",\"description\":\"A name that people see: "
-     "without control characters, and without characters that change the direction "
-     "of the text after them.\"}"},
+     "\\\\u2028-\\\\u202E\\\\u2066-\\\\u2069]*$\",\"description\":\"A name that people see: "
+     "without control characters, and without characters that end a line or change "
+     "the direction of the text after them.\"}"},
     {"mesh_id", "{\"type\":\"string\",\"pattern\":\"^[A-Za-z0-9._-]{1,64}$\"}"},
     {"matrix", "{\"type\":\"array\",\"items\":{\"type\":\"number\"},\"minItems\":16,"
                "\"maxItems\":16,\"description\":\"Row-major, last row 0 0 0 1.\"}"},

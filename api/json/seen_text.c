@@ -14,8 +14,10 @@ static unsigned unseen_at(const unsigned char *at)
     }
     if (at[0] == 0xe2 && (at[1] == 0x80 || at[1] == 0x81)) {
         const unsigned code = 0x2000 | (at[1] & 0x3fU) << 6 | (at[2] & 0x3fU);
-        const bool turns = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-        return turns ? code : 0;
+        /* U+2028 and U+2029 end lines; the others turn the direction of the text after them. */
+        const bool controls =
+            (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+        return controls ? code : 0;
     }
     return 0;
 }

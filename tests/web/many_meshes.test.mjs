@@ -205,6 +205,8 @@ test('names are shown without characters that control text', () => {
     assert.equal(nameInText(HEBREW), `\u2068${HEBREW}\u2069`);
     assert.equal(nameInText(`\u2069${HEBREW}`), `\u2068\ufffd${HEBREW}\u2069`);
     assert.equal(storableName(` a\tb\u2066 `), 'a b');
+    assert.equal(seenName('a\u2028b\u2029'), 'a\ufffdb\ufffd');
+    assert.equal(storableName('a\u2028b'), 'a b');
 });
 
 // Returns the left and right edge of a part of an element's text, in pixels.
