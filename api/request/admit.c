@@ -333,6 +333,11 @@ bool api_refuse_size(api_exchange *x)
 
 bool api_refuse_empty(api_exchange *x)
 {
+    if (x->attribute != NULL) {
+        return api_fail(x, API_MISSING_BODY,
+                        "the body is empty: send the values as JSON, or as octets if there are "
+                        "elements to have values");
+    }
     return x->route->body_kind == API_BODY_UPLOAD
                ? api_fail(
                      x, API_MISSING_BODY,

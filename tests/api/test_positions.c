@@ -356,6 +356,7 @@ static void octets_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
     const char *const accept[] = {"Accept", OCTETS, NULL};
+    const char *const octets[] = {"Content-Type", OCTETS, NULL};
     const uint32_t gone[] = {0, 6}, beyond = 99, twice[] = {1, 1};
     const double huge[] = {0, 1e300, 0}, infinite[] = {0, 0, INFINITY};
     unsigned char bytes[200] = {0};
@@ -363,6 +364,11 @@ static void octets_that_do_not_fit_are_refused(void **state)
     api_bench *b = make(&o);
     send_bytes(b, 422, "PUT " PATH, bytes, 24);
     send_bytes(b, 400, "PUT " PATH, bytes, 25);
+    bench_reply empty = bench_expect(
+        400, bench_send_bytes(b, &(bench_request){"PUT", PATH, octets, (const char *)bytes, 0}));
+    assert_string_equal(bench_text(&empty, "code"), "missing_body");
+    assert_non_null(strstr(bench_text(&empty, "detail"), "send the values"));
+    bench_done(empty);
     send_bytes(b, 400, "PUT " PATH "?type=int32", bytes, 24);
     send_bytes(b, 400, "PUT " PATH "?components=4", bytes, 24);
     send_bytes(b, 400, "PATCH " PATH, bytes, 27);
