@@ -133,6 +133,12 @@ static const api_field param_fields[] = {
 };
 const api_record api_parameter_record = API_RECORD("parameter", param_fields);
 
+/* Returns true if a set of elements may be given instead of a list of ids. */
+static bool takes_set(const he_param *param)
+{
+    return param->plural != NULL || (param->each != NULL && param->type == HE_PARAM_ELEMENT);
+}
+
 static void write_param(api_out *out, const he_op *op, const he_param *param)
 {
     const bool has_range = (param->flags & HE_RANGE) != 0;
@@ -146,7 +152,7 @@ static void write_param(api_out *out, const he_op *op, const he_param *param)
                                .selects = (param->flags & HE_SELECTS) != 0,
                                .with = param->with != 0 ? with : NULL,
                                .needed = param->needed != 0 ? needed : NULL,
-                               .set = param->plural != NULL,
+                               .set = takes_set(param),
                                .nullable = (param->flags & HE_NULLABLE) != 0,
                                .has_default = has_default(param),
                                .has_range = has_range,
@@ -431,6 +437,9 @@ static void write_column_schema(api_out *out, const he_param *param)
     api_out_object_end(out);
     api_out_key_u64(out, "minItems", 1);
     api_out_object_end(out);
+    if (takes_set(param)) {
+        api_schema_ref(out, "schemas", "set");
+    }
     api_out_array_end(out);
 }
 

@@ -214,6 +214,60 @@ static void pages_of_other_origins_may_read_every_header_described(void **state)
     bench_free(b);
 }
 
+/* Returns the parameter `name` of an operation in the answer of GET /v1/operations. */
+static const cJSON *parameter_of(const cJSON *operations, const char *operation, const char *name)
+{
+    const cJSON *op, *param;
+    cJSON_ArrayForEach(op, json_member(operations, "operations"))
+    {
+        cJSON_ArrayForEach(param, json_member(op, "params"))
+        {
+            if (strcmp(json_member(op, "name")->valuestring, operation) == 0 &&
+                strcmp(json_member(param, "name")->valuestring, name) == 0) {
+                return param;
+            }
+        }
+    }
+    fail_msg("%s has no parameter %s", operation, name);
+    return NULL;
+}
+
+static bool takes_set(const cJSON *document, const char *schema, const char *member)
+{
+    const cJSON *schemas = json_member(json_member(document, "components"), "schemas");
+    const cJSON *properties = json_member(json_member(schemas, schema), "properties");
+    const cJSON *choice;
+    cJSON_ArrayForEach(choice, json_member(json_member(properties, member), "oneOf"))
+    {
+        const cJSON *reference = cJSON_GetObjectItem(choice, "$ref");
+        if (reference != NULL && strcmp(reference->valuestring, "#/components/schemas/set") == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A set may be given for each list of elements, but not for a column beside it. */
+static void sets_are_described_where_they_are_taken(void **state)
+{
+    (void)state;
+    api_bench *b = bench_new();
+    bench_reply table = bench_expect(200, bench_get(b, "/v1/operations"));
+    bench_reply document = bench_expect(200, bench_get(b, "/v1/openapi.json"));
+    assert_true(
+        cJSON_IsTrue(cJSON_GetObjectItem(parameter_of(table.json, "edge_split", "edge"), "set")));
+    assert_true(
+        cJSON_IsTrue(cJSON_GetObjectItem(parameter_of(table.json, "edge_weld", "a"), "set")));
+    assert_null(cJSON_GetObjectItem(parameter_of(table.json, "edge_weld", "b"), "set"));
+    assert_null(cJSON_GetObjectItem(parameter_of(table.json, "vertex_add", "position"), "set"));
+    assert_true(takes_set(document.json, "op_edge_split", "edges"));
+    assert_true(takes_set(document.json, "op_edge_weld", "a"));
+    assert_false(takes_set(document.json, "op_edge_weld", "b"));
+    bench_reply_free(&document);
+    bench_reply_free(&table);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -223,6 +277,7 @@ int main(void)
         cmocka_unit_test(each_flag_of_a_route_is_a_bit_of_its_own),
         cmocka_unit_test(only_the_manual_answers_404_with_a_page),
         cmocka_unit_test(pages_of_other_origins_may_read_every_header_described),
+        cmocka_unit_test(sets_are_described_where_they_are_taken),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
