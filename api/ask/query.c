@@ -51,12 +51,11 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
 
 /* --- binary answers --- */
 
-/* A binary answer consists of blocks of bytes; all values are little-endian:
- *
- *     offsets, ids      the neighbours of n elements: n + 1 offsets (32 bits), and the ids (32
- * bits) values            or a measure of n elements: doubles, with NaN for null elements, n only
- * if the question is about "all": the ids of the n elements (32 bits), and their number n (32
- * bits), from which a reader knows where the blocks begin */
+/* A binary answer consists of blocks of bytes; all values are little-endian, and all but doubles
+ * have 32 bits. The neighbours of n elements are n + 1 offsets, and then the ids. A measure of n
+ * elements is n doubles, with NaN in place of null. If the question is about "all", the ids of the
+ * n elements follow, and at the end the number n, from which a reader knows where the blocks
+ * begin. */
 enum { OFFSETS, VALUES = OFFSETS, IDS, ELEMENTS, COUNT, BLOCKS };
 
 typedef struct octets {

@@ -417,12 +417,10 @@ static const api_route routes[] = {
      .request = "edit",
      .response = "edited",
      .summary = "Edit a mesh",
-     .doc =
-         "The body is one operation, or a list of operations that is applied completely or not "
-         "at all. It makes one revision and one undo step. As application/vnd.hedge.edits, long "
-         "lists "
-         "of ids, numbers and points are arrays of octets beside the JSON, in the request and in "
-         "the answer; the page about lists of edits describes the bytes."},
+     .doc = "The body is one operation, or a list of operations that is applied completely or not "
+            "at all. It makes one revision and one undo step. As application/vnd.hedge.edits, long "
+            "lists of ids, numbers and points are arrays of octets beside the JSON, in the request "
+            "and in the answer; `/docs/guides/batches` describes the bytes."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/edits",
      .name = "list_edits",

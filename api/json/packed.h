@@ -55,7 +55,7 @@ typedef struct api_arrays {
 
 void api_arrays_clear(api_arrays *arrays);
 
-/* Finds the JSON text and the arrays in a body, which must outlive them; `bytes.at` must be
+/* Finds the JSON text and the arrays in a body, which must outlive them; body.at must be
  * suitably aligned for a double. Refuses the body with HE_BAD_VALUE and the offset of the wrong
  * byte, or with HE_NO_MEMORY. */
 bool api_packed_open(api_bytes body, api_arrays *out, api_bytes *json, api_problem *problem);

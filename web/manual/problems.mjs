@@ -48,7 +48,7 @@ export const PROBLEMS = {
     // --- wrong elements ---
     no_such_element: refused('kite', { op: 'edge_split', edge: 99 }, 'List the elements (`GET /v1/meshes/{mesh}/edges`) and use an id from there. Ids of a file and ids of a mesh may differ.'),
     deleted_element: { cure: 'Read what your edit made, in `created` of its answer, instead of keeping old ids. After an undo, the id is valid again.', mesh: 'kite', steps: [edit('kite', { op: 'face_delete', face: 0 }), edit('kite', { op: 'face_delete', face: 0 })] },
-    repeated_element: refused('kite', { op: 'face_delete', faces: [0, 0] }, 'Remove the repetition: a list of elements is a set.'),
+    repeated_element: refused('kite', { op: 'face_delete', faces: [0, 0] }, 'Remove the repetition: a list of elements is a set. A list for each of whose elements an operation runs is refused with [repeated](/docs/problems/repeated) instead.'),
 
     // --- shapes that are no mesh ---
     too_few_corners: wrongMesh(POINTS, [[0, 1, 2], [0, 2]], 'Leave out faces with two corners, or add `repair=drop_degenerate`.'),
@@ -125,7 +125,7 @@ export const PROBLEMS = {
     unknown_operation: refused('kite', { op: 'split_edge', edge: 2 }, 'Use a name of [the list of operations](/docs/operations). The object comes first: edge_split.'),
     conflicting_members: refused('kite', { op: 'face_delete', face: 0, faces: [1] }, 'Keep the one that you mean.'),
     bad_reference: refused('kite', { ops: [{ op: 'face_poke', face: 0 }, { op: 'vertex_move', vertex: '$peak.vertex', by: [0, 0, 1] }] }, 'Give the earlier operation the member `"as":"peak"`, and check the name of the result on its page.'),
-    repeated: refused('kite', { op: 'edge_split', edges: [2, 4, 2] }, 'Name each element once. To split an edge into many parts, split the parts that the first split made.'),
+    repeated: refused('kite', { op: 'edge_split', edges: [2, 4, 2] }, 'Name each element once. To split an edge into many parts, split the parts that the first split made. A list of elements that an operation treats together is refused with [repeated_element](/docs/problems/repeated_element) instead.'),
     repeated_name: refused('kite', { ops: [{ op: 'face_poke', face: 0, as: 'a' }, { op: 'face_poke', face: 1, as: 'a' }] }, 'Give each operation of the list another name.'),
 
     // --- the request line and its headers ---
