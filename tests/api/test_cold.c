@@ -204,6 +204,30 @@ static void a_list_loads_nothing(void **state)
     end(b);
 }
 
+static void a_sorted_list_loads_nothing(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *target, *ids[2];
+    } lists[] = {{"/v1/meshes?sort=name", {"n", "m"}},
+                 {"/v1/meshes?sort=bytes", {"m", "n"}},
+                 {"/v1/meshes?sort=name&limit=1", {"n", NULL}}};
+    api_bench *b = begin();
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        b = expect_same_after_restart(b, lists[i].target);
+        bench_reply r = bench_expect(200, bench_get(b, lists[i].target));
+        const cJSON *items = cJSON_GetObjectItem(r.json, "items");
+        for (int k = 0; k < 2; k++) {
+            const cJSON *item = cJSON_GetArrayItem(items, k);
+            const char *id = item == NULL ? NULL : cJSON_GetObjectItem(item, "id")->valuestring;
+            assert_true(id == NULL ? lists[i].ids[k] == NULL : strcmp(id, lists[i].ids[k]) == 0);
+        }
+        bench_done(r);
+    }
+    assert_int_equal(kept_journal_facts(journal, "m").opened, 0);
+    end(b);
+}
+
 static size_t loads(const char *id)
 {
     return kept_journal_facts(journal, id).opened;
@@ -382,6 +406,7 @@ int main(void)
         cmocka_unit_test(octets_of_an_attribute_are_counted_when_the_mesh_is_there),
         cmocka_unit_test(preconditions_hold_of_a_cold_mesh),
         cmocka_unit_test(a_list_loads_nothing),
+        cmocka_unit_test(a_sorted_list_loads_nothing),
         cmocka_unit_test(head_of_a_cold_mesh_loads_nothing),
         cmocka_unit_test(what_the_client_has_of_a_cold_mesh_loads_nothing),
         cmocka_unit_test(a_cold_mesh_is_deleted_without_being_loaded),
