@@ -137,20 +137,54 @@ static bool note(edits *e, const api_in *in, const api_call *call)
            api_problem_set_core(in->problem, &err);
 }
 
+/* Refuses the operation `in` if the operations before it visit too many elements. */
+static bool within_elements(uint64_t looked_at, const api_in *in)
+{
+    return looked_at <= API_MAX_EDITS_ELEMENTS ||
+           api_in_fail(in, HE_LIMIT,
+                       "the list of operations is too long: the operations before this one "
+                       "visit %llu elements, and at most %d are allowed",
+                       (unsigned long long)looked_at, (int)API_MAX_EDITS_ELEMENTS);
+}
+
+/* Returns the number of values in all lists and columns of an operation. */
+static uint64_t count_listed(const api_call *call)
+{
+    uint64_t listed = 0;
+    for (size_t i = 0; i < he_op_params(call->op); i++) {
+        listed += call->args[i].list ? call->args[i].count : 0;
+    }
+    return listed;
+}
+
+/* While operations are checked, progress is reported once for this many of their values. */
+enum { CHECKED_PER_LOOK = 16 * HE_PROGRESS_STRIDE };
+
 /* Checks all operations, so that every mistake in the document is found before the first operation
- * runs. */
-static bool check_ops(const api_exchange *x, edits *e)
+ * runs. The values are counted, because one array of a packed body (api/json/packed.h) may be the
+ * list of any number of operations. */
+static bool check_ops(api_exchange *x, edits *e)
 {
     api_call call;
     if (!e->is_list) {
         return decode(e, &x->root, NULL, &call) && note(e, &x->root, &call);
     }
     const api_in *op = &e->op.in;
+    uint64_t listed = 0, next = CHECKED_PER_LOOK;
     for (size_t i = 0; i < e->count; i++) {
-        if (!api_item_read(&x->ops, i, &e->list, &e->op) || !decode(e, op, NULL, &call) ||
-            !api_result_names_add(&e->names, op, &call) || !note(e, op, &call)) {
+        he_error err = {0};
+        if (listed >= next) {
+            next = listed + CHECKED_PER_LOOK;
+            if (he_progress_phase(&x->progress, "reading", 0, &err) != HE_OK) {
+                return api_fail_core(x, &err);
+            }
+        }
+        if (!api_item_read(&x->ops, i, &e->list, &e->op) || !within_elements(listed, op) ||
+            !decode(e, op, NULL, &call) || !api_result_names_add(&e->names, op, &call) ||
+            !note(e, op, &call)) {
             return false;
         }
+        listed += count_listed(&call);
     }
     return true;
 }
@@ -200,11 +234,8 @@ static uint64_t issued(const he_mesh *mesh)
  * operations may name the whole mesh or a vertex of high degree. */
 static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
 {
-    if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
-        return api_in_fail(in, HE_LIMIT,
-                           "the list of operations is too long: the operations before this one "
-                           "visit %llu elements, and at most %d are allowed",
-                           (unsigned long long)e->looked_at, (int)API_MAX_EDITS_ELEMENTS);
+    if (!within_elements(e->looked_at, in)) {
+        return false;
     }
     if (e->steps > API_MAX_EDITS_STEPS) {
         return api_in_fail(in, HE_LIMIT,
@@ -240,9 +271,9 @@ static bool is_affordable(edits *e, const he_delta *delta)
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
 {
     bool whole = he_op_is_whole(call->op, call->args);
-    uint64_t elements = whole || call->has_set ? issued(mesh) : 0, listed = 0;
+    uint64_t elements = whole || call->has_set ? issued(mesh) : 0;
+    const uint64_t listed = count_listed(call);
     for (size_t i = 0; i < he_op_params(call->op); i++) {
-        listed += call->args[i].list ? call->args[i].count : 0;
         elements += call->args[i].mesh != NULL ? issued(call->args[i].mesh) : 0;
     }
     const double growth = he_op_growth(call->op, mesh, call->args);

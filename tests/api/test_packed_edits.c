@@ -503,6 +503,102 @@ static void faults_of_the_json_are_counted_from_the_begin_of_the_body(void **sta
     bench_free(b);
 }
 
+enum { MANY_VALUES = 1 << 20 };
+
+/* Returns a body with 67 times the same operation and an array of MANY_VALUES ids, of which the
+ * cube does not have the thirteenth. */
+static api_text pack_many(const char *op)
+{
+    api_arrays arrays = {0};
+    api_text json = {0};
+    uint32_t *edges = malloc(MANY_VALUES * sizeof *edges);
+    assert_non_null(edges);
+    for (uint32_t i = 0; i < MANY_VALUES; i++) {
+        edges[i] = i;
+    }
+    (void)api_packed_add(&arrays, API_PACKED_U32, 1, edges, MANY_VALUES);
+    api_text_add_string(&json, "{\"ops\":[");
+    for (size_t i = 0; i < 67; i++) {
+        api_text_add_format(&json, "%s%s", i > 0 ? "," : "", op);
+    }
+    api_text_add(&json, "]}", sizeof "]}");
+    assert_false(json.failed);
+    api_text body = pack(json.bytes, &arrays);
+    api_text_clear(&json);
+    api_arrays_clear(&arrays);
+    free(edges);
+    return body;
+}
+
+/* Operations that together name too many elements are refused before the first one runs, which
+ * would be refused for its thirteenth edge. */
+static void an_array_counts_for_each_operation_that_names_it(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *op, *pointer;
+    } cases[] = {
+        {"{\"op\":\"edge_split\",\"edges\":{\"array\":0}}", "/ops/65"},
+        {"{\"op\":\"edge_weld\",\"a\":{\"array\":0},\"b\":{\"array\":0}}", "/ops/33"},
+    };
+    api_bench *b = begin();
+    he_mesh *before = copy_of(b, "m");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        api_text body = pack_many(cases[i].op);
+        bench_reply r = bench_expect(413, send_bytes(b, body.bytes, body.length, false));
+        assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
+        assert_string_equal(bench_text(&r, "pointer"), cases[i].pointer);
+        bench_reply_free(&r);
+        expect_equal(b, before, "m");
+        api_text_clear(&body);
+    }
+    he_mesh_free(before);
+    bench_free(b);
+}
+
+/* Cancels the request when `*context` reports were made while operations were read. */
+static bool cancel_reading(void *context, const char *phase, double done)
+{
+    int *left = context;
+    assert_true(done >= 0 && done <= 1);
+    return strcmp(phase, "reading") != 0 || --*left > 0;
+}
+
+static void the_reading_of_operations_can_be_cancelled(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    he_mesh *before = copy_of(b, "m");
+    api_text body = pack_many("{\"op\":\"edge_split\",\"edges\":{\"array\":0}}");
+    const api_request request = {.method = "POST",
+                                 .path = EDITS,
+                                 .query = "",
+                                 .request_id = "test",
+                                 .headers = {[API_HEADER_CONTENT_TYPE] = API_PACKED_EDITS},
+                                 .has_length = true,
+                                 .length = body.length,
+                                 .has_body = true};
+    api_step step;
+    size_t used = 0;
+    int left = 3;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_non_null(x);
+    for (size_t at = 0; step == API_MORE && at < body.length; at += used) {
+        step = api_body(x, body.bytes + at, body.length - at, &used);
+    }
+    assert_int_equal(step, API_MORE);
+    assert_int_equal(api_end(x), API_WORK);
+    api_set_progress(x, cancel_reading, &left);
+    assert_int_equal(api_work(x), API_READY);
+    assert_int_equal(api_answer_of(x)->status, 503);
+    assert_int_equal(left, 0);
+    api_free(x);
+    expect_equal(b, before, "m");
+    he_mesh_free(before);
+    api_text_clear(&body);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -516,6 +612,8 @@ int main(void)
         cmocka_unit_test(a_repeated_key_answers_the_same_octets),
         cmocka_unit_test(octets_and_json_have_tags_of_their_own),
         cmocka_unit_test(faults_of_the_json_are_counted_from_the_begin_of_the_body),
+        cmocka_unit_test(an_array_counts_for_each_operation_that_names_it),
+        cmocka_unit_test(the_reading_of_operations_can_be_cancelled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
