@@ -280,6 +280,8 @@ static uint64_t walk_about(const he_mesh *mesh, const he_param *param, uint32_t 
 uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t most,
                              api_hubs *hubs)
 {
+    const bool runs_each = he_op_each(call->op, call->args) != NULL;
+    const uint64_t runs = he_op_runs(call->op, call->args);
     uint64_t count = 0;
     for (size_t i = 0; i < he_op_params(call->op); i++) {
         const he_param *param = &call->op->params[i];
@@ -287,15 +289,16 @@ uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t
         if (!arg->given || (param->flags & HE_WALKS) == 0) {
             continue;
         }
-        if (param->type == HE_PARAM_ELEMENT && !arg->list) {
-            count += walk_about(mesh, param, arg->id, most, hubs);
-            continue;
-        }
-        for (size_t j = 0; j < arg->count && count <= most; j++) {
-            count += walk_about(mesh, param, arg->ids[j], most, hubs);
+        /* A value that is not in a list is the same in all runs. */
+        const uint64_t times = arg->list ? 1 : runs;
+        const uint32_t *ids = param->type == HE_PARAM_ELEMENT && !arg->list ? &arg->id : arg->ids;
+        const size_t ids_count = param->type == HE_PARAM_ELEMENT && !arg->list ? 1 : arg->count;
+        for (size_t j = 0; j < ids_count && count <= most; j++) {
+            const uint64_t around = walk_about(mesh, param, ids[j], most, hubs);
+            count += around <= most / (times > 0 ? times : 1) ? times * around : most + 1;
         }
     }
-    if (he_op_each(call->op, call->args) != NULL) {
+    if (runs_each) {
         return count;
     }
     /* An operation visits each half-edge only a few times, even if the half-edge is near many of

@@ -38,9 +38,9 @@ typedef struct api_hubs {
     } slots[16];
 } api_hubs;
 
-/* Returns how many steps one operation takes around the elements of those parameters that have
- * HE_WALKS. Ids of elements that are not live count 0 steps. Counting stops when the number exceeds
- * `most`. */
+/* Returns how many steps one operation takes, in all its runs, around the elements of those
+ * parameters that have HE_WALKS. Ids of elements that are not live count 0 steps. Counting stops
+ * when the number exceeds `most`, which is at most UINT64_MAX / 2. */
 uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t most,
                              api_hubs *hubs);
 

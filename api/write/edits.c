@@ -266,6 +266,14 @@ static bool is_affordable(edits *e, const he_delta *delta)
     return !e->exceeded && !e->crowded;
 }
 
+/* Returns after how many steps of an operation it is known that the list exceeds a limit. */
+static uint64_t most_steps(const edits *e)
+{
+    const uint64_t left = e->most_work > e->work ? e->most_work - e->work : 0;
+    return left < API_MAX_EDITS_STEPS / API_STEPS_OF_WORK ? (left + 1) * API_STEPS_OF_WORK
+                                                          : API_MAX_EDITS_STEPS;
+}
+
 /* Charges the cost of one operation. Returns false if the list exceeds what it may do on this
  * thread, or without claiming the mesh (store/write.h). */
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
@@ -282,7 +290,9 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     /* the elements that an operation makes which does not take the time of the whole mesh */
     double some = whole ? 0 : (growth - 1) * (double)issued(mesh);
     uint64_t made = some < MANY ? (uint64_t)some : (uint64_t)MANY;
-    uint64_t steps = e->is_list ? api_edit_cost_steps(call, mesh, UINT64_MAX / 2, &e->hubs) : 0;
+    /* An operation that runs once takes no more steps than one visit to the whole mesh. */
+    const bool walks = e->is_list || (he_op_each(call->op, call->args) != NULL && !e->unlimited);
+    const uint64_t steps = walks ? api_edit_cost_steps(call, mesh, most_steps(e), &e->hubs) : 0;
     e->looked_at += elements + listed;
     e->steps += steps;
     uint64_t work = (whole ? grown * he_op_pace(call->op, call->args) : elements) +

@@ -195,7 +195,7 @@ const he_op he_edge_rows[] = {
                                        .each = "edges",
                                        .type = HE_PARAM_ELEMENT,
                                        .kind = HE_EDGE,
-                                       .flags = HE_REQUIRED,
+                                       .flags = HE_REQUIRED | HE_WALKS,
                                        .doc = "The edge to flip. Each of its ends moves to the "
                                               "next corner, counter-clockwise."}},
         .results = {[EDGE_FLIP_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,

@@ -4,7 +4,9 @@
 
 #include "api/json/text.h"
 #include "api/limits.h"
+#include "api/write/edit_cost.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -371,6 +373,88 @@ static void a_minimal_answer_to_a_long_list_leaves_an_equal_mesh(void **state)
     bench_free(b);
 }
 
+/* --- the cost of a list --- */
+
+/* Makes a mesh of a polygon with a triangle at each of its edges. Edge 3 * i is an edge of the
+ * polygon. */
+static void begin_flower(api_bench *b, size_t corners)
+{
+    api_text body = {0};
+    api_text_add_string(&body, "{\"vertices\":[");
+    for (size_t i = 0; i < 2 * corners; i++) {
+        const double half = i < corners ? 0 : 0.5, radius = i < corners ? 1 : 1.1;
+        const double angle = 2 * acos(-1.0) * ((double)i + half) / (double)corners;
+        api_text_add_format(&body, "%s[%.12f,%.12f,0]", i > 0 ? "," : "", radius * cos(angle),
+                            radius * sin(angle));
+    }
+    api_text_add_string(&body, "],\"faces\":[");
+    for (size_t i = 0; i < corners; i++) {
+        api_text_add_format(&body, "[%zu,%zu,%zu],", (i + 1) % corners, i, corners + i);
+    }
+    for (size_t i = 0; i < corners; i++) {
+        api_text_add_format(&body, "%s%zu", i > 0 ? "," : "[", i);
+    }
+    api_text_add(&body, "]]}", sizeof "]]}");
+    assert_false(body.failed);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", body.bytes)));
+    api_text_clear(&body);
+}
+
+/* Flipping an edge walks around its faces. For 8,000 edges of a polygon of 16,000 corners that is
+ * too much to hold the mesh's lock, so the edit is started again as a job, on a copy. */
+static void a_list_around_a_large_face_becomes_a_job(void **state)
+{
+    (void)state;
+    enum { CORNERS = 16000 };
+    api_bench *b = bench_new();
+    api_text body = {0};
+    begin_flower(b, CORNERS);
+    he_mesh *before = copy_of(b, "m");
+    api_text_add_string(&body, "{\"op\":\"edge_flip\",\"edges\":[");
+    for (size_t i = 0; i < CORNERS; i += 2) {
+        api_text_add_format(&body, "%s%zu", i > 0 ? "," : "", 3 * i);
+    }
+    api_text_add(&body, "]}", sizeof "]}");
+    assert_false(body.failed);
+    bench_reply job = bench_expect(202, bench_post(b, EDITS, body.bytes));
+    expect_equal(b, before, "m");
+    bench_run_jobs(b, 1);
+    bench_reply r = bench_expect(200, bench_get(b, bench_header(&job, "Location")));
+    assert_string_equal(bench_text(&r, "state"), "done");
+    bench_done(job);
+    bench_done(r);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+    he_mesh *undone = copy_of(b, "m");
+    assert_true(he_mesh_equal_live(before, undone));
+    he_mesh_free(undone);
+    he_mesh_free(before);
+    api_text_clear(&body);
+    bench_free(b);
+}
+
+/* A value that is the same in all runs takes as many steps as a column of this value. */
+static void one_value_costs_as_much_as_its_column(void **state)
+{
+    (void)state;
+    static const uint32_t a[] = {0, 1, 2, 3}, same[] = {5, 5, 5, 5};
+    const uint64_t most = UINT64_MAX / 2;
+    api_bench *b = begin();
+    he_mesh *mesh = copy_of(b, "m");
+    api_hubs hubs = {.slots = {{0}}};
+    api_call call = {.op = he_op_find("edge_weld", strlen("edge_weld"))};
+    he_op_defaults(call.op, call.args);
+    call.args[0] = (he_arg){.given = true, .list = true, .ids = a, .count = 4};
+    call.args[1] = (he_arg){.given = true, .id = 5};
+    const uint64_t one = api_edit_cost_steps(&call, mesh, most, &hubs);
+    call.args[1] = (he_arg){.given = true, .list = true, .ids = same, .count = 4};
+    assert_int_equal(one, api_edit_cost_steps(&call, mesh, most, &hubs));
+    assert_true(api_edit_cost_steps(&call, mesh, 3, &hubs) > 3);
+    call.args[1] = (he_arg){.given = true, .id = 5};
+    assert_true(api_edit_cost_steps(&call, mesh, one - 1, &hubs) > one - 1);
+    he_mesh_free(mesh);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -383,6 +467,8 @@ int main(void)
         cmocka_unit_test(a_long_list_is_one_revision_and_one_step),
         cmocka_unit_test(a_minimal_answer_to_a_long_list_leaves_an_equal_mesh),
         cmocka_unit_test(the_last_of_a_long_list_undoes_all_before_it),
+        cmocka_unit_test(a_list_around_a_large_face_becomes_a_job),
+        cmocka_unit_test(one_value_costs_as_much_as_its_column),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
