@@ -5,6 +5,21 @@
 
 #include <string.h>
 
+/* Checks that each result of a column is an id, if the parameter may not be null. */
+static bool check_found(const he_param *param, const api_in *in, const char *text,
+                        const api_found *found)
+{
+    for (size_t i = 0; found->known && (param->flags & HE_NULLABLE) == 0 && i < found->count; i++) {
+        if (found->ids[i] == HE_NONE) {
+            return api_in_fail(in, HE_NO_SUCH_ELEMENT,
+                               "\"%.100s\" stands for results that its operation did not all "
+                               "produce: item %zu is null",
+                               text, i);
+        }
+    }
+    return true;
+}
+
 /* Reads an id into `one`, or the ids that a reference stands for into `found`. */
 static bool read_ids(const api_decoder *d, const api_in *in, const he_param *param, uint32_t *one,
                      api_found *found)
@@ -27,7 +42,8 @@ static bool read_ids(const api_decoder *d, const api_in *in, const he_param *par
             in, API_WRONG_TYPE,
             "a string in place of an id must be a reference such as \"$name.result\"");
     }
-    if (!references->find(references->context, in, text, param->kind, found)) {
+    if (!references->find(references->context, in, text, param->kind, found) ||
+        !check_found(param, in, text, found)) {
         return false;
     }
     d->call->has_unknown = d->call->has_unknown || !found->known;

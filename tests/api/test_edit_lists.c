@@ -243,6 +243,42 @@ static void results_of_a_list_can_be_referred_to(void **state)
     bench_free(b);
 }
 
+/* A hole that is filled by one face has no new vertex. */
+static void a_result_that_was_not_produced_is_no_id(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *op, *pointer, *detail;
+    } cases[] = {
+        {"{\"op\":\"vertex_delete\",\"vertices\":[1,\"$x.vertex\"]}", "/ops/2/vertices/1",
+         "\"$x.vertex\" stands for results that its operation did not all produce: item 0 is null"},
+        {"{\"op\":\"vertex_delete\",\"vertices\":[1,\"$x.vertex.0\"]}", "/ops/2/vertices/1",
+         "\"$x.vertex.0\" stands for a result that its operation did not produce"},
+        {"{\"op\":\"face_add\",\"faces\":[[\"$x.vertex\",0,1]]}", "/ops/2/faces/0/0", NULL},
+        {"{\"op\":\"face_add\",\"vertices\":[0,1,\"$x.vertex\"]}", "/ops/2/vertices/2", NULL},
+        {"{\"op\":\"vertex_move\",\"vertices\":[\"$x.vertex\"],\"by\":[0,0,1]}",
+         "/ops/2/vertices/0", NULL},
+    };
+    api_bench *b = begin();
+    he_mesh *before = copy_of(b, "m");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char body[400];
+        snprintf(body, sizeof body,
+                 "{\"ops\":[{\"op\":\"face_delete\",\"face\":0},"
+                 "{\"op\":\"hole_fill\",\"as\":\"x\",\"halfedges\":[0]},%s]}",
+                 cases[i].op);
+        bench_reply r = bench_expect(422, bench_post(b, EDITS, body));
+        assert_string_equal(bench_text(&r, "code"), "no_such_element");
+        assert_string_equal(bench_text(&r, "pointer"), cases[i].pointer);
+        assert_string_equal(bench_text(&r, "detail"),
+                            cases[i].detail != NULL ? cases[i].detail : cases[0].detail);
+        bench_done(r);
+        expect_equal(b, before, "m");
+    }
+    he_mesh_free(before);
+    bench_free(b);
+}
+
 static void a_set_may_be_the_list(void **state)
 {
     (void)state;
@@ -463,6 +499,7 @@ int main(void)
         cmocka_unit_test(the_lengths_of_a_column_and_its_list_are_named),
         cmocka_unit_test(alternatives_are_named_as_they_were_given),
         cmocka_unit_test(results_of_a_list_can_be_referred_to),
+        cmocka_unit_test(a_result_that_was_not_produced_is_no_id),
         cmocka_unit_test(a_set_may_be_the_list),
         cmocka_unit_test(a_long_list_is_one_revision_and_one_step),
         cmocka_unit_test(a_minimal_answer_to_a_long_list_leaves_an_equal_mesh),
