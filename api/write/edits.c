@@ -51,6 +51,8 @@ typedef struct edits {
     /* The delta that records the changes, while an operation runs once for each item of a list;
      * else NULL. */
     const he_delta *growing;
+    size_t seen;   /* number of rows of `growing` at the last free report of progress */
+    bool overfull; /* `growing` has more rows than API_MAX_EDITS_ROWS */
     api_hubs hubs;
     api_result_names names;
     api_arena scratch; /* arguments of the current operation */
@@ -230,6 +232,14 @@ static uint64_t issued(const he_mesh *mesh)
            he_mesh_issued(mesh, HE_FACE);
 }
 
+static bool fail_rows(const api_in *in)
+{
+    return api_in_fail(in, HE_LIMIT,
+                       "the list of operations is too long: before this place it makes more than "
+                       "%d changes to elements and attribute values",
+                       (int)API_MAX_EDITS_ROWS);
+}
+
 /* Refuses a list that exceeds a limit of work. Even a short list can, because each of its
  * operations may name the whole mesh or a vertex of high degree. */
 static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
@@ -243,14 +253,7 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
                            "take %llu computing steps, and at most %llu are allowed",
                            (unsigned long long)e->steps, (unsigned long long)API_MAX_EDITS_STEPS);
     }
-    if (delta->count > API_MAX_EDITS_ROWS) {
-        return api_in_fail(
-            in, HE_LIMIT,
-            "the list of operations is too long: the operations before this one make %zu changes "
-            "to elements and attribute values, and at most %d are allowed",
-            delta->count, (int)API_MAX_EDITS_ROWS);
-    }
-    return true;
+    return delta->count <= API_MAX_EDITS_ROWS || fail_rows(in);
 }
 
 /* The number of reports of progress that the charge for any operation includes, and for how many
@@ -394,10 +397,15 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     attribute_count before = count_attributes(mesh);
     e->at = he_op_number(call.op);
     e->growing = he_op_each(call.op, call.args) != NULL ? delta : NULL;
+    e->seen = delta->count;
     const he_status status = he_op_run(call.op, mesh, call.args, &results, &err);
     e->growing = NULL;
     if (status != HE_OK) {
-        api_fail_core(x, &err);
+        if (e->overfull) {
+            fail_rows(in);
+        } else {
+            api_fail_core(x, &err);
+        }
         point_at(e, in, &call, results.runs);
         return false;
     }
@@ -562,14 +570,20 @@ static bool edit(api_exchange *x, edits *e)
 static bool tell_and_charge(void *context, const char *phase, double done)
 {
     edits *e = context;
-    if (e->paid > 0) {
+    if (e->growing != NULL && e->growing->count - e->seen >= HE_PROGRESS_STRIDE) {
+        /* Many rows caused this report, and is_affordable charges them. */
+        e->seen = e->growing->count;
+    } else if (e->paid > 0) {
         e->paid--;
     } else {
         e->work += e->look;
         e->exceeded = e->exceeded || e->work > e->most_work;
     }
-    if (e->growing != NULL && !is_affordable(e, e->growing)) {
-        return false;
+    if (e->growing != NULL) {
+        e->overfull = e->growing->count > API_MAX_EDITS_ROWS;
+        if (!is_affordable(e, e->growing) || e->overfull) {
+            return false;
+        }
     }
     return !e->exceeded && (e->told.tell == NULL || e->told.tell(e->told.context, phase, done));
 }
@@ -591,14 +605,14 @@ static void unlimit_work(api_exchange *x, const edits *e)
 {
     x->progress.tell = e->told.tell;
     x->progress.context = e->told.context;
-    x->progress.cancelled = x->progress.cancelled && !e->exceeded && !e->crowded;
+    x->progress.cancelled = x->progress.cancelled && !e->exceeded && !e->crowded && !e->overfull;
 }
 
 /* Resets the state of a list that was rolled back, so that it can start again. */
 static void start_over(edits *e)
 {
     e->looked_at = e->steps = e->work = 0;
-    e->exceeded = e->crowded = false;
+    e->exceeded = e->crowded = e->overfull = false;
     e->hubs = (api_hubs){.slots = {{0}}};
     memset(e->ran, 0, sizeof e->ran);
     e->at = API_OPERATIONS;

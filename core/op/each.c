@@ -102,6 +102,19 @@ static he_status keep(const he_op *op, he_results *out, const he_results *run, h
     return HE_OK;
 }
 
+/* Reports that run `i` is reached: once for HE_PROGRESS_STRIDE runs, and also when the delta has
+ * grown by as many records since `*told`, because the runs at a large face may record much more
+ * than others. So the watch can stop them in time. */
+static he_status report(const he_mesh *mesh, size_t i, size_t runs, size_t *told, he_error *err)
+{
+    const size_t records = mesh->delta != NULL ? mesh->delta->count : 0;
+    if (records - *told < HE_PROGRESS_STRIDE) {
+        return he_progress_at(mesh->progress, i, runs, err);
+    }
+    *told = records;
+    return he_progress_step(mesh->progress, i, runs, err);
+}
+
 /* Prepares the results for the next run; the memory of their lists is used again. */
 static void renew(const he_op *op, he_results *run)
 {
@@ -129,13 +142,14 @@ static he_status run_all(const he_op *op, he_mesh *mesh, const he_arg *args, he_
             one[i].ends = NULL;
         }
     }
+    size_t told = mesh->delta != NULL ? mesh->delta->count : 0;
     he_status status = reserve(op, out, runs, err);
     while (status == HE_OK && out->runs < runs) {
         for (size_t c = 0; c < column_count; c++) {
             take(&one[columns[c]], &op->params[columns[c]], &args[columns[c]], out->runs);
         }
         renew(op, &run);
-        status = he_progress_at(mesh->progress, out->runs, runs, err);
+        status = report(mesh, out->runs, runs, &told, err);
         if (status == HE_OK) {
             status = op->run(mesh, one, &run, err);
         }

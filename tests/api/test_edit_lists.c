@@ -1,6 +1,7 @@
 /* Operations that run once for each item of a list: one revision and one undo step, results as
  * columns, refusals that point to the item, and the same effect as the operations one by one. */
 #include "tests/api/request.h"
+#include "tests/slow_journal.h"
 
 #include "api/json/text.h"
 #include "api/limits.h"
@@ -468,6 +469,107 @@ static void a_list_around_a_large_face_becomes_a_job(void **state)
     bench_free(b);
 }
 
+/* Makes a mesh of one polygon. */
+static void begin_polygon(api_bench *b, size_t corners)
+{
+    api_text body = {0};
+    api_text_add_string(&body, "{\"vertices\":[");
+    for (size_t i = 0; i < corners; i++) {
+        const double angle = 2 * acos(-1.0) * (double)i / (double)corners;
+        api_text_add_format(&body, "%s[%.12f,%.12f,0]", i > 0 ? "," : "", cos(angle), sin(angle));
+    }
+    api_text_add_string(&body, "],\"faces\":[");
+    for (size_t i = 0; i < corners; i++) {
+        api_text_add_format(&body, "%s%zu", i > 0 ? "," : "[", i);
+    }
+    api_text_add(&body, "]]}", sizeof "]]}");
+    assert_false(body.failed);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", body.bytes)));
+    api_text_clear(&body);
+}
+
+/* Counts the copies of a mesh that are begun. */
+typedef struct copies {
+    const char *phase;
+    size_t count;
+} copies;
+
+static bool count_copies(void *context, const char *phase, double done)
+{
+    copies *c = context;
+    assert_true(done >= 0 && done <= 1);
+    c->count += strcmp(phase, "copying") == 0 && (c->phase == NULL || strcmp(c->phase, phase) != 0);
+    c->phase = phase;
+    return true;
+}
+
+/* Cuts `count` triangles off a polygon by an operation on a list, of which each run gives the rest
+ * of the polygon to the new face. Returns how often a mesh was copied. */
+static size_t cut_off(api_bench *b, size_t count)
+{
+    static const char *const members[] = {"{\"op\":\"face_split\",\"faces\":[", "],\"from\":[",
+                                          "],\"to\":["};
+    api_text body = {0};
+    copies c = {NULL, 0};
+    for (size_t k = 0; k < 3; k++) {
+        api_text_add_string(&body, members[k]);
+        for (size_t i = 0; i < count; i++) {
+            const size_t values[] = {i, 2 * i + 2, 2 * i};
+            api_text_add_format(&body, "%s%zu", i > 0 ? "," : "", values[k]);
+        }
+    }
+    api_text_add_string(&body, "]}");
+    assert_false(body.failed);
+    const api_request request = {.method = "POST",
+                                 .path = EDITS,
+                                 .query = "",
+                                 .request_id = "test",
+                                 .headers = {[API_HEADER_CONTENT_TYPE] = "application/json"},
+                                 .has_length = true,
+                                 .length = body.length,
+                                 .has_body = true};
+    api_step step;
+    size_t used = 0;
+    api_exchange *x = api_begin(bench_service(b), &request, &step);
+    assert_non_null(x);
+    for (size_t at = 0; step == API_MORE && at < body.length; at += used) {
+        step = api_body(x, body.bytes + at, body.length - at, &used);
+    }
+    api_set_progress(x, count_copies, &c);
+    step = step == API_MORE ? api_end(x) : step;
+    while (step == API_WORK) {
+        step = api_work(x);
+    }
+    assert_int_equal(step, API_READY);
+    assert_int_equal(api_answer_of(x)->status, 200);
+    api_free(x);
+    api_text_clear(&body);
+    return c.count;
+}
+
+/* Each cut changes all half-edges of a polygon of 20,000 corners. Three cuts may be done while the
+ * mesh is locked. 20 change too many rows for that, so the edit is started again on a copy. */
+static void few_runs_with_many_rows_work_on_a_copy(void **state)
+{
+    (void)state;
+    static const size_t counts[] = {3, 20};
+    for (size_t i = 0; i < 2; i++) {
+        slow_journal journal;
+        const st_journal kept = slow_journal_open_keeping(&journal);
+        api_bench *b = bench_new_over(&kept);
+        slow_journal_advance(&journal, UINT64_MAX);
+        begin_polygon(b, 20000);
+        he_mesh *before = copy_of(b, "m");
+        assert_int_equal(cut_off(b, counts[i]), i);
+        bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+        he_mesh *undone = copy_of(b, "m");
+        assert_true(he_mesh_equal_live(before, undone));
+        he_mesh_free(undone);
+        he_mesh_free(before);
+        bench_free(b);
+    }
+}
+
 /* A value that is the same in all runs takes as many steps as a column of this value. */
 static void one_value_costs_as_much_as_its_column(void **state)
 {
@@ -505,6 +607,7 @@ int main(void)
         cmocka_unit_test(a_minimal_answer_to_a_long_list_leaves_an_equal_mesh),
         cmocka_unit_test(the_last_of_a_long_list_undoes_all_before_it),
         cmocka_unit_test(a_list_around_a_large_face_becomes_a_job),
+        cmocka_unit_test(few_runs_with_many_rows_work_on_a_copy),
         cmocka_unit_test(one_value_costs_as_much_as_its_column),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
