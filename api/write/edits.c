@@ -6,6 +6,7 @@
 #include "api/request/mesh_access.h"
 
 #include "api/event/change_json.h"
+#include "api/write/attribute_limits.h"
 #include "api/write/decode_op.h"
 #include "api/write/edit_cost.h"
 #include "api/write/named_meshes.h"
@@ -307,43 +308,6 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     return is_affordable(e, delta);
 }
 
-typedef struct attribute_count {
-    size_t columns, labels; /* `labels` is the highest number of labels of an attribute */
-} attribute_count;
-
-static attribute_count count_attributes(const he_mesh *mesh)
-{
-    attribute_count count = {0, 0};
-    for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
-        const he_column *column = he_mesh_column(mesh, i);
-        if (column != NULL) {
-            size_t labels = column->labels != NULL ? he_labels_count(column->labels) : 0;
-            count.columns++;
-            count.labels = labels > count.labels ? labels : count.labels;
-        }
-    }
-    return count;
-}
-
-/* Checks that an operation has not added too many attributes or labels. An operation may add
- * attributes of another mesh, the attribute `material` with the first material, or attributes for
- * corners that a weld keeps apart. */
-static bool within_attributes(attribute_count before, const he_mesh *mesh, const api_in *in)
-{
-    attribute_count after = count_attributes(mesh);
-    if (after.columns > before.columns && after.columns > API_MAX_ATTRIBUTES) {
-        return api_in_fail(in, HE_LIMIT,
-                           "the mesh would have %zu attributes; at most %d are allowed",
-                           after.columns, (int)API_MAX_ATTRIBUTES);
-    }
-    if (after.labels > before.labels && after.labels > API_MAX_LABELS) {
-        return api_in_fail(in, HE_LIMIT,
-                           "an attribute would have %zu labels; at most %d are allowed",
-                           after.labels, (int)API_MAX_LABELS);
-    }
-    return true;
-}
-
 /* Returns the parameter whose list names the element of a refusal at index `i`: `each`, or a column
  * of other elements beside it. */
 static const he_param *list_with_element(const api_call *call, const he_param *each, size_t i,
@@ -394,7 +358,7 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
         !charge(e, mesh, delta, &call)) {
         return false;
     }
-    attribute_count before = count_attributes(mesh);
+    const api_attribute_count before = api_count_attributes(mesh);
     e->at = he_op_number(call.op);
     e->growing = he_op_each(call.op, call.args) != NULL ? delta : NULL;
     e->seen = delta->count;
@@ -409,7 +373,7 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
         point_at(e, in, &call, results.runs);
         return false;
     }
-    bool good = within_attributes(before, mesh, in);
+    bool good = api_within_attributes(before, mesh, in);
     if (good) {
         if (!x->prefer.minimal) {
             api_write_results(&e->out, call.op, &results);
