@@ -181,7 +181,7 @@ static void every_allocation_of_a_deviation_may_fail(void **state)
 {
     (void)state;
     he_mesh *with = dense_torus(8);
-    failing f = {0};
+    failing f = {.may_succeed = true}; /* a tree keeps its block if that cannot be made smaller */
     while (failing_next(&f)) {
         failing_pause();
         he_mesh *m = dense_torus(6), *before = dense_copy(m);
