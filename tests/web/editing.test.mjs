@@ -321,11 +321,11 @@ test('several elements are given as a list', async (t) => {
 test('what a form says wrongly is answered in words', async (t) => {
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 4\d\d/] });
     await chooseOperation(page, 'edge_split');
-    await page.locator('#param-edge').fill('two');
+    await page.locator('#param-edge').fill('2nd');
     const expectRefusal = (pattern) =>
         page.locator('[data-name="edge"] + #verdict').filter({ hasText: pattern }).waitFor();
     await page.getByRole('button', { name: 'Apply' }).click();
-    await expectRefusal(/two.*not a number/);
+    await expectRefusal(/2nd.*not a number/);
     await page.locator('#param-edge').fill('77');
     await page.getByRole('button', { name: 'Apply' }).click();
     // What the server says of the edge, and not of a field, is a message.
