@@ -359,6 +359,6 @@ test('keys and the keyboard alone reach every control', async (t) => {
     assert.equal(await focused(), 'view-button');
     await page.getByRole('button', { name: 'Keys' }).click();
     const help = await page.locator('#keys').textContent();
-    assert.match(help, /VOpen or close the panel of the view/);
+    assert.match(help, /VOpen or close the View panel/);
     assert.match(help, /ZDraw the mesh solid/);
 });

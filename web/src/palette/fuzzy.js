@@ -3,7 +3,7 @@
 // What a letter of the query counts when it is found: at the beginning of a word, directly after the
 // letter before it, or anywhere else.
 const AT_WORD = 8;
-const IN_ROW = 5;
+const IN_ROW = 8;
 const ANYWHERE = 1;
 
 // A text with fewer letters that were not asked for comes first.
