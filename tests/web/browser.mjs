@@ -79,7 +79,7 @@ export async function openPageIn(
         ...options,
     });
     const page = await context.newPage();
-    page.setDefaultTimeout(0);
+    page.setDefaultTimeout(180_000); // what has not come by then does not come: the test fails and says where
     guard(page);
     const wrong = [];
     page.on('pageerror', (error) => wrong.push(`page error: ${error.stack}`));

@@ -156,18 +156,17 @@ test('flags, choices, lists and no element at all are sent as such', async (t) =
     assert.deepEqual(await apply(page), { op: 'compact' });
 });
 
-test('more numbers than a field takes, and what only looks like one, are said', async (t) => {
+test('what only looks like a number is said', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
-    await chooseOperation(page, 'edge_split');
-    for (const [text, words] of [
-        ['1 2', /edge must be one number/],
-        ['0x10', /0x10.*not a number/],
-        ['Infinity', /not a number/],
-        ['1e999', /not a number/],
+    for (const [operation, name, text, words] of [
+        ['edge_split', 'edge', '0x10', /0x10.*not a number/],
+        ['edge_split', 'edge', '1 x', /x.*not a number/],
+        ['edge_split', 'edge', '1e999', /not a number/],
     ]) {
-        await page.locator('#param-edge').fill(text);
+        await chooseOperation(page, operation);
+        await page.locator(`#param-${name}`).fill(text);
         await page.getByRole('button', { name: 'Apply' }).click();
-        await page.locator('[data-name="edge"] + #verdict').filter({ hasText: words }).waitFor();
+        await page.locator(`[data-name="${name}"] + #verdict`).filter({ hasText: words }).waitFor();
     }
     assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
 });

@@ -172,13 +172,24 @@ test('a progressive mesh is played', async (t) => {
     await checkAccessible(page, 'guide and levels');
 });
 
+// On a telephone the button is in a menu.
+async function openExamples(page) {
+    const menu = page.getByRole('button', { name: 'Examples, manual and keys' });
+    if (await menu.isVisible()) {
+        await menu.click();
+        await page.getByRole('menuitem', { name: 'Examples' }).click();
+    } else {
+        await page.getByRole('button', { name: 'Examples', exact: true }).click();
+    }
+}
+
 test('the guide ends when another mesh is opened, and fits each width', async (t) => {
     for (const width of WIDTHS) {
         const daemon = await startDaemon(t);
         const { id: other } = await post(daemon, '', GRID);
         const page = await openPage(t, daemon, { viewport: { width, height: 740 } });
         await waitForFrame(page, { mesh: other, revision: 1 });
-        await page.getByRole('button', { name: 'Examples' }).click();
+        await openExamples(page);
         await checkAccessible(page, `examples, ${width} wide`);
         await page.getByRole('button', { name: EXAMPLES[0].title }).click();
         await guide(page).waitFor();

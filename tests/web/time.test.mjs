@@ -107,7 +107,7 @@ test('before and now are beside each other, with changes in colours', async (t) 
     await page.getByRole('checkbox', { name: 'Compare with the present' }).check();
     await note(page).getByText('1 face gone, 3 faces new').waitFor();
     await checkAccessible(page, 'before and now');
-    const wipe = page.getByRole('slider', { name: 'Where before ends and now begins' });
+    const wipe = page.getByRole('slider', { name: 'Dividing line between before and now' });
     // All is before: the deleted face is there, the faces of the poke are not.
     await wipe.focus();
     await page.keyboard.press('End');
