@@ -15,7 +15,8 @@ const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..')
 export const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
 
-// Returns {url, stop(), closers}; `t` is the context of the test, `flags` are further options of
+// Returns {url, direct, stop(), closers}; `direct` is the daemon's own address, past the recorder of
+// traffic, which knows no coding but gzip. `t` is the context of the test, `flags` are further options of
 // hedged. When the test ends, the closers are called first and then the daemon is stopped, because
 // an open page would report a lost connection.
 export async function startDaemon(t, ...flags) {
@@ -52,7 +53,7 @@ export async function startDaemon(t, ...flags) {
         throw new Error(`${program} ended before it listened: ${url}`);
     }
     proxy = await recorded(url);
-    return { url: proxy.url, stop, closers };
+    return { url: proxy.url, direct: url, stop, closers };
 }
 
 async function call(url, options) {

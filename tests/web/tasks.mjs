@@ -291,14 +291,16 @@ async function receivedSize(url, coding) {
 }
 
 // Returns how many bytes a browser receives that accepts `coding` and loads the files that an open page
-// has loaded. Answers of the API do not count, because they depend on the meshes.
-export async function compressedSize(page, coding = 'gzip') {
+// has loaded, from the address `origin` or else from where the page got them. Answers of the API do not
+// count, because they depend on the meshes.
+export async function compressedSize(page, coding = 'gzip', origin = undefined) {
     const urls = await page.evaluate(() => [
         location.href.replace(/#.*/, ''),
         ...performance.getEntriesByType('resource').map(({ name }) => name),
     ]);
     const files = [...new Set(urls)].filter((url) => !new URL(url).pathname.startsWith('/v1/'));
     assert.ok(files.length > 2, `${files}`); // the page, its script and its style
-    const sizes = await Promise.all(files.map((url) => receivedSize(url, coding)));
+    const addresses = files.map((url) => new URL(new URL(url).pathname, origin ?? url));
+    const sizes = await Promise.all(addresses.map((url) => receivedSize(url, coding)));
     return sizes.reduce((sum, size) => sum + size, 0);
 }

@@ -38,7 +38,7 @@ test('what the page loads first is sent as at most 300 kB', async (t) => {
     const page = await openPage(t, daemon);
     await page.getByRole('heading', { name: 'No meshes yet' }).waitFor();
     for (const coding of ['gzip', 'zstd']) {
-        const bytes = await compressedSize(page, coding);
+        const bytes = await compressedSize(page, coding, daemon.direct);
         t.diagnostic(`note: the page is sent as ${bytes} bytes of ${coding}`);
         assert.ok(bytes <= MOST_BYTES, `${bytes} bytes of ${coding}`);
     }
