@@ -31,29 +31,8 @@ static size_t words_for(size_t bits)
  * nothing that those of `next` do not say. */
 static size_t bits_of(const he_mesh *mesh, he_col column)
 {
-    switch (column) {
-    case HE_COL_NEXT:
-    case HE_COL_ORIGIN:
-    case HE_COL_FACE:
-        return he_mesh_issued(mesh, HE_HALFEDGE);
-    case HE_COL_VERTEX_HALFEDGE:
-        return he_mesh_issued(mesh, HE_VERTEX);
-    case HE_COL_FACE_HALFEDGE:
-        return he_mesh_issued(mesh, HE_FACE);
-    case HE_COL_POSITION:
-        return (size_t)he_mesh_issued(mesh, HE_VERTEX) * HE_POSITION_WORDS;
-    case HE_COL_PREV:
-    case HE_COL_PARENT:
-    case HE_COL_MERGED:
-    case HE_COL_COLUMN_ADDED:
-    case HE_COL_COLUMN_DROPPED:
-    case HE_COL_MATERIAL:
-    case HE_COL_POSITIONS:
-    case HE_COL_REPLACED:
-    case HE_COL_ATTRIBUTE:
-        break;
-    }
-    return 0;
+    const size_t rows = column == HE_COL_PREV ? 0 : he_change_rows(mesh, column);
+    return column == HE_COL_POSITION ? rows * HE_POSITION_WORDS : rows;
 }
 
 he_status he_change_marks_init(he_change_marks *marks, const he_mesh *mesh, size_t records,

@@ -16,6 +16,14 @@ typedef enum he_change_set { HE_CREATED, HE_DELETED, HE_MODIFIED, HE_CHANGE_SETS
 /* The arrays of the mesh whose words have bits. */
 enum { HE_MARKED_ARRAYS = HE_COL_POSITION + 1, HE_POSITION_WORDS = 6 };
 
+/* Returns the number of entries of the mesh's array that a record of a link or position names. */
+static inline uint32_t he_change_rows(const he_mesh *mesh, uint32_t column)
+{
+    return he_mesh_issued(mesh, column <= HE_COL_FACE            ? HE_HALFEDGE
+                                : column == HE_COL_FACE_HALFEDGE ? HE_FACE
+                                                                 : HE_VERTEX);
+}
+
 typedef struct he_change_marks {
     he_changes *lists; /* where the ids go; borrowed */
     bool has_bits;

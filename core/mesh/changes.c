@@ -368,21 +368,13 @@ static uint32_t word_now(const he_mesh *mesh, const he_record *r)
     return 0;
 }
 
-/* Returns the number of entries of the array of a link or position. */
-static uint32_t rows_of(const he_mesh *mesh, uint32_t column)
-{
-    return he_mesh_issued(mesh, column <= HE_COL_FACE            ? HE_HALFEDGE
-                                : column == HE_COL_FACE_HALFEDGE ? HE_FACE
-                                                                 : HE_VERTEX);
-}
-
 /* Evaluates a record of a link or position. The first record of a word has its value before all
  * edits, and the mesh has its value now; so further records of the word say nothing more. A row
  * that the mesh does not have is from a time before all its data were replaced. */
 static he_status note_at_once(const he_mesh *mesh, const he_change_part *part, const he_record *r,
                               he_change_marks *out, he_error *err)
 {
-    if (r->column == HE_COL_PREV || r->row >= rows_of(mesh, r->column) ||
+    if (r->column == HE_COL_PREV || r->row >= he_change_rows(mesh, r->column) ||
         !he_change_marks_meet(out, r)) {
         return HE_OK;
     }
