@@ -51,15 +51,13 @@ he_pieces *he_pieces_new(const he_writing *writing, const he_mesh *mesh,
     made->most = parallel->threads < MOST_PIECES ? parallel->threads : MOST_PIECES;
     made->rows = FIRST_ROWS;
     made->piece = he_mem_zero(made->most, sizeof *made->piece);
-    for (uint32_t i = 0; made->piece != NULL && i < made->most; i++) {
+    bool good = made->piece != NULL;
+    for (uint32_t i = 0; good && i < made->most; i++) {
         made->piece[i].state = he_mem_alloc(writing->state_bytes);
         made->piece[i].buffer = he_mem_alloc(BUFFER);
-        if (made->piece[i].state == NULL || made->piece[i].buffer == NULL) {
-            he_pieces_free(made);
-            return NULL;
-        }
+        good = made->piece[i].state != NULL && made->piece[i].buffer != NULL;
     }
-    if (made->piece == NULL) {
+    if (!good) {
         he_pieces_free(made);
         return NULL;
     }
