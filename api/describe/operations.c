@@ -443,6 +443,18 @@ static void write_column_schema(api_out *out, const he_param *param)
     api_out_array_end(out);
 }
 
+/* Writes that a value is a list of ids or a set. */
+static void write_list_or_set(api_out *out)
+{
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    api_out_object_begin(out);
+    write_list_schema(out, 1);
+    api_out_object_end(out);
+    api_schema_ref(out, "schemas", "set");
+    api_out_array_end(out);
+}
+
 /* Writes the schema of the list for each of whose items the operation runs. */
 static void write_each_schema(api_out *out, const he_param *param)
 {
@@ -450,13 +462,7 @@ static void write_each_schema(api_out *out, const he_param *param)
                        "A list: the operation runs once for each item, in order. Other parameters "
                        "may then be lists of the same length, or one value for all.");
     if (param->type == HE_PARAM_ELEMENT) {
-        api_out_key(out, "oneOf");
-        api_out_array_begin(out);
-        api_out_object_begin(out);
-        write_list_schema(out, 1);
-        api_out_object_end(out);
-        api_schema_ref(out, "schemas", "set");
-        api_out_array_end(out);
+        write_list_or_set(out);
         return;
     }
     api_out_key_string(out, "type", "array");
@@ -555,13 +561,7 @@ static void write_param_schema(api_out *out, const he_op *op, const he_param *pa
     }
     api_out_key(out, param->plural);
     api_out_object_begin(out);
-    api_out_key(out, "oneOf");
-    api_out_array_begin(out);
-    api_out_object_begin(out);
-    write_list_schema(out, 1);
-    api_out_object_end(out);
-    api_schema_ref(out, "schemas", "set");
-    api_out_array_end(out);
+    write_list_or_set(out);
     api_out_object_end(out);
 }
 

@@ -247,29 +247,13 @@ static bool is_column(const api_decoder *d, const he_param *param, const api_in 
            (api_in_first(in, &first) && api_in_is_array(&first));
 }
 
+/* Reads a column, for a parameter that he_op_is_column allows to be one. */
 static bool decode_column(const api_decoder *d, const he_param *param, const api_in *in,
                           he_arg *arg)
 {
-    switch (param->type) {
-    case HE_PARAM_ELEMENT:
-        return api_decode_ids(d, param, 1, in, arg);
-    case HE_PARAM_POINT:
-        return decode_point_list(d, in, arg);
-    case HE_PARAM_NUMBER:
-    case HE_PARAM_FLAG:
-    case HE_PARAM_CHOICE:
-        return decode_numbers(d, param, in, arg);
-    case HE_PARAM_ELEMENTS:
-    case HE_PARAM_POINTS:
-    case HE_PARAM_MATRIX:
-    case HE_PARAM_POLYGON:
-    case HE_PARAM_CYCLE:
-    case HE_PARAM_TEXT:
-    case HE_PARAM_COLOR:
-    case HE_PARAM_MESH:
-        break;
-    }
-    return api_in_fail(in, API_INTERNAL, "the table of operations has a column without a type");
+    return param->type == HE_PARAM_ELEMENT ? api_decode_ids(d, param, 1, in, arg)
+           : param->type == HE_PARAM_POINT ? decode_point_list(d, in, arg)
+                                           : decode_numbers(d, param, in, arg);
 }
 
 /* Reads the list for each of whose items an operation runs. */
