@@ -1,6 +1,6 @@
 /* Operations that run once for each item of a list: one revision and one undo step, results as
  * columns, refusals that point to the item, and the same effect as the operations one by one. */
-#include "tests/api/request.h"
+#include "tests/api/cubes.h"
 #include "tests/slow_journal.h"
 
 #include "api/json/text.h"
@@ -17,33 +17,6 @@
 #include <cmocka.h>
 
 static const char EDITS[] = "/v1/meshes/m/edits";
-
-static api_bench *begin(void)
-{
-    api_bench *b = bench_new();
-    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"cube\"}")));
-    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=n", "{\"shape\":\"cube\"}")));
-    return b;
-}
-
-/* Returns a copy of a mesh, including the number of ids that it has issued. */
-static he_mesh *copy_of(api_bench *b, const char *id)
-{
-    st_mesh *mesh = NULL;
-    he_mesh *copy = NULL;
-    assert_int_equal(st_find(bench_store(b), id, &mesh), ST_OK);
-    assert_int_equal(he_mesh_copy(st_read_begin(mesh, NULL), &copy, NULL), HE_OK);
-    st_read_end(mesh);
-    st_release(mesh);
-    return copy;
-}
-
-static void expect_equal(api_bench *b, const he_mesh *mesh, const char *id)
-{
-    he_mesh *now = copy_of(b, id);
-    assert_true(he_mesh_equal(mesh, now));
-    he_mesh_free(now);
-}
 
 static const cJSON *results_of(const bench_reply *r)
 {
@@ -83,13 +56,13 @@ static void a_list_equals_its_operations_one_by_one(void **state)
     (void)state;
     char singles[1000];
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        api_bench *b = begin();
-        he_mesh *before = copy_of(b, "m");
+        api_bench *b = cubes_begin();
+        he_mesh *before = cubes_copy(b, "m");
         snprintf(singles, sizeof singles, "{\"ops\":[%s]}", pairs[i].singles);
         bench_reply list = bench_expect(200, bench_post(b, EDITS, pairs[i].list));
         bench_reply ones = bench_expect(200, bench_post(b, "/v1/meshes/n/edits", singles));
-        he_mesh *after = copy_of(b, "m");
-        expect_equal(b, after, "n");
+        he_mesh *after = cubes_copy(b, "m");
+        cubes_expect(b, after, "n");
         assert_int_equal(number_of(&list, "revision"), 2);
         /* Each column holds the results of the single operations. */
         const cJSON *columns = cJSON_GetObjectItem(results_of(&list)->child, "each"), *column;
@@ -112,10 +85,10 @@ static void a_list_equals_its_operations_one_by_one(void **state)
         bench_done(list);
         bench_done(ones);
         bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-        he_mesh *undone = copy_of(b, "m");
+        he_mesh *undone = cubes_copy(b, "m");
         assert_true(he_mesh_equal_live(before, undone));
         bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/redo", NULL)));
-        expect_equal(b, after, "m");
+        cubes_expect(b, after, "m");
         he_mesh_free(before);
         he_mesh_free(after);
         he_mesh_free(undone);
@@ -176,8 +149,8 @@ static void a_refused_list_changes_nothing_and_points_to_its_item(void **state)
          "/keep_isolated/0"},
         {"{\"op\":\"face_poke\",\"faces\":{\"chosen\":true}}", 422, "no_such_attribute", "/faces"},
     };
-    api_bench *b = begin();
-    he_mesh *before = copy_of(b, "m");
+    api_bench *b = cubes_begin();
+    he_mesh *before = cubes_copy(b, "m");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         bench_reply r = bench_post(b, EDITS, cases[i].body);
         if (r.status != cases[i].status || strcmp(bench_text(&r, "code"), cases[i].code) != 0 ||
@@ -186,7 +159,7 @@ static void a_refused_list_changes_nothing_and_points_to_its_item(void **state)
             fail_msg("%s: %s", cases[i].body, r.body);
         }
         bench_done(r);
-        expect_equal(b, before, "m");
+        cubes_expect(b, before, "m");
     }
     he_mesh_free(before);
     bench_free(b);
@@ -195,7 +168,7 @@ static void a_refused_list_changes_nothing_and_points_to_its_item(void **state)
 static void the_lengths_of_a_column_and_its_list_are_named(void **state)
 {
     (void)state;
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     bench_reply r = bench_expect(
         400, bench_post(b, EDITS, "{\"op\":\"edge_split\",\"edges\":[0,1,2],\"t\":[0.5,0.5]}"));
     assert_string_equal(bench_text(&r, "detail"), "\"t\" has 2 values, but \"edges\" has 3: give "
@@ -207,7 +180,7 @@ static void the_lengths_of_a_column_and_its_list_are_named(void **state)
 static void alternatives_are_named_as_they_were_given(void **state)
 {
     (void)state;
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     bench_reply r = bench_expect(
         400, bench_post(b, EDITS, "{\"op\":\"edge_collapse\",\"edges\":[5],\"halfedges\":[0]}"));
     assert_string_equal(bench_text(&r, "detail"),
@@ -219,7 +192,7 @@ static void alternatives_are_named_as_they_were_given(void **state)
 static void results_of_a_list_can_be_referred_to(void **state)
 {
     (void)state;
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     bench_reply r = bench_expect(
         200, bench_post(b, EDITS,
                         "{\"ops\":[{\"op\":\"vertex_add\",\"positions\":[[0,0,3],[0,1,3],[1,1,3]],"
@@ -260,8 +233,8 @@ static void a_result_that_was_not_produced_is_no_id(void **state)
         {"{\"op\":\"vertex_move\",\"vertices\":[\"$x.vertex\"],\"by\":[0,0,1]}",
          "/ops/2/vertices/0", NULL},
     };
-    api_bench *b = begin();
-    he_mesh *before = copy_of(b, "m");
+    api_bench *b = cubes_begin();
+    he_mesh *before = cubes_copy(b, "m");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char body[400];
         snprintf(body, sizeof body,
@@ -274,7 +247,7 @@ static void a_result_that_was_not_produced_is_no_id(void **state)
         assert_string_equal(bench_text(&r, "detail"),
                             cases[i].detail != NULL ? cases[i].detail : cases[0].detail);
         bench_done(r);
-        expect_equal(b, before, "m");
+        cubes_expect(b, before, "m");
     }
     he_mesh_free(before);
     bench_free(b);
@@ -283,7 +256,7 @@ static void a_result_that_was_not_produced_is_no_id(void **state)
 static void a_set_may_be_the_list(void **state)
 {
     (void)state;
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     bench_done(bench_expect(
         200,
         bench_post(b, EDITS, "{\"op\":\"select\",\"by\":\"region\",\"faces\":[1],\"angle\":0.1}")));
@@ -327,10 +300,10 @@ static void a_long_list_is_one_revision_and_one_step(void **state)
     api_bench *b = bench_new();
     api_text body = {0};
     begin_torus(b);
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     write_splits(&body, "\"dry_run\":true,", 20000, 19999);
     bench_reply dry = bench_expect(200, bench_post(b, EDITS, body.bytes));
-    expect_equal(b, before, "m");
+    cubes_expect(b, before, "m");
     cJSON_DeleteItemFromObject(dry.json, "dry_run");
     write_splits(&body, "", 20000, 19999);
     bench_reply r = bench_expect(200, bench_post(b, EDITS, body.bytes));
@@ -341,7 +314,7 @@ static void a_long_list_is_one_revision_and_one_step(void **state)
     bench_done(dry);
     bench_done(r);
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    he_mesh *undone = copy_of(b, "m");
+    he_mesh *undone = cubes_copy(b, "m");
     assert_true(he_mesh_equal_live(before, undone));
     he_mesh_free(undone);
     he_mesh_free(before);
@@ -355,7 +328,7 @@ static void the_last_of_a_long_list_undoes_all_before_it(void **state)
     api_bench *b = bench_new();
     api_text body = {0};
     begin_torus(b);
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     static const size_t counts[] = {100, 3000, 20000};
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         char pointer[40];
@@ -369,7 +342,7 @@ static void the_last_of_a_long_list_undoes_all_before_it(void **state)
         assert_string_equal(bench_text(&r, "code"), "repeated");
         assert_string_equal(bench_text(&r, "pointer"), pointer);
         bench_done(r);
-        expect_equal(b, before, "m");
+        cubes_expect(b, before, "m");
     }
     he_mesh_free(before);
     api_text_clear(&body);
@@ -384,25 +357,25 @@ static void a_minimal_answer_to_a_long_list_leaves_an_equal_mesh(void **state)
     api_bench *b = bench_new();
     api_text body = {0};
     begin_torus(b);
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     write_splits(&body, "", 20000, 19999);
     bench_done(bench_expect(204, bench_send(b, "POST", EDITS, minimal, body.bytes)));
-    he_mesh *after = copy_of(b, "m");
+    he_mesh *after = cubes_copy(b, "m");
     bench_reply r = bench_expect(200, bench_get(b, EDITS));
     const cJSON *entry = cJSON_GetObjectItem(r.json, "entries")->child;
     assert_string_equal(cJSON_GetObjectItem(entry, "ops")->child->valuestring, "edge_split");
     assert_null(cJSON_GetObjectItem(entry, "created"));
     bench_done(r);
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    he_mesh *undone = copy_of(b, "m");
+    he_mesh *undone = cubes_copy(b, "m");
     assert_true(he_mesh_equal_live(before, undone));
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/redo", NULL)));
-    expect_equal(b, after, "m");
+    cubes_expect(b, after, "m");
     write_splits(&body, "", 20000, 4000000);
     r = bench_expect(422, bench_send(b, "POST", EDITS, minimal, body.bytes));
     assert_string_equal(bench_text(&r, "pointer"), "/edges/19999");
     bench_done(r);
-    expect_equal(b, after, "m");
+    cubes_expect(b, after, "m");
     he_mesh_free(undone);
     he_mesh_free(before);
     he_mesh_free(after);
@@ -446,7 +419,7 @@ static void a_list_around_a_large_face_becomes_a_job(void **state)
     api_bench *b = bench_new();
     api_text body = {0};
     begin_flower(b, CORNERS);
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     api_text_add_string(&body, "{\"op\":\"edge_flip\",\"edges\":[");
     for (size_t i = 0; i < CORNERS; i += 2) {
         api_text_add_format(&body, "%s%zu", i > 0 ? "," : "", 3 * i);
@@ -454,14 +427,14 @@ static void a_list_around_a_large_face_becomes_a_job(void **state)
     api_text_add(&body, "]}", sizeof "]}");
     assert_false(body.failed);
     bench_reply job = bench_expect(202, bench_post(b, EDITS, body.bytes));
-    expect_equal(b, before, "m");
+    cubes_expect(b, before, "m");
     bench_run_jobs(b, 1);
     bench_reply r = bench_expect(200, bench_get(b, bench_header(&job, "Location")));
     assert_string_equal(bench_text(&r, "state"), "done");
     bench_done(job);
     bench_done(r);
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    he_mesh *undone = copy_of(b, "m");
+    he_mesh *undone = cubes_copy(b, "m");
     assert_true(he_mesh_equal_live(before, undone));
     he_mesh_free(undone);
     he_mesh_free(before);
@@ -559,10 +532,10 @@ static void few_runs_with_many_rows_work_on_a_copy(void **state)
         api_bench *b = bench_new_over(&kept);
         slow_journal_advance(&journal, UINT64_MAX);
         begin_polygon(b, 20000);
-        he_mesh *before = copy_of(b, "m");
+        he_mesh *before = cubes_copy(b, "m");
         assert_int_equal(cut_off(b, counts[i]), i);
         bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-        he_mesh *undone = copy_of(b, "m");
+        he_mesh *undone = cubes_copy(b, "m");
         assert_true(he_mesh_equal_live(before, undone));
         he_mesh_free(undone);
         he_mesh_free(before);
@@ -576,8 +549,8 @@ static void one_value_costs_as_much_as_its_column(void **state)
     (void)state;
     static const uint32_t a[] = {0, 1, 2, 3}, same[] = {5, 5, 5, 5};
     const uint64_t most = UINT64_MAX / 2;
-    api_bench *b = begin();
-    he_mesh *mesh = copy_of(b, "m");
+    api_bench *b = cubes_begin();
+    he_mesh *mesh = cubes_copy(b, "m");
     api_hubs hubs = {.slots = {{0}}};
     api_call call = {.op = he_op_find("edge_weld", strlen("edge_weld"))};
     he_op_defaults(call.op, call.args);

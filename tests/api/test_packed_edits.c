@@ -1,7 +1,7 @@
 /* Edits as application/vnd.hedge.edits (api/json/packed.h): arrays of octets mean what lists in
  * JSON mean, in requests and in answers, and a body that is wrong anywhere is refused with the
  * place of the fault and changes nothing. */
-#include "tests/api/request.h"
+#include "tests/api/cubes.h"
 
 #include "api/json/packed.h"
 #include "api/json/text.h"
@@ -20,32 +20,6 @@
 
 static const char EDITS[] = "/v1/meshes/m/edits";
 enum { VERSION_AT = 4, JSON_AT = 8, COUNT_AT = 12, REVISION_AT = 16, ROWS_AT = 24, ROW = 16 };
-
-static api_bench *begin(void)
-{
-    api_bench *b = bench_new();
-    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", "{\"shape\":\"cube\"}")));
-    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=n", "{\"shape\":\"cube\"}")));
-    return b;
-}
-
-static he_mesh *copy_of(api_bench *b, const char *id)
-{
-    st_mesh *mesh = NULL;
-    he_mesh *copy = NULL;
-    assert_int_equal(st_find(bench_store(b), id, &mesh), ST_OK);
-    assert_int_equal(he_mesh_copy(st_read_begin(mesh, NULL), &copy, NULL), HE_OK);
-    st_read_end(mesh);
-    st_release(mesh);
-    return copy;
-}
-
-static void expect_equal(api_bench *b, const he_mesh *mesh, const char *id)
-{
-    he_mesh *now = copy_of(b, id);
-    assert_true(he_mesh_equal(mesh, now));
-    he_mesh_free(now);
-}
 
 /* Writes a body. The writer of answers makes requests, too, if they have no revision. */
 static api_text pack(const char *json, const api_arrays *arrays)
@@ -210,7 +184,7 @@ static void octets_mean_what_json_means(void **state)
     (void)state;
     api_arrays arrays = arrays_of_requests();
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        api_bench *b = begin();
+        api_bench *b = cubes_begin();
         api_text body = pack(pairs[i].packed, &arrays);
         bench_reply r = bench_expect(200, send_bytes(b, body.bytes, body.length, true));
         bench_reply plain = bench_expect(200, bench_post(b, "/v1/meshes/n/edits", pairs[i].json));
@@ -218,8 +192,8 @@ static void octets_mean_what_json_means(void **state)
         if (!cJSON_Compare(json, plain.json, true)) {
             fail_msg("%s: %s", cJSON_PrintUnformatted(json), plain.body);
         }
-        he_mesh *mesh = copy_of(b, "n");
-        expect_equal(b, mesh, "m");
+        he_mesh *mesh = cubes_copy(b, "n");
+        cubes_expect(b, mesh, "m");
         he_mesh_free(mesh);
         cJSON_Delete(json);
         bench_reply_free(&r);
@@ -236,7 +210,7 @@ static void each_side_may_choose_its_type(void **state)
     static const char *const accept[] = {"Accept", API_PACKED_EDITS, NULL};
     static const char *const minimal[] = {"Accept", API_PACKED_EDITS, "Prefer", "return=minimal",
                                           NULL};
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
     api_text body = pack(pairs[0].packed, &arrays);
     bench_reply r = bench_expect(200, send_bytes(b, body.bytes, body.length, false));
@@ -294,9 +268,9 @@ static void a_wrong_array_is_refused(void **state)
         {"{\"op\":\"edge_split\"", "malformed_json", ""},
         {"", "malformed_json", ""},
     };
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_text body = pack(cases[i].json, &arrays);
         bench_reply r = send_bytes(b, body.bytes, body.length, false);
@@ -307,7 +281,7 @@ static void a_wrong_array_is_refused(void **state)
         }
         bench_reply_free(&r);
         api_text_clear(&body);
-        expect_equal(b, before, "m");
+        cubes_expect(b, before, "m");
     }
     he_mesh_free(before);
     api_arrays_clear(&arrays);
@@ -337,9 +311,9 @@ static void a_wrong_header_is_refused_with_its_place(void **state)
         {ROWS_AT + 8, "\5", 1, "byte "},
         {ROWS_AT + 8, "\1", 1, "byte "},
     };
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     api_text body = pack(pairs[0].packed, &arrays);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char *bytes = malloc(body.length);
@@ -353,7 +327,7 @@ static void a_wrong_header_is_refused_with_its_place(void **state)
         }
         bench_reply_free(&r);
         free(bytes);
-        expect_equal(b, before, "m");
+        cubes_expect(b, before, "m");
     }
     he_mesh_free(before);
     api_text_clear(&body);
@@ -365,9 +339,9 @@ static void a_wrong_header_is_refused_with_its_place(void **state)
 static void a_body_of_another_length_is_refused(void **state)
 {
     (void)state;
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
-    he_mesh *before = copy_of(b, "m");
+    he_mesh *before = cubes_copy(b, "m");
     api_text body = pack(pairs[0].packed, &arrays);
     for (size_t length = 1; length < body.length + 20; length++) {
         char *bytes = calloc(length, 1);
@@ -377,7 +351,7 @@ static void a_body_of_another_length_is_refused(void **state)
             bench_reply r = bench_expect(400, send_bytes(b, bytes, length, false));
             assert_string_equal(bench_text(&r, "code"), "bad_value");
             bench_reply_free(&r);
-            expect_equal(b, before, "m");
+            cubes_expect(b, before, "m");
         }
         free(bytes);
     }
@@ -391,7 +365,7 @@ static void changed_bytes_do_no_harm(void **state)
 {
     (void)state;
     md_random random = {.state = seed_of_run()};
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
     for (int i = 0; i < 3000; i++) {
         api_text body = pack(pairs[(size_t)i % (sizeof pairs / sizeof *pairs)].packed, &arrays);
@@ -419,8 +393,8 @@ static void every_allocation_may_fail(void **state)
     failing f = {.what = EDITS, .may_succeed = true};
     while (failing_next(&f)) {
         failing_pause();
-        api_bench *b = begin();
-        he_mesh *before = copy_of(b, "m");
+        api_bench *b = cubes_begin();
+        he_mesh *before = cubes_copy(b, "m");
         failing_resume();
         bench_reply r;
         const bool sent = bench_try(b, &request, &r);
@@ -431,7 +405,7 @@ static void every_allocation_may_fail(void **state)
             bench_reply_free(&r);
         }
         if (!done) {
-            expect_equal(b, before, "m");
+            cubes_expect(b, before, "m");
         }
         he_mesh_free(before);
         bench_free(b);
@@ -445,19 +419,19 @@ static void a_repeated_key_answers_the_same_octets(void **state)
     (void)state;
     static const char *const keyed[] = {
         "Content-Type", API_PACKED_EDITS, "Accept", API_PACKED_EDITS, "Idempotency-Key", "k", NULL};
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
     api_text body = pack(pairs[0].packed, &arrays);
     const bench_request request = {"POST", EDITS, keyed, body.bytes, body.length};
     bench_reply first = bench_expect(200, bench_send_bytes(b, &request));
-    he_mesh *mesh = copy_of(b, "m");
+    he_mesh *mesh = cubes_copy(b, "m");
     bench_reply again = bench_expect(200, bench_send_bytes(b, &request));
     assert_string_equal(bench_header(&again, "Idempotency-Replayed"), "true");
     assert_string_equal(bench_header(&again, "Content-Type"), API_PACKED_EDITS);
     assert_string_equal(bench_header(&again, "ETag"), bench_header(&first, "ETag"));
     assert_int_equal(again.length, first.length);
     assert_memory_equal(again.body, first.body, first.length);
-    expect_equal(b, mesh, "m");
+    cubes_expect(b, mesh, "m");
     bench_reply_free(&first);
     bench_reply_free(&again);
     he_mesh_free(mesh);
@@ -471,7 +445,7 @@ static void octets_and_json_have_tags_of_their_own(void **state)
     (void)state;
     static const char *const accept[] = {"Accept", API_PACKED_EDITS, NULL};
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":0}";
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     bench_reply r = bench_expect(200, bench_send(b, "POST", EDITS, accept, poke));
     assert_non_null(strstr(bench_header(&r, "ETag"), "-edits-octets\""));
     const char *const match[] = {"If-Match", bench_header(&r, "ETag"), NULL};
@@ -486,7 +460,7 @@ static void octets_and_json_have_tags_of_their_own(void **state)
 static void faults_of_the_json_are_counted_from_the_begin_of_the_body(void **state)
 {
     (void)state;
-    api_bench *b = begin();
+    api_bench *b = cubes_begin();
     api_arrays arrays = arrays_of_requests();
     api_text body = pack("{\"op\":!}", &arrays);
     const size_t at = ROWS_AT + 16 * arrays.count + strlen("{\"op\":");
@@ -541,15 +515,15 @@ static void an_array_counts_for_each_operation_that_names_it(void **state)
         {"{\"op\":\"edge_split\",\"edges\":{\"array\":0}}", "/ops/65"},
         {"{\"op\":\"edge_weld\",\"a\":{\"array\":0},\"b\":{\"array\":0}}", "/ops/33"},
     };
-    api_bench *b = begin();
-    he_mesh *before = copy_of(b, "m");
+    api_bench *b = cubes_begin();
+    he_mesh *before = cubes_copy(b, "m");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_text body = pack_many(cases[i].op);
         bench_reply r = bench_expect(413, send_bytes(b, body.bytes, body.length, false));
         assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
         assert_string_equal(bench_text(&r, "pointer"), cases[i].pointer);
         bench_reply_free(&r);
-        expect_equal(b, before, "m");
+        cubes_expect(b, before, "m");
         api_text_clear(&body);
     }
     he_mesh_free(before);
@@ -567,8 +541,8 @@ static bool cancel_reading(void *context, const char *phase, double done)
 static void the_reading_of_operations_can_be_cancelled(void **state)
 {
     (void)state;
-    api_bench *b = begin();
-    he_mesh *before = copy_of(b, "m");
+    api_bench *b = cubes_begin();
+    he_mesh *before = cubes_copy(b, "m");
     api_text body = pack_many("{\"op\":\"edge_split\",\"edges\":{\"array\":0}}");
     const api_request request = {.method = "POST",
                                  .path = EDITS,
@@ -593,7 +567,7 @@ static void the_reading_of_operations_can_be_cancelled(void **state)
     assert_int_equal(api_answer_of(x)->status, 503);
     assert_int_equal(left, 0);
     api_free(x);
-    expect_equal(b, before, "m");
+    cubes_expect(b, before, "m");
     he_mesh_free(before);
     api_text_clear(&body);
     bench_free(b);
