@@ -1,5 +1,9 @@
 #include "unit/query_specimens.h"
 
+#include "geometry/vec3.h"
+
+#include <math.h>
+
 const char *const query_specimens[QUERY_SPECIMENS] = {
     "",
     "012",
@@ -83,4 +87,28 @@ void query_spoil(he_mesh *m, uint64_t *seed)
     static const uint32_t odd[] = {HE_NONE, HE_DEAD, 0x7FFFFFFF, 1000};
     uint64_t dice = query_random(seed) % 8;
     columns[column][row] = dice < 4 ? odd[dice] : (uint32_t)(query_random(seed) % values[column]);
+}
+
+double query_uniform(uint64_t *seed, double low, double high)
+{
+    return low + (high - low) * ldexp((double)(query_random(seed) >> 11), -53);
+}
+
+he_vec3 query_random_point(uint64_t *seed, double reach)
+{
+    return (he_vec3){query_uniform(seed, -reach, reach), query_uniform(seed, -reach, reach),
+                     query_uniform(seed, -reach, reach)};
+}
+
+he_mesh *query_tangle(uint64_t *seed)
+{
+    static const char *const shapes[] = {"icosphere", "cube", "dodecahedron", "grid"};
+    static const double args[][4] = {{2, 1}, {1}, {1}, {5, 4, 1, 1}};
+    size_t which = query_random(seed) % 4;
+    const double *a = args[which];
+    he_mesh *m = query_shape(shapes[which], a[0], a[1], a[2], a[3]);
+    for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
+        m->c.position[v] = he_vec3_add(m->c.position[v], query_random_point(seed, 0.4));
+    }
+    return m;
 }

@@ -27,6 +27,14 @@ he_mesh *query_shape(const char *name, double a, double b, double c, double d);
 /* Returns a pseudo-random number (SplitMix64); equal seeds give equal numbers on every machine. */
 uint64_t query_random(uint64_t *seed);
 
+/* Returns a pseudo-random number from `low` up to `high`. */
+double query_uniform(uint64_t *seed, double low, double high);
+/* Returns a point whose coordinates are pseudo-random numbers from -reach up to `reach`. */
+he_vec3 query_random_point(uint64_t *seed, double reach);
+/* Makes a mesh with vertices at random positions, so that faces intersect and polygons are not
+ * planar. The caller must free the mesh. */
+he_mesh *query_tangle(uint64_t *seed);
+
 /* Corrupts one random link of a mesh: sets it to the id of a wrong or deleted element, to null, or
  * to an id out of range. */
 void query_spoil(he_mesh *m, uint64_t *seed);

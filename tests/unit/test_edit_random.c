@@ -14,20 +14,16 @@
 #include <cmocka.h>
 
 #include "mesh/walk.h"
+#include "model/random.h"
 #include "tests/seed.h"
 
 enum { LONGEST = 12, MOST_VERTICES = 48 };
 
-static uint64_t random_state;
+static md_random numbers;
 
-/* Returns a pseudo-random number below n, by the method of Steele, Lea and Flood, "Fast splittable
- * pseudorandom number generators", 2014. */
 static uint32_t random_below(uint32_t n)
 {
-    uint64_t z = random_state += 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return (uint32_t)((z ^ (z >> 31)) % n);
+    return md_below(&numbers, n);
 }
 
 static double random_unit(void)
@@ -259,10 +255,10 @@ static void random_edits_keep_every_promise_of_their_row(void **state)
     other = script_mesh("012,034+", NULL);
     script_add_columns(other);
     for (uint64_t round = 0; round < rounds; round++) {
-        random_state = seed + round;
+        numbers.state = seed + round;
         /* If a check fails in this round, the line printed here is the last one before the failure:
          * it shows how to repeat the round. */
-        print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)random_state);
+        print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)numbers.state);
         he_mesh *m = script_mesh(starts[round % (sizeof starts / sizeof *starts)], NULL);
         script_add_columns(m);
         for (unsigned i = 0; i < 100 && he_mesh_vertices(m) < MOST_VERTICES; i++) {

@@ -20,20 +20,16 @@
 #include "edit/local/split.h"
 #include "mesh/column.h"
 #include "mesh/write.h"
+#include "model/random.h"
 #include "tests/seed.h"
 
 enum { SIDE = 9, EDITS = 400 };
 
-static uint64_t random_state;
+static md_random numbers;
 
-/* Returns a pseudo-random number below n, by the method of Steele, Lea and Flood, "Fast splittable
- * pseudorandom number generators", 2014. */
 static uint32_t random_below(uint32_t n)
 {
-    uint64_t z = random_state += 0x9E3779B97F4A7C15u;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-    return (uint32_t)((z ^ (z >> 31)) % n);
+    return md_below(&numbers, n);
 }
 
 /* Makes a torus of triangles; each face is left out with a chance of one in `holes`, or none if
@@ -185,7 +181,7 @@ static void short_and_general_code_write_equal_links(void **state)
 {
     (void)state;
     const uint64_t rounds = seed_setting("ROUNDS", 12);
-    random_state = seed_of_run();
+    numbers.state = seed_of_run();
     for (uint64_t round = 0; round < rounds; round++) {
         play(round % 3 == 0 ? 0 : round % 3 == 1 ? 30 : 5, round / 3 % 2 == 0);
     }

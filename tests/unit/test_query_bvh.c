@@ -37,32 +37,6 @@ static he_hit closest(const he_bvh *tree, const he_mesh *m, he_vec3 p, double ma
     return hit;
 }
 
-static double uniform(uint64_t *seed, double low, double high)
-{
-    return low + (high - low) * ldexp((double)(query_random(seed) >> 11), -53);
-}
-
-static he_vec3 random_point(uint64_t *seed, double reach)
-{
-    return (he_vec3){uniform(seed, -reach, reach), uniform(seed, -reach, reach),
-                     uniform(seed, -reach, reach)};
-}
-
-/* Makes a mesh with vertices at random positions, so that faces intersect and polygons are not
- * planar. */
-static he_mesh *tangle(uint64_t *seed)
-{
-    static const char *const shapes[] = {"icosphere", "cube", "dodecahedron", "grid"};
-    static const double args[][4] = {{2, 1}, {1}, {1}, {5, 4, 1, 1}};
-    size_t which = query_random(seed) % 4;
-    const double *a = args[which];
-    he_mesh *m = query_shape(shapes[which], a[0], a[1], a[2], a[3]);
-    for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
-        m->c.position[v] = he_vec3_add(m->c.position[v], random_point(seed, 0.4));
-    }
-    return m;
-}
-
 /* Requires that the face, point, weights and distance of a hit are consistent with each other. */
 static void check_hit(const he_mesh *m, const he_hit *hit)
 {
@@ -103,10 +77,10 @@ static void rays_hit_what_trying_all_triangles_finds(void **state)
     uint64_t seed = 11;
     int hits = 0, misses = 0;
     for (int round = 0; round < 60; round++) {
-        he_mesh *m = tangle(&seed);
+        he_mesh *m = query_tangle(&seed);
         he_bvh *tree = tree_of(m);
         for (int i = 0; i < 100; i++) {
-            he_vec3 o = random_point(&seed, 2), d = random_point(&seed, 1);
+            he_vec3 o = query_random_point(&seed, 2), d = query_random_point(&seed, 1);
             double unit = he_vec3_length(d), best = HUGE_VAL;
             he_vec3 along = he_vec3_scale(d, 1 / unit);
             for (uint32_t t = 0; t < tree->count; t++) {
@@ -143,7 +117,7 @@ static void a_closed_surface_has_no_cracks(void **state)
     he_vec3 middle = {0.1, -0.2, 0.05};
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
         he_vec3 a = m->c.position[m->c.origin[2 * e]], b = m->c.position[m->c.origin[2 * e + 1]];
-        double t = uniform(&seed, 0, 1);
+        double t = query_uniform(&seed, 0, 1);
         he_vec3 on = he_vec3_add(he_vec3_scale(a, t), he_vec3_scale(b, 1 - t));
         he_hit hit = cast(tree, m, middle, he_vec3_sub(on, middle), HUGE_VAL);
         assert_int_not_equal(hit.face, HE_NONE);
@@ -252,10 +226,10 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
     (void)state;
     uint64_t seed = 21;
     for (int round = 0; round < 12; round++) {
-        he_mesh *m = tangle(&seed);
+        he_mesh *m = query_tangle(&seed);
         he_bvh *tree = tree_of(m);
         for (int i = 0; i < 6; i++) {
-            he_vec3 p = random_point(&seed, i % 2 == 0 ? 1 : 4);
+            he_vec3 p = query_random_point(&seed, i % 2 == 0 ? 1 : 4);
             double best = HUGE_VAL, side = 0;
             for (uint32_t t = 0; t < tree->count; t++) {
                 const uint32_t *v = tree->triangles[t].vertex;
@@ -309,19 +283,20 @@ static void boxes_and_discs_hold_what_is_below_them(void **state)
     (void)state;
     uint64_t seed = 24;
     for (int round = 0; round < 20; round++) {
-        he_mesh *m = round == 0 ? query_shape("torus", 60, 40, 2, 0.5) : tangle(&seed);
+        he_mesh *m = round == 0 ? query_shape("torus", 60, 40, 2, 0.5) : query_tangle(&seed);
         he_bvh *tree = tree_of(m);
         for (uint32_t at = 0; at < tree->node_count; at++) {
             for (int i = 0; i < 4; i++) {
                 static const double reaches[] = {0.5, 2, 1e3, 1e9};
-                check_bounds(tree, m, at, random_point(&seed, reaches[i]));
+                check_bounds(tree, m, at, query_random_point(&seed, reaches[i]));
             }
             /* One tested point is on the normal through the centre of the disc, the other in the
              * plane of the disc: at such points the lower bounds are nearly equal to the exact
              * distances. */
             const he_bvh_disc *d = &tree->discs[at];
             he_vec3 c = {d->center[0], d->center[1], d->center[2]},
-                    n = {d->normal[0], d->normal[1], d->normal[2]}, x = random_point(&seed, 1);
+                    n = {d->normal[0], d->normal[1], d->normal[2]},
+                    x = query_random_point(&seed, 1);
             check_bounds(tree, m, at, he_vec3_add(c, he_vec3_scale(n, 1e6)));
             check_bounds(tree, m, at, he_vec3_add(c, he_vec3_scale(he_vec3_cross(n, x), 1e6)));
         }
@@ -337,7 +312,7 @@ static void nearest_points_of_a_cube(void **state)
     he_bvh *tree = tree_of(m);
     uint64_t seed = 22;
     for (int i = 0; i < 2000; i++) {
-        he_vec3 p = random_point(&seed, 3);
+        he_vec3 p = query_random_point(&seed, 3);
         he_vec3 q = {fmin(fmax(p.x, -1), 1), fmin(fmax(p.y, -1), 1), fmin(fmax(p.z, -1), 1)};
         double outside = he_vec3_length(he_vec3_sub(p, q));
         double wanted = outside > 0 ? outside : 1 - he_vec3_extent(p);
@@ -595,7 +570,7 @@ static void pairs_are_those_that_trying_all_finds(void **state)
     he_ids pairs = {0};
     size_t met = 0;
     for (int round = 0; round < 40; round++) {
-        he_mesh *m = tangle(&seed);
+        he_mesh *m = query_tangle(&seed);
         he_bvh *tree = tree_of(m);
         uint32_t faces = he_mesh_faces(m);
         bool *wanted = calloc((size_t)faces * faces, sizeof *wanted), complete;
@@ -682,7 +657,7 @@ static void starved_trees_and_searches_say_so(void **state)
 {
     (void)state;
     uint64_t seed = 61;
-    he_mesh *m = tangle(&seed), *polygon = fixture_mesh("01234567");
+    he_mesh *m = query_tangle(&seed), *polygon = fixture_mesh("01234567");
     const he_mesh *meshes[] = {m, polygon};
     for (int i = 0; i < 2; i++) {
         failing f = {.may_succeed = true}; /* an allocation that shrinks a block may fail without an

@@ -6,32 +6,6 @@
 
 #include <math.h>
 
-static double uniform(uint64_t *seed, double low, double high)
-{
-    return low + (high - low) * ldexp((double)(query_random(seed) >> 11), -53);
-}
-
-static he_vec3 random_point(uint64_t *seed, double reach)
-{
-    return (he_vec3){uniform(seed, -reach, reach), uniform(seed, -reach, reach),
-                     uniform(seed, -reach, reach)};
-}
-
-/* Makes a mesh with vertices at random positions, so that faces intersect and polygons are not
- * planar. */
-static he_mesh *tangle(uint64_t *seed)
-{
-    static const char *const shapes[] = {"icosphere", "cube", "dodecahedron", "grid"};
-    static const double args[][4] = {{2, 1}, {1}, {1}, {5, 4, 1, 1}};
-    size_t which = query_random(seed) % 4;
-    const double *a = args[which];
-    he_mesh *m = query_shape(shapes[which], a[0], a[1], a[2], a[3]);
-    for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
-        m->c.position[v] = he_vec3_add(m->c.position[v], random_point(seed, 0.4));
-    }
-    return m;
-}
-
 /* Counts how often each leaf is below a node of the wide tree, and requires that children have the
  * boxes of the binary tree. */
 static void count_leaves(const he_bvh *tree, uint32_t at, uint32_t *counts)
@@ -63,7 +37,7 @@ static void the_wide_tree_has_each_leaf_once(void **state)
     for (int round = 0; round < 20; round++) {
         he_mesh *m = round == 0   ? query_shape("torus", 60, 40, 2, 0.5)
                      : round == 1 ? query_shape("grid", 1, 1, 1, 1)
-                                  : tangle(&seed);
+                                  : query_tangle(&seed);
         he_bvh *tree = NULL;
         assert_int_equal(he_bvh_new(m, NULL, &tree, NULL), HE_OK);
         uint32_t *counts = he_mem_zero(tree->node_count, sizeof *counts);
@@ -85,7 +59,7 @@ static void walking_the_tree_finds_what_trying_all_triangles_finds(void **state)
     (void)state;
     uint64_t seed = 26;
     for (int round = 0; round < 60; round++) {
-        he_mesh *m = tangle(&seed);
+        he_mesh *m = query_tangle(&seed);
         const double shift = round % 3 == 0 ? 1e7 : 0;
         for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
             m->c.position[v].x += shift;
@@ -95,7 +69,7 @@ static void walking_the_tree_finds_what_trying_all_triangles_finds(void **state)
         for (int i = 0; i < 60; i++) {
             const double reach = ldexp(1, i % 2 == 0 ? -(i / 4) : 3 * i / 2);
             const he_vec3 on = he_vec3_scale(m->c.position[0], tree->scale);
-            const he_vec3 p = he_vec3_add(on, random_point(&seed, reach));
+            const he_vec3 p = he_vec3_add(on, query_random_point(&seed, reach));
             double best = HUGE_VAL;
             for (uint32_t t = 0; t < tree->count; t++) {
                 he_vec3 c[3];
@@ -128,11 +102,12 @@ static void the_nearest_point_of_a_triangle_is_nearest(void **state)
     for (int round = 0; round < 4000; round++) {
         const double thin = ldexp(1, -(int)(query_random(&seed) % 40)),
                      far = round % 4 == 0 ? 50 : 1;
-        he_vec3 c[3] = {random_point(&seed, 1), random_point(&seed, 1), {0, 0, 0}};
-        c[2] = he_vec3_add(he_vec3_scale(he_vec3_add(c[0], c[1]), 0.5), random_point(&seed, thin));
+        he_vec3 c[3] = {query_random_point(&seed, 1), query_random_point(&seed, 1), {0, 0, 0}};
+        c[2] = he_vec3_add(he_vec3_scale(he_vec3_add(c[0], c[1]), 0.5),
+                           query_random_point(&seed, thin));
         const int turn = round % 3;
         const he_vec3 t[3] = {c[turn], c[(turn + 1) % 3], c[(turn + 2) % 3]};
-        const he_vec3 p = random_point(&seed, far);
+        const he_vec3 p = query_random_point(&seed, far);
         double weight[3], best = HUGE_VAL;
         const he_vec3 back = he_bvh_to_triangle(p, t, weight);
         he_vec3 q = {0, 0, 0};

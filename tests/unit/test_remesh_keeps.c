@@ -12,15 +12,6 @@
 
 enum { SIDE = 20, ACROSS = SIDE + 1 };
 
-static he_column *add_column(he_mesh *m, const he_column_schema *schema)
-{
-    he_column *column = NULL;
-    assert_int_equal(he_column_new(schema, &column, NULL), HE_OK);
-    assert_int_equal(he_column_extend(column, he_mesh_issued(m, schema->domain), NULL), HE_OK);
-    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
-    return column;
-}
-
 /* --- lines --- */
 
 /* The line from vertex (4, 10) of a grid to (15, 10), and on to (15, 16). */
@@ -33,7 +24,7 @@ static bool is_on_line(uint32_t v)
 static void mark_line(he_mesh *m)
 {
     he_column *feature =
-        add_column(m, &(he_column_schema){"feature", HE_EDGE, HE_BOOL, 1, HE_COPY});
+        remesh_add_column(m, &(he_column_schema){"feature", HE_EDGE, HE_BOOL, 1, HE_COPY});
     for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
         const he_halfedge h = {2 * e};
         const uint32_t a = he_origin(m, h).i, b = he_target(m, h).i;
@@ -163,11 +154,11 @@ static void values_stay_on_their_side_of_a_line(void **state)
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         he_mesh *m = dense_grid(SIDE, dense_waves, 1);
         he_column *feature =
-            add_column(m, &(he_column_schema){"feature", HE_EDGE, HE_BOOL, 1, HE_COPY});
-        he_column *corner =
-            add_column(m, &(he_column_schema){"seam", HE_HALFEDGE, HE_DOUBLE, 1, HE_INTERPOLATE});
+            remesh_add_column(m, &(he_column_schema){"feature", HE_EDGE, HE_BOOL, 1, HE_COPY});
+        he_column *corner = remesh_add_column(
+            m, &(he_column_schema){"seam", HE_HALFEDGE, HE_DOUBLE, 1, HE_INTERPOLATE});
         he_column *face =
-            add_column(m, &(he_column_schema){"part", HE_FACE, HE_DOUBLE, 1, HE_COPY});
+            remesh_add_column(m, &(he_column_schema){"part", HE_FACE, HE_DOUBLE, 1, HE_COPY});
         for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
             const he_halfedge h = {2 * e};
             *he_column_row(feature, e) =

@@ -29,15 +29,6 @@ static double flat(double x, double y)
     return 0;
 }
 
-static he_column *add_column(he_mesh *m, const he_column_schema *schema)
-{
-    he_column *column = NULL;
-    assert_int_equal(he_column_new(schema, &column, NULL), HE_OK);
-    assert_int_equal(he_column_extend(column, he_mesh_issued(m, schema->domain), NULL), HE_OK);
-    assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
-    return column;
-}
-
 static bool is_inside(const he_mesh *m, uint32_t face)
 {
     he_vec3 sum = {0, 0, 0};
@@ -81,7 +72,7 @@ static he_mesh *textured(double (*height)(double x, double y), he_type type)
 {
     he_mesh *m = dense_grid(SIDE, height, 1);
     he_column *column =
-        add_column(m, &(he_column_schema){"uv", HE_HALFEDGE, type, 2, HE_INTERPOLATE});
+        remesh_add_column(m, &(he_column_schema){"uv", HE_HALFEDGE, type, 2, HE_INTERPOLATE});
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         he_halfedge h = he_face_halfedge(m, (he_face){f});
         for (unsigned k = 0; k < 3; k++, h = he_next(m, h)) {
@@ -198,7 +189,7 @@ static void on_a_curved_surface_values_have_no_other_seam(void **state)
 static bool is_no_seam(const char *name, he_type type, he_rule rule)
 {
     he_mesh *m = dense_grid(SIDE, dense_waves, 1);
-    he_column *column = add_column(m, &(he_column_schema){name, HE_HALFEDGE, type, 3, rule});
+    he_column *column = remesh_add_column(m, &(he_column_schema){name, HE_HALFEDGE, type, 3, rule});
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         he_halfedge h = he_face_halfedge(m, (he_face){f});
         for (unsigned k = 0; k < 3; k++, h = he_next(m, h)) {
